@@ -5,7 +5,15 @@ from __future__ import annotations
 from collections.abc import Iterable
 from difflib import get_close_matches
 
-__all__ = ["EngineError", "InputError", "PinikError", "RobotLoadError", "SolveError", "UnknownNameError", "UrdfWarning"]
+__all__ = [
+    "EngineError",
+    "InputError",
+    "PinikError",
+    "RobotLoadError",
+    "SolveError",
+    "UnknownNameError",
+    "UrdfWarning",
+]
 
 
 class PinikError(Exception):
@@ -49,7 +57,9 @@ class UnknownNameError(PinikError, KeyError):
             help_ = "near: " + ", ".join(repr(n) for n in near)
         else:
             shown = ", ".join(repr(n) for n in self.valid[:12]) or "none"
-            help_ = f"there are: {shown}" + (f" and {len(self.valid) - 12} more" if len(self.valid) > 12 else "")
+            help_ = f"there are: {shown}" + (
+                f" and {len(self.valid) - 12} more" if len(self.valid) > 12 else ""
+            )
         super().__init__(f"no {kind} {name!r}; {help_}" + (f"; {hint}" if hint else ""))
 
     def __str__(self) -> str:

@@ -1,0 +1,69 @@
+"""pinik: any URDF into Pinocchio, and answers to two questions about it.
+
+Where are its frames (`Robot.placement`, `Robot.jacobian`), and which joint values put them where I want them
+(`Robot.solve`, `solve`, `iterate`).
+"""
+
+from .errors import (
+    EngineError,
+    InputError,
+    PinikError,
+    RobotLoadError,
+    SolveError,
+    UnknownNameError,
+    UrdfWarning,
+)
+from .kinematics import Kinematics, Linearization, TargetError
+from .loop import iterate, solve
+from .robot import Joint, Robot, load
+from .robot_catalog import catalog
+from .solution import Solution, State, Status
+from .solvers import (
+    CCD,
+    SOLVERS,
+    DampedLeastSquares,
+    JacobianSolver,
+    JacobianTranspose,
+    Patience,
+    PseudoInverse,
+    Solver,
+    SweepingSolver,
+    parameter,
+)
+from .targets import Target, Tolerance
+
+__version__ = "0.1.0"
+
+__all__ = [
+    "CCD",
+    "SOLVERS",
+    "DampedLeastSquares",
+    "EngineError",
+    "InputError",
+    "JacobianSolver",
+    "JacobianTranspose",
+    "Joint",
+    "Kinematics",
+    "Linearization",
+    "Patience",
+    "PinikError",
+    "PseudoInverse",
+    "Robot",
+    "RobotLoadError",
+    "Solution",
+    "SolveError",
+    "Solver",
+    "State",
+    "Status",
+    "SweepingSolver",
+    "Target",
+    "TargetError",
+    "Tolerance",
+    "UnknownNameError",
+    "UrdfWarning",
+    "catalog",
+    "iterate",
+    "load",
+    "parameter",
+    "solve",
+]

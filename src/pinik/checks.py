@@ -1,0 +1,74 @@
+"""Checks of what people hand in: numbers, vectors, rotations, placements; each error says what would be right."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pinocchio
+from numpy.typing import ArrayLike, NDArray
+
+from .errors import InputError
+
+__all__ = ["as_finite_number", "as_rotation", "as_se3", "as_unit_vector", "as_vector"]
+
+Array = NDArray[np.float64]
+
+
+def as_finite_number(value: object, what: str) -> float:
+    """`value` as a float; InputError unless it is one finite number."""
+    try:
+        number = float(value)  # type: ignore[arg-type]
+    except (TypeError, ValueError):
+        raise InputError(f"{what} is a number; got {value!r}") from None
+    if isinstance(value, (str, bool)) or not math.isfinite(number):
+        raise InputError(f"{what} is a finite number; got {value!r}")
+    return number
+
+
+def as_array(value: ArrayLike, shape: tuple[int, ...], what: str, of: str = "") -> Array:
+    """A fresh float64 array of that shape; InputError for other shapes, kinds, NaN and infinities."""
+    size = "×".join(map(str, shape))
+    expected = f"{size} finite numbers" + (f" ({of})" if of else "")
+    try:
+        array = np.array(value, dtype=np.float64)
+    except (TypeError, ValueError):
+        raise InputError(f"{what} takes {expected}; got {value!r}") from None
+    if array.shape != shape:
+        raise InputError(f"{what} takes {expected}; got an array of shape {array.shape}")
+    if not np.isfinite(array).all():
+        raise InputError(f"{what} takes {expected}; got {array.tolist()}")
+    return array
+
+
+def as_vector(value: ArrayLike, size: int, what: str, of: str = "") -> Array:
+    """`value` as a finite vector (size,)."""
+    return as_array(value, (size,), what, of)
+
+
+def as_unit_vector(value: ArrayLike, what: str) -> Array:
+    """`value` (3,) scaled to unit length; InputError for a zero vector."""
+    vector = as_vector(value, 3, what)
+    scale = np.abs(vector).max()
+    if scale < 1e-300:
+        raise InputError(f"{what} is a direction and cannot be zero")
+    vector = vector / scale
+    return np.array(vector / np.linalg.norm(vector))
+
+
+def as_rotation(value: ArrayLike, what: str) -> Array:
+    """`value` as a rotation matrix (3, 3); InputError unless it is orthonormal to 1e-6 and right-handed."""
+    matrix = as_array(value, (3, 3), what, "a rotation matrix")
+    if np.abs(matrix @ matrix.T - np.eye(3)).max() > 1e-6 or np.linalg.det(matrix) < 0.0:
+        raise InputError(f"{what} is a rotation matrix (orthonormal, determinant +1); got {matrix.tolist()}")
+    left, _, right = np.linalg.svd(matrix)
+    return np.array(left @ right)
+
+
+def as_se3(value: pinocchio.SE3 | ArrayLike, what: str) -> pinocchio.SE3:
+    """`value`, a `pinocchio.SE3` or a homogeneous 4×4 matrix, as a fresh SE3."""
+    matrix = value.homogeneous if isinstance(value, pinocchio.SE3) else value
+    array = as_array(matrix, (4, 4), what, "an SE3 or a homogeneous matrix")
+    if np.abs(array[3] - (0.0, 0.0, 0.0, 1.0)).max() > 1e-9:
+        raise InputError(f"{what}: the last row of a homogeneous matrix is 0 0 0 1; got {array[3].tolist()}")
+    return pinocchio.SE3(as_rotation(array[:3, :3], what), array[:3, 3])

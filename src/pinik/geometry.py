@@ -1,0 +1,222 @@
+"""A robot's shapes, for whoever draws it: the visual elements of a URDF as coloured triangle meshes.
+
+Importing this module imports trimesh (over a second); import it only where shapes are wanted.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from xml.etree import ElementTree
+
+import numpy as np
+import trimesh
+from numpy.typing import NDArray
+from scipy.sparse import coo_matrix
+from scipy.sparse.csgraph import connected_components
+
+from .packages import resolve
+
+__all__ = ["Color", "Shape", "load_shapes"]
+
+Color = tuple[float, float, float, float]
+
+GREY: Color = (0.7, 0.7, 0.7, 1.0)
+CREASE = np.deg2rad(40.0)  # sharper edges stay edges when a mesh brings no normals
+
+
+@dataclass(frozen=True)
+class Shape:
+    """One mesh in one colour, fixed to a link.
+
+    Attributes:
+        link: The link that carries it.
+        name: Unique in the robot.
+        placement: Pose (4, 4) in the link's frame [m].
+        mesh: Vertices [m], faces and vertex normals, scale applied; vertices are split where the surface has an edge.
+        color: Red, green, blue, opacity, each in 0..1.
+    """
+
+    link: str
+    name: str
+    placement: NDArray[np.float64]
+    mesh: trimesh.Trimesh
+    color: Color
+
+
+def load_shapes(
+    urdf_path_or_text: str | Path, package_dirs: Sequence[str | Path] = ()
+) -> tuple[list[Shape], list[str]]:
+    """Read the visual shapes of a URDF that has been checked before.
+
+    Args:
+        urdf_path_or_text: A path to a .urdf, or its text.
+        package_dirs: Folders in which `package://` addresses are looked up first.
+
+    Returns:
+        The shapes, in the order of the file, and a sentence about each one that could not be read.
+    """
+    text, path = _read(urdf_path_or_text)
+    robot = ElementTree.fromstring(text)
+    named = {
+        material.get("name", ""): color
+        for material in robot.iter("material")
+        if (color := _material_color(material)) is not None
+    }
+    shapes: list[Shape] = []
+    warnings: list[str] = []
+    files: dict[str, list[tuple[trimesh.Trimesh, Color | None]]] = {}
+    for link in robot.findall("link"):
+        link_name = link.get("name", "")
+        for index, visual in enumerate(link.findall("visual")):
+            try:
+                parts = _parts(visual, path, package_dirs, files)
+            except (
+                Exception
+            ) as fault:  # a shape is never worth an error, whatever its file makes trimesh raise
+                warnings.append(f"link '{link_name}': a shape is left out: {fault}")
+                continue
+            given = _visual_color(visual, named)
+            for part, (mesh, own) in enumerate(parts):
+                name = f"{link_name}/{index}" + (f"/{part}" if len(parts) > 1 else "")
+                shapes.append(Shape(link_name, name, _origin(visual), mesh, given or own or GREY))
+    return shapes, warnings
+
+
+def _read(urdf_path_or_text: str | Path) -> tuple[str | bytes, Path | None]:
+    if isinstance(urdf_path_or_text, str) and urdf_path_or_text.lstrip().startswith("<"):
+        return urdf_path_or_text, None
+    path = Path(urdf_path_or_text)
+    return path.read_bytes(), path
+
+
+def _numbers(text: str) -> NDArray[np.float64]:
+    return np.array([float(word) for word in text.split()])
+
+
+def _origin(visual: ElementTree.Element) -> NDArray[np.float64]:
+    origin = visual.find("origin")
+    if origin is None:
+        return np.eye(4)
+    roll, pitch, yaw = _numbers(origin.get("rpy", "0 0 0"))
+    placement: NDArray[np.float64] = trimesh.transformations.euler_matrix(roll, pitch, yaw, "sxyz")
+    placement[:3, 3] = _numbers(origin.get("xyz", "0 0 0"))
+    return placement
+
+
+def _material_color(material: ElementTree.Element) -> Color | None:
+    color = material.find("color")
+    if color is None or "rgba" not in color.attrib:
+        return None
+    r, g, b, a = _numbers(color.attrib["rgba"])
+    return (float(r), float(g), float(b), float(a))
+
+
+def _visual_color(visual: ElementTree.Element, named: dict[str, Color]) -> Color | None:
+    material = visual.find("material")
+    if material is None:
+        return None
+    return _material_color(material) or named.get(material.get("name", ""))
+
+
+def _parts(
+    visual: ElementTree.Element,
+    urdf_path: Path | None,
+    package_dirs: Sequence[str | Path],
+    files: dict[str, list[tuple[trimesh.Trimesh, Color | None]]],
+) -> list[tuple[trimesh.Trimesh, Color | None]]:
+    """The meshes of one visual element, each with its own colour if it has one."""
+    for element in visual.iterfind("geometry/*"):
+        match element.tag:
+            case "box":
+                return [(_creased(trimesh.creation.box(_numbers(element.attrib["size"]))), None)]
+            case "sphere":
+                return [(trimesh.creation.icosphere(3, float(element.attrib["radius"])), None)]
+            case "cylinder" | "capsule":
+                radius, length = float(element.attrib["radius"]), float(element.attrib["length"])
+                make = trimesh.creation.cylinder if element.tag == "cylinder" else _capsule
+                return [(_creased(make(radius, length)), None)]
+            case "mesh":
+                address = element.attrib["filename"]
+                if address not in files:
+                    files[address] = _load_file(address, urdf_path, package_dirs)
+                scale = _numbers(element.get("scale", "1 1 1"))
+                return [(_scaled(mesh, scale), color) for mesh, color in files[address]]
+    raise ValueError("it has no geometry that is known here (box, sphere, cylinder, capsule, mesh)")
+
+
+def _capsule(radius: float, length: float) -> trimesh.Trimesh:
+    """A capsule about the origin; as for URDF's cylinder, `length` leaves out the caps."""
+    return trimesh.creation.capsule(length, radius)
+
+
+def _scaled(mesh: trimesh.Trimesh, scale: NDArray[np.float64]) -> trimesh.Trimesh:
+    if np.array_equal(scale, np.ones(3)):
+        return mesh
+    scaled = mesh.copy()
+    scaled.apply_transform(np.diag([*np.broadcast_to(scale, 3), 1.0]))
+    return scaled
+
+
+def _load_file(
+    address: str, urdf_path: Path | None, package_dirs: Sequence[str | Path]
+) -> list[tuple[trimesh.Trimesh, Color | None]]:
+    """A mesh file as one mesh for each colour in it, in its own frame [m]."""
+    path = resolve(address, urdf_path=urdf_path, package_dirs=package_dirs)
+    if path is None:
+        raise FileNotFoundError(f"there is no mesh '{address}'")
+    scene = trimesh.load_scene(path)
+    units = scene.metadata.get("units", "meters")  # COLLADA names them; an STL or OBJ is taken as it is
+    if path.suffix.lower() == ".dae" and units != "meters":
+        scene.apply_scale(trimesh.units.unit_conversion(units, "meters"))
+    by_color: dict[Color | None, list[trimesh.Trimesh]] = {}
+    for mesh in scene.dump():
+        if isinstance(mesh, trimesh.Trimesh) and len(mesh.faces):
+            by_color.setdefault(_own_color(mesh), []).append(mesh)
+    if not by_color:
+        raise ValueError(f"'{address}' holds no triangles")
+    keep = _brings_normals(path)
+    return [(_joined(meshes, keep_normals=keep), color) for color, meshes in by_color.items()]
+
+
+def _own_color(mesh: trimesh.Trimesh) -> Color | None:
+    """The colour that the mesh's file gives it, if any."""
+    visual = mesh.visual
+    if isinstance(visual, trimesh.visual.TextureVisuals) and visual.material is not None:
+        rgba = np.asarray(visual.material.main_color, dtype=float) / 255.0
+    elif visual.defined:
+        rgba = np.asarray(visual.main_color, dtype=float) / 255.0
+    else:
+        return None
+    r, g, b, a = (float(value) for value in rgba)
+    return (r, g, b, a)
+
+
+def _brings_normals(path: Path) -> bool:
+    suffix = path.suffix.lower()
+    return suffix == ".dae" or (suffix == ".obj" and b"\nvn " in path.read_bytes())
+
+
+def _joined(meshes: Iterable[trimesh.Trimesh], *, keep_normals: bool) -> trimesh.Trimesh:
+    bare = [
+        trimesh.Trimesh(
+            mesh.vertices,
+            mesh.faces,
+            vertex_normals=mesh.vertex_normals if keep_normals else None,
+            process=not keep_normals,
+        )
+        for mesh in meshes
+    ]
+    joined: trimesh.Trimesh = bare[0] if len(bare) == 1 else trimesh.util.concatenate(bare)
+    return joined if keep_normals else _creased(joined)
+
+
+def _creased(mesh: trimesh.Trimesh) -> trimesh.Trimesh:
+    """The mesh with its vertices split along sharp edges, so that smooth normals leave these sharp."""
+    smooth = mesh.face_adjacency[mesh.face_adjacency_angles < CREASE]
+    graph = coo_matrix((np.ones(len(smooth)), smooth.T), shape=(len(mesh.faces),) * 2)
+    patches, patch = connected_components(graph, directed=False)
+    corners = mesh.faces.ravel() * patches + np.repeat(patch, 3)
+    kept, faces = np.unique(corners, return_inverse=True)
+    return trimesh.Trimesh(mesh.vertices[kept // patches], faces.reshape(-1, 3), process=False)

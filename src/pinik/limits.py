@@ -1,0 +1,104 @@
+"""Joint limits as a box in which configurations are kept."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .robot import Robot
+
+__all__ = ["Limits"]
+
+Array = NDArray[np.float64]
+
+_AT_LIMIT = 1e-6  # [rad or m]: nearer than this a joint is said to sit at its limit
+
+
+@dataclass(frozen=True)
+class Limits:
+    """A robot's limits, switched on or off.
+
+    Attributes:
+        robot: Whose they are.
+        enabled: Whether they hold.
+        lower, upper: (nq,) bounds of the entries of q; infinite where there are none.
+        entry: (nv,) the entry of q behind each tangent coordinate that has bounds, −1 for the others.
+        turning: (nq,) which entries are hinge angles, equal when 2π apart.
+    """
+
+    robot: Robot
+    enabled: bool
+    lower: Array
+    upper: Array
+    entry: NDArray[np.intp]
+    turning: NDArray[np.bool_]
+
+    @classmethod
+    def of(cls, robot: Robot, enabled: bool = True) -> Limits:
+        """The limits of a robot, all infinite unless `enabled`."""
+        entry = np.full(robot.model.nv, -1, dtype=np.intp)
+        turning = np.zeros(robot.model.nq, dtype=bool)
+        for joint in robot.joints:
+            if joint.nq == 1:
+                turning[joint.idx_q] = joint.kind == "revolute"
+                if enabled:
+                    entry[joint.idx_v] = joint.idx_q
+        if enabled:
+            return cls(robot, True, robot.lower_q, robot.upper_q, entry, turning)
+        return cls(
+            robot, False, np.full(robot.model.nq, -np.inf), np.full(robot.model.nq, np.inf), entry, turning
+        )
+
+    def clip(self, q: Array) -> Array:
+        """The nearest configuration inside, entry by entry."""
+        return np.minimum(np.maximum(q, self.lower), self.upper)
+
+    def contains(self, q: Array) -> bool:
+        """Whether `q` lies inside."""
+        return bool(((q >= self.lower) & (q <= self.upper)).all())
+
+    def wrap(self, q: Array) -> Array:
+        """`q` with the hinge angles that lie outside turned by whole turns, as near to their limits as they get."""
+        outside = self.turning & ((q < self.lower) | (q > self.upper))
+        if not outside.any():
+            return q
+        q = q.copy()
+        for i in np.flatnonzero(outside):
+            turn = 2.0 * math.pi
+            nearest_to_middle = q[i] - turn * round((q[i] - 0.5 * (self.lower[i] + self.upper[i])) / turn)
+            inside = self.lower[i] + (q[i] - self.lower[i]) % turn
+            q[i] = inside if inside <= self.upper[i] else nearest_to_middle
+        return q
+
+    def blocked(self, q: Array, dq: Array) -> NDArray[np.bool_]:
+        """(nv,) which coordinates of the step `dq` push a joint that sits at a limit further out."""
+        bounded = self.entry >= 0
+        value = q[self.entry]
+        out = ((dq < 0.0) & (value <= self.lower[self.entry])) | (
+            (dq > 0.0) & (value >= self.upper[self.entry])
+        )
+        return out & bounded
+
+    def active(self, q: Array) -> dict[str, str]:
+        """Joint name → "lower", "upper" or "both", for the joints that sit at a limit."""
+        sides = {}
+        for name, angle, low, high in self._bounded(q):
+            at_lower, at_upper = angle - low <= _AT_LIMIT, high - angle <= _AT_LIMIT
+            if at_lower or at_upper:
+                sides[name] = "both" if at_lower and at_upper else "lower" if at_lower else "upper"
+        return sides
+
+    def _bounded(self, q: Array) -> list[tuple[str, float, float, float]]:
+        return [
+            (
+                joint.name,
+                float(q[joint.idx_q]),
+                float(self.lower[joint.idx_q]),
+                float(self.upper[joint.idx_q]),
+            )
+            for joint in self.robot.joints
+            if joint.nq == 1 and self.enabled
+        ]

@@ -1,0 +1,107 @@
+"""The verdict of a solve in one sentence."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+
+from .kinematics import TargetError
+from .reach import Shortfall
+from .solution import Status
+from .targets import Target, Tolerance
+
+__all__ = ["explain"]
+
+
+def explain(
+    status: Status,
+    targets: Sequence[Target],
+    errors: Sequence[TargetError],
+    tolerance: Tolerance,
+    active: Mapping[str, str],
+    proof: Shortfall | None,
+    anything_moves: bool,
+) -> str:
+    """Why the solve ended, what is missing, and which joints sit at their limits.
+
+    Args:
+        status: The verdict.
+        targets: What was asked for.
+        errors: Each target's error.
+        tolerance: What counts as reached.
+        active: Joint name → "lower", "upper" or "both".
+        proof: Of a target out of reach.
+        anything_moves: Whether any free joint moves any of the frames.
+    """
+    if status is Status.CONVERGED:
+        largest = [
+            max((e.position for e in errors if e.position is not None), default=None),
+            max((e.orientation for e in errors if e.orientation is not None), default=None),
+        ]
+        words = [
+            _length(largest[0]) if largest[0] is not None else "",
+            _angle(largest[1]) if largest[1] is not None else "",
+        ]
+        return f"converged, {' and '.join(filter(None, words))} off"
+    missed = _missed(targets, errors, tolerance)
+    if not anything_moves:
+        return f"no free joint moves {_frames(targets)}; {missed}"
+    if status is Status.UNREACHABLE and proof is not None:
+        frame = targets[proof.target].frame
+        side = "inside the hole of" if proof.inner else "beyond the reach of"
+        sentence = (
+            f"unreachable: the target of {frame} lies {_length(proof.distance)} {side} its chain, "
+            f"{_length(proof.bound)} from its first joint; {missed}"
+        )
+    else:
+        begin = {
+            Status.STALLED: "stalled",
+            Status.MAX_ITERATIONS: "out of iterations",
+            Status.TIME_LIMIT: "out of time",
+        }[status]
+        sentence = f"{begin} {missed}"
+    return "; ".join([sentence, *_limits(active)])
+
+
+def _missed(targets: Sequence[Target], errors: Sequence[TargetError], tolerance: Tolerance) -> str:
+    parts = []
+    for target, error in zip(targets, errors, strict=True):
+        words = []
+        if error.position is not None and error.position > tolerance.position:
+            words.append(f"{_length(error.position)} short")
+        if error.orientation is not None and error.orientation > tolerance.orientation:
+            words.append(f"{_angle(error.orientation)} off")
+        if words:
+            name = f"{target.frame} " if len(targets) > 1 else ""
+            parts.append(name + " and ".join(words))
+    return ", ".join(parts)
+
+
+def _limits(active: Mapping[str, str]) -> list[str]:
+    sentences = []
+    for side, words in (("lower", "lower limit"), ("upper", "upper limit"), ("both", "only value")):
+        names = [name for name, at in active.items() if at == side]
+        if names:
+            sentences.append(
+                f"{', '.join(names)} at {'its' if len(names) == 1 else 'their'} {words}{'' if len(names) == 1 else 's'}"
+            )
+    return sentences
+
+
+def _frames(targets: Sequence[Target]) -> str:
+    names = list(dict.fromkeys(target.frame for target in targets))
+    return f"frame {names[0]!r}" if len(names) == 1 else f"frames {', '.join(map(repr, names))}"
+
+
+def _length(metres: float) -> str:
+    if metres >= 1.0:
+        return f"{metres:.3g} m"
+    if metres >= 0.01:
+        return f"{100.0 * metres:.3g} cm"
+    if metres >= 1e-5:
+        return f"{1000.0 * metres:.2g} mm"
+    return f"{1e6 * metres:.2g} µm"
+
+
+def _angle(radians: float) -> str:
+    return f"{math.degrees(radians):.2g}°"

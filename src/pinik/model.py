@@ -1,0 +1,176 @@
+"""From a checked description to Pinocchio's model, with every mimic joint that Pinocchio gets right."""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Callable, Collection, Mapping
+from concurrent.futures import ThreadPoolExecutor
+from xml.etree import ElementTree
+
+import pinocchio
+
+from .errors import InputError, RobotLoadError
+from .urdf import Description, JointTag
+
+__all__ = ["MAX_DEGREES_OF_FREEDOM", "MAX_LINKS", "build_model"]
+
+# pinocchio.Data holds tensors of nv³ numbers, in all 66 bytes per nv³ (measured at nv = 200..400): 1.8 GB.
+MAX_DEGREES_OF_FREEDOM = 300
+# The parser looks every parent up by a walk over all frames: 10,000 links take a second, 100,000 minutes.
+MAX_LINKS = 10_000
+
+# The parser calls itself once per link of a chain and needs 2.1 to 2.4 kB of stack for it (an 8 MB stack ends
+# between 3,500 and 4,000 links). Deeper trees are built on a stack that holds MAX_LINKS of them twice over.
+DEEP_TREE = 100
+DEEP_STACK_BYTES = 64 * 1024 * 1024
+_stack_size_lock = threading.Lock()
+
+FREEDOMS = {"revolute": 1, "continuous": 1, "prismatic": 1, "fixed": 0, "floating": 6, "planar": 3}
+ROOT_JOINTS = {
+    "fixed": None,
+    "free_flyer": pinocchio.JointModelFreeFlyer,
+    "planar": pinocchio.JointModelPlanar,
+}
+
+
+def build_model(
+    description: Description, *, root: str = "fixed", mimic: bool = True
+) -> tuple[pinocchio.Model, tuple[str, ...]]:
+    """Build Pinocchio's model of a robot.
+
+    Args:
+        description: What `urdf.read` returned.
+        root: How the root link hangs in the world: "fixed", "free_flyer" (6 degrees of freedom) or "planar"
+            (3); the joint is called "root_joint".
+        mimic: Whether mimic joints follow their leaders; else all of them are free.
+
+    Returns:
+        The model, and warnings in words: the mimic joints that Pinocchio cannot represent and that were left
+        free.
+
+    Raises:
+        InputError: `root` is none of these.
+        RobotLoadError: The robot is too large for Pinocchio, or Pinocchio refuses it.
+    """
+    if root not in ROOT_JOINTS:
+        raise InputError(f"no root {root!r}; there are: {', '.join(map(repr, ROOT_JOINTS))}")
+    root_joint = None if ROOT_JOINTS[root] is None else ROOT_JOINTS[root]()
+    _check_names(description, root)
+    _check_size(description, 0 if root_joint is None else root_joint.nv)
+    free = _built(description, description.xml, root_joint, mimic=False)
+    followers = [joint for joint in description.joints if joint.mimic is not None] if mimic else []
+    causes = {joint.name: _why_left_free(joint, description, free) for joint in followers}
+    warnings = tuple(f"joint {name!r}: {cause}; it is left free" for name, cause in causes.items() if cause)
+    honoured = {name for name, cause in causes.items() if cause is None}
+    if not honoured:
+        return free, warnings
+    kinds = {joint.name: joint.kind for joint in description.joints}
+    xml = _with_mimics(description.xml, honoured, kinds)
+    return _built(description, xml, root_joint, mimic=True), warnings
+
+
+def _check_names(description: Description, root: str) -> None:
+    """Refuse the two joint names that Pinocchio gives to its own joints."""
+    for joint in description.joints:
+        owner = f"joint {joint.name!r}"
+        if joint.name == "universe":
+            raise RobotLoadError(
+                "Pinocchio keeps this name for the world; rename it", source=description.source, element=owner
+            )
+        if joint.name == "root_joint" and root != "fixed" and joint.kind != "fixed":
+            raise RobotLoadError(
+                f"with root={root!r} Pinocchio's root joint has this name; rename it",
+                source=description.source,
+                element=owner,
+            )
+
+
+def _check_size(description: Description, root_freedoms: int) -> None:
+    if len(description.links) > MAX_LINKS:
+        raise RobotLoadError(
+            f"{len(description.links):,} links; at most {MAX_LINKS:,} can be loaded",
+            source=description.source,
+        )
+    freedoms = root_freedoms + sum(FREEDOMS[joint.kind] for joint in description.joints)
+    if freedoms > MAX_DEGREES_OF_FREEDOM:
+        raise RobotLoadError(
+            f"{freedoms:,} degrees of freedom; at most {MAX_DEGREES_OF_FREEDOM} can be loaded, because "
+            "Pinocchio's working memory grows with their third power (2 GB at 310)",
+            source=description.source,
+        )
+
+
+def _why_left_free(follower: JointTag, description: Description, free: pinocchio.Model) -> str | None:
+    """Why Pinocchio cannot make this joint follow its leader; None where it can."""
+    mimic = follower.mimic
+    assert mimic is not None
+    leader_kind = next(joint.kind for joint in description.joints if joint.name == mimic.leader)
+    if free.getJointId(follower.name) < free.getJointId(mimic.leader):
+        return f"it mimics {mimic.leader!r}, which comes after it in Pinocchio's order of joints"
+    if leader_kind == "continuous" and follower.kind == "prismatic":
+        return f"it slides, and Pinocchio cannot let it mimic the continuous joint {mimic.leader!r}"
+    return None
+
+
+def _with_mimics(xml: str, honoured: Collection[str], kinds: Mapping[str, str]) -> str:
+    """The text with the honoured mimics alone, each follower of a kind that Pinocchio pairs with its leader.
+
+    Pinocchio wants leader and follower both or neither continuous. For the follower, which has no variable
+    and no limit of its own in the model, the two kinds of turning mean the same.
+    """
+    robot = ElementTree.fromstring(xml)
+    for joint in robot.iter("joint"):
+        mimic = joint.find("mimic")
+        if mimic is None:
+            continue
+        if joint.attrib["name"] not in honoured:
+            joint.remove(mimic)
+        elif kinds[mimic.attrib["joint"]] == "continuous":
+            joint.set("type", "continuous")
+        elif joint.attrib["type"] == "continuous":
+            joint.set("type", "revolute")
+            for limit in joint.findall("limit"):
+                joint.remove(limit)
+            ElementTree.SubElement(joint, "limit", lower="0", upper="0", effort="0", velocity="0")
+    return ElementTree.tostring(robot, encoding="unicode")
+
+
+def _built(
+    description: Description, xml: str, root_joint: pinocchio.JointModel | None, *, mimic: bool
+) -> pinocchio.Model:
+    """Pinocchio's model of a URDF text; what Pinocchio raises becomes a `RobotLoadError`."""
+    arguments = (xml, mimic) if root_joint is None else (xml, root_joint, mimic)
+
+    def build() -> pinocchio.Model:
+        return pinocchio.buildModelFromXML(*arguments)
+
+    try:
+        return _on_deep_stack(build) if _depth(description) > DEEP_TREE else build()
+    except Exception as error:
+        cause = " ".join(str(error).split())
+        raise RobotLoadError(f"Pinocchio refuses it: {cause}", source=description.source) from error
+
+
+def _depth(description: Description) -> int:
+    """The number of joints between the root and the link farthest from it."""
+    above = {joint.child: joint.parent for joint in description.joints}
+    depth = {description.root: 0}
+    for link in description.links:
+        walk = []
+        while link not in depth:
+            walk.append(link)
+            link = above[link]
+        for below, name in enumerate(reversed(walk), start=1):
+            depth[name] = depth[link] + below
+    return max(depth.values())
+
+
+def _on_deep_stack(build: Callable[[], pinocchio.Model]) -> pinocchio.Model:
+    """Run `build` in a thread of its own, whose stack is large enough for the deepest tree admitted."""
+    with _stack_size_lock, ThreadPoolExecutor(max_workers=1) as pool:
+        usual = threading.stack_size(DEEP_STACK_BYTES)
+        try:
+            future = pool.submit(build)
+        finally:
+            threading.stack_size(usual)
+        return future.result()

@@ -1,0 +1,184 @@
+"""What a solver is: a frozen set of validated parameters and one rule for the next step."""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+from abc import ABC, abstractmethod
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, ClassVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..errors import InputError, UnknownNameError
+
+if TYPE_CHECKING:
+    from ..kinematics import Kinematics, Linearization
+    from ..limits import Limits
+    from ..targets import Tolerance
+
+__all__ = ["JacobianSolver", "Patience", "Solver", "SweepingSolver", "parameter"]
+
+Array = NDArray[np.float64]
+
+
+def parameter(
+    default: Any,
+    help: str,
+    *,
+    unit: str = "",
+    low: float | None = None,
+    high: float | None = None,
+    choices: tuple[str, ...] = (),
+    optional: bool = False,
+) -> Any:
+    """A dataclass field that knows its range, unit and meaning; help texts and sliders are made from it.
+
+    Args:
+        default: Its value when nothing is said; its type is the parameter's.
+        help: One line.
+        unit: Such as "rad".
+        low, high: The range, ends included.
+        choices: The words allowed, for a choice.
+        optional: Whether None is allowed.
+    """
+    metadata = {
+        "help": help,
+        "unit": unit,
+        "low": low,
+        "high": high,
+        "choices": choices,
+        "optional": optional,
+    }
+    if isinstance(default, dict):
+        return dataclasses.field(default_factory=dict, metadata=metadata)
+    return dataclasses.field(default=default, metadata=metadata)
+
+
+@dataclass(frozen=True)
+class Patience:
+    """When a run has stalled: fewer than `progress` of the residual gone within `iterations`."""
+
+    iterations: int
+    progress: float
+
+
+@dataclass(frozen=True, kw_only=True)
+class Solver(ABC):
+    """Parameters of an iterative method. State lives in the loop; instances are immutable and comparable.
+
+    Subclass `JacobianSolver` or `SweepingSolver`.
+    """
+
+    name: ClassVar[str] = ""
+    """Its short name in tables, on the command line and in `pinik.SOLVERS`."""
+    max_iterations: ClassVar[int] = 100
+    """Iterations of one attempt, unless `solve` is told otherwise."""
+    restarts: ClassVar[int] = 30
+    """Fresh starts after the first attempt, unless `solve` is told otherwise."""
+    patience: ClassVar[Patience] = Patience(5, 0.05)
+    """When an attempt counts as stalled."""
+
+    max_step: float = parameter(
+        math.inf, "largest change of one joint in one step", unit="rad or m", low=1e-6
+    )
+    max_residual: float = parameter(
+        math.inf, "D_max: the part of a position residual used", unit="m", low=1e-6
+    )
+
+    def __post_init__(self) -> None:
+        """Check every parameter against its field's range.
+
+        Raises:
+            InputError: A parameter of the wrong kind or outside its range.
+        """
+        for field in dataclasses.fields(self):
+            object.__setattr__(self, field.name, _checked(self.name, field, getattr(self, field.name)))
+
+    @classmethod
+    def make(cls, **parameters: Any) -> Solver:
+        """An instance with these parameters.
+
+        Raises:
+            UnknownNameError: A parameter that this method does not have.
+            InputError: A value of the wrong kind or outside its range.
+        """
+        names = [field.name for field in dataclasses.fields(cls)]
+        for name in parameters:
+            if name not in names:
+                raise UnknownNameError(f"parameter of {cls.name!r}", name, names)
+        return cls(**parameters)
+
+    @property
+    def parameters(self) -> dict[str, Any]:
+        """Name → value."""
+        return {field.name: getattr(self, field.name) for field in dataclasses.fields(self)}
+
+
+@dataclass(frozen=True, kw_only=True)
+class JacobianSolver(Solver):
+    """A method whose step is a function of Jacobian and residual; subclasses write `direction` and are complete."""
+
+    step_size: float | None = parameter(1.0, "α: factor on the step, after its clamp", low=1e-6, high=2.0)
+    target_jacobian: bool = parameter(
+        False, "take the Jacobian at the target instead of the effector (eq. 3.9)"
+    )
+
+    @abstractmethod
+    def direction(self, J: Array, e: Array) -> Array:
+        """The step dq (nv,) for a Jacobian J (m, nv) and a residual e (m,): J dq ≈ e [m, rad]."""
+
+    def step(self, at: Linearization, kinematics: Kinematics) -> Array:
+        """`direction` at a configuration; a method that looks at more than J and e overrides this."""
+        return self.direction(at.J, at.e)
+
+
+@dataclass(frozen=True, kw_only=True)
+class SweepingSolver(Solver):
+    """A method that changes joint after joint."""
+
+    @abstractmethod
+    def sweep(
+        self, q: Array, kinematics: Kinematics, limits: Limits, tolerance: Tolerance
+    ) -> tuple[Array, int]:
+        """One pass over the joints, which ends as soon as every target is within tolerance.
+
+        Returns:
+            The new configuration, inside the limits, and the number of joints that were updated.
+        """
+
+
+def _checked(method: str, field: dataclasses.Field[Any], value: Any) -> Any:
+    about = field.metadata
+    what = f"{method}: {field.name}"
+    default = field.default if field.default is not dataclasses.MISSING else {}
+    if value is None and about["optional"]:
+        return None
+    if about["choices"]:
+        if value not in about["choices"]:
+            raise InputError(f"{what} is one of {', '.join(map(repr, about['choices']))}; got {value!r}")
+        return value
+    if isinstance(default, bool):
+        if not isinstance(value, (bool, np.bool_)):
+            raise InputError(f"{what} is true or false; got {value!r}")
+        return bool(value)
+    if isinstance(default, dict):
+        if not isinstance(value, Mapping):
+            raise InputError(f"{what} maps joint names to numbers; got {value!r}")
+        return {str(name): _number(f"{what}[{name!r}]", number, about) for name, number in value.items()}
+    return _number(what, value, about)
+
+
+def _number(what: str, value: Any, about: Mapping[str, Any]) -> float:
+    low = -math.inf if about["low"] is None else about["low"]
+    high = math.inf if about["high"] is None else about["high"]
+    if (
+        isinstance(value, (bool, str))
+        or not isinstance(value, (int, float, np.number))
+        or not low <= value <= high
+    ):
+        bounds = f"a number from {low:g} to {high:g}" + (f" [{about['unit']}]" if about["unit"] else "")
+        raise InputError(f"{what} is {bounds}{' or None' if about['optional'] else ''}; got {value!r}")
+    return float(value)

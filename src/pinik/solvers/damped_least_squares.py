@@ -1,0 +1,67 @@
+"""Damped least squares."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import eigenpy
+import numpy as np
+
+from .base import Array, JacobianSolver, Patience, parameter
+
+__all__ = ["DampedLeastSquares"]
+
+# Keeps JJᵀ + λ²I positive definite where rows depend on each other and the damping has faded with the residual.
+_SMALLEST_DAMPING_SQUARED = 1e-12
+
+
+@dataclass(frozen=True, kw_only=True)
+class DampedLeastSquares(JacobianSolver):
+    r"""$\Delta q = J^\top (JJ^\top + \lambda^2 I)^{-1} e = \sum_i \frac{\sigma_i}{\sigma_i^2 + \lambda^2} v_i u_i^\top e$.
+
+    Minimises $\|J\Delta q - e\|^2 + \lambda^2\|\Delta q\|^2$. With λ the `damping`, the rules are:
+
+    * "constant": λ² = damping².
+    * "residual" (Chan and Lawrence 1988): λ² = damping² ‖e‖²: bold near the target, careful far from it.
+    * "sugihara" (Sugihara 2011): λ² = ½‖e‖² + damping².
+    * "manipulability" (Nakamura and Hanafusa 1986): λ² = damping² (1 − w/w₀)² where w = √det JJᵀ is below w₀.
+
+    Source: thesis, §3.3–3.4, eqs. 3.3.6 and 3.4.9 (Wampler 1986; Nakamura and Hanafusa 1986).
+    """
+
+    name = "dls"
+    max_iterations = 60
+    restarts = 60
+    patience = Patience(3, 0.05)
+
+    damping: float = parameter(math.sqrt(0.05), "λ, or what the rule makes λ from", low=1e-9, high=100.0)
+    rule: str = parameter(
+        "residual",
+        "how λ follows the situation",
+        choices=("constant", "residual", "sugihara", "manipulability"),
+    )
+    manipulability: float = parameter(0.05, "w₀ of the manipulability rule", low=1e-9)
+    factorization: str = parameter("ldlt", "how the system is solved", choices=("ldlt", "svd"))
+
+    def direction(self, J: Array, e: Array) -> Array:
+        """Jᵀ(JJᵀ + λ²I)⁻¹e."""
+        damping_squared = self.damping_squared(J, e)
+        if self.factorization == "svd":
+            left, sigma, right = np.linalg.svd(J, full_matrices=False)
+            return np.array((sigma / (sigma * sigma + damping_squared) * left.T.dot(e)).dot(right))
+        A = J.dot(J.T)
+        A.ravel()[:: len(e) + 1] += damping_squared
+        return np.array(J.T.dot(eigenpy.LDLT(A).solve(e)))
+
+    def damping_squared(self, J: Array, e: Array) -> float:
+        """λ² by the rule."""
+        squared = self.damping * self.damping
+        if self.rule == "residual":
+            squared *= float(e.dot(e))
+        elif self.rule == "sugihara":
+            squared += 0.5 * float(e.dot(e))
+        elif self.rule == "manipulability":
+            w = math.sqrt(max(float(np.linalg.det(J.dot(J.T))), 0.0))
+            squared *= max(0.0, 1.0 - w / self.manipulability) ** 2
+        return squared + _SMALLEST_DAMPING_SQUARED

@@ -1,0 +1,40 @@
+"""The Jacobian transpose."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from .base import Array, JacobianSolver, Patience, parameter
+
+__all__ = ["JacobianTranspose"]
+
+
+@dataclass(frozen=True, kw_only=True)
+class JacobianTranspose(JacobianSolver):
+    r"""$\Delta q = \alpha J^\top e$ with $\alpha = \langle e, JJ^\top e\rangle / \langle JJ^\top e, JJ^\top e\rangle$.
+
+    That α minimises the linearised residual $\|e - \alpha JJ^\top e\|$ along the direction. Stuck where
+    $J^\top e = 0$, as a straight arm pulled inwards is.
+
+    Source: thesis, §3.1, eq. 3.1.2 (Buss 2004; Wolovich and Elliott 1984).
+    """
+
+    name = "jt"
+    max_iterations = 1000
+    restarts = 20
+    patience = Patience(50, 0.02)
+
+    step_size: float | None = parameter(
+        None, "α; None takes the optimal one in every step", low=1e-6, optional=True
+    )
+
+    def direction(self, J: Array, e: Array) -> Array:
+        """α Jᵀe, or Jᵀe where `step_size` fixes α."""
+        dq = J.T.dot(e)
+        if self.step_size is not None:
+            return dq
+        JJte = J.dot(dq)
+        squared = float(JJte.dot(JJte))
+        return dq * (float(e.dot(JJte)) / squared) if squared > 0.0 else np.zeros_like(dq)
