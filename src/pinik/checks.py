@@ -19,8 +19,8 @@ def as_finite_number(value: object, what: str) -> float:
     """`value` as a float; InputError unless it is one finite number."""
     try:
         number = float(value)  # type: ignore[arg-type]
-    except (TypeError, ValueError):
-        raise InputError(f"{what} is a number; got {value!r}") from None
+    except (TypeError, ValueError, OverflowError):
+        raise InputError(f"{what} is a finite number; got {value!r}") from None
     if isinstance(value, (str, bool)) or not math.isfinite(number):
         raise InputError(f"{what} is a finite number; got {value!r}")
     return number
@@ -31,8 +31,11 @@ def as_array(value: ArrayLike, shape: tuple[int, ...], what: str, of: str = "") 
     size = "×".join(map(str, shape))
     expected = f"{size} finite numbers" + (f" ({of})" if of else "")
     try:
-        array = np.array(value, dtype=np.float64)
-    except (TypeError, ValueError):
+        numbers = np.asarray(value)
+        if numbers.dtype.kind not in "iufO":  # such as texts and truth values, which numpy would convert
+            raise TypeError
+        array = np.array(numbers, dtype=np.float64)
+    except (TypeError, ValueError, OverflowError):
         raise InputError(f"{what} takes {expected}; got {value!r}") from None
     if array.shape != shape:
         raise InputError(f"{what} takes {expected}; got an array of shape {array.shape}")

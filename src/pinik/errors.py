@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from difflib import get_close_matches
+from functools import partial
+from typing import Any
 
 __all__ = [
     "EngineError",
@@ -31,8 +33,12 @@ class RobotLoadError(PinikError, ValueError):
     def __init__(self, message: str, *, source: str = "<text>", element: str | None = None) -> None:
         self.source = source
         self.element = element
+        self._message = message
         where = f"{source}: {element}" if element else source
         super().__init__(f"{where}: {message}")
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return partial(type(self), source=self.source, element=self.element), (self._message,)
 
 
 class InputError(PinikError, ValueError):
@@ -52,6 +58,7 @@ class UnknownNameError(PinikError, KeyError):
         self.kind = kind
         self.name = name
         self.valid = tuple(valid)
+        self._hint = hint
         near = get_close_matches(str(name), self.valid, n=4, cutoff=0.5)
         if near:
             help_ = "near: " + ", ".join(repr(n) for n in near)
@@ -65,6 +72,9 @@ class UnknownNameError(PinikError, KeyError):
     def __str__(self) -> str:
         return str(self.args[0])
 
+    def __reduce__(self) -> tuple[Any, ...]:
+        return type(self), (self.kind, self.name, self.valid, self._hint)
+
 
 class SolveError(PinikError, RuntimeError):
     """Raised by `Solution.raise_for_status` when the targets were missed.
@@ -76,6 +86,9 @@ class SolveError(PinikError, RuntimeError):
     def __init__(self, message: str, solution: object) -> None:
         self.solution = solution
         super().__init__(message)
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return type(self), (str(self), self.solution)
 
 
 class EngineError(PinikError, RuntimeError):

@@ -58,14 +58,17 @@ def build_model(
     _check_names(description, root)
     _check_size(description, 0 if root_joint is None else root_joint.nv)
     free = _built(description, description.xml, root_joint, mimic=False)
-    followers = [joint for joint in description.joints if joint.mimic is not None] if mimic else []
-    causes = {joint.name: _why_left_free(joint, description, free) for joint in followers}
+    tags = {tag.name: tag for tag in description.joints}
+    causes = {
+        tag.name: _why_left_free(tag, tags[tag.mimic.leader], free)
+        for tag in description.joints
+        if mimic and tag.mimic is not None
+    }
     warnings = tuple(f"joint {name!r}: {cause}; it is left free" for name, cause in causes.items() if cause)
     honoured = {name for name, cause in causes.items() if cause is None}
     if not honoured:
         return free, warnings
-    kinds = {joint.name: joint.kind for joint in description.joints}
-    xml = _with_mimics(description.xml, honoured, kinds)
+    xml = _with_mimics(description.xml, honoured, {tag.name: tag.kind for tag in description.joints})
     return _built(description, xml, root_joint, mimic=True), warnings
 
 
@@ -100,15 +103,12 @@ def _check_size(description: Description, root_freedoms: int) -> None:
         )
 
 
-def _why_left_free(follower: JointTag, description: Description, free: pinocchio.Model) -> str | None:
+def _why_left_free(follower: JointTag, leader: JointTag, free: pinocchio.Model) -> str | None:
     """Why Pinocchio cannot make this joint follow its leader; None where it can."""
-    mimic = follower.mimic
-    assert mimic is not None
-    leader_kind = next(joint.kind for joint in description.joints if joint.name == mimic.leader)
-    if free.getJointId(follower.name) < free.getJointId(mimic.leader):
-        return f"it mimics {mimic.leader!r}, which comes after it in Pinocchio's order of joints"
-    if leader_kind == "continuous" and follower.kind == "prismatic":
-        return f"it slides, and Pinocchio cannot let it mimic the continuous joint {mimic.leader!r}"
+    if free.getJointId(follower.name) < free.getJointId(leader.name):
+        return f"it mimics {leader.name!r}, which comes after it in Pinocchio's order of joints"
+    if leader.kind == "continuous" and follower.kind == "prismatic":
+        return f"it slides, and Pinocchio cannot let it mimic the continuous joint {leader.name!r}"
     return None
 
 

@@ -43,7 +43,8 @@ def resolve(
         return Path(path) if os.path.isfile(path) else None
     if scheme not in ("package", "model"):
         return None
-    name, _, inside = rest.partition("/")
+    # Some files write three slashes.
+    name, _, inside = rest.lstrip("/").partition("/")
     if name in ("", ".", "..") or not _stays_inside(inside):
         return None
     for package in _package_places(name, urdf_path, package_dirs):

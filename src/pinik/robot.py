@@ -133,11 +133,18 @@ class Robot:
 
     @cached_property
     def poses(self) -> dict[str, Array]:
-        """Named configurations from the SRDF beside the URDF: name → q (nq,)."""
+        """Named configurations from the SRDF beside the URDF: name → q (nq,).
+
+        Raises:
+            RobotLoadError: There is an SRDF, and it is faulty.
+        """
         if self._srdf is None:
             return {}
         model = pinocchio.Model(self.model)
-        pinocchio.loadReferenceConfigurations(model, str(self._srdf), False)
+        try:
+            pinocchio.loadReferenceConfigurations(model, str(self._srdf), False)
+        except (RuntimeError, ValueError) as error:
+            raise RobotLoadError(f"the SRDF cannot be read: {error}", source=str(self._srdf)) from error
         references = model.referenceConfigurations
         return {entry.key(): pinocchio.normalize(model, np.array(entry.data())) for entry in references}
 
@@ -387,8 +394,8 @@ class Robot:
                     source=self.description.source,
                     element=f"joint {joint.name!r}",
                 )
-            lower.append(low)
-            upper.append(high)
+            lower.append(low + 0.0)  # a negative multiplier turns 0 into −0, which numpy holds to be below 0
+            upper.append(high + 0.0)
         return np.array(lower), np.array(upper)
 
     def _own_limits(self, joint: Joint) -> tuple[float, float]:
@@ -441,11 +448,13 @@ def load(
     Raises:
         RobotLoadError: The description is faulty; the message names the element and the cause.
         UnknownNameError: No robot of that name.
-        InputError: An unknown root.
+        InputError: An unknown root, a source that is neither name nor path nor text, or one folder for a list.
 
     Warns:
         UrdfWarning: For whatever was mended or left out, and for meshes that were not found.
     """
+    if isinstance(package_dirs, (str, os.PathLike)):
+        raise InputError(f"package_dirs takes a list of folders; got the single {package_dirs!r}")
     name, srdf, path_or_text = _locate(source)
     description = urdf.read(path_or_text)
     robot = Robot(description, name=name, root=root, package_dirs=tuple(package_dirs), mimic=mimic, srdf=srdf)
@@ -462,14 +471,13 @@ def load(
 
 def _locate(source: str | os.PathLike[str]) -> tuple[str | None, Path | None, str | Path]:
     """(catalogue name, SRDF, path or text) for what a person gave."""
+    if not isinstance(source, (str, os.PathLike)):
+        raise InputError(f"a robot is a catalogue name, a path or URDF text; got {source!r}")
     if isinstance(source, str):
-        text = source.lstrip("\ufeff \t\r\n")
-        if text.startswith("<"):
+        if source.lstrip("\ufeff \t\r\n").startswith("<"):
             return None, None, source
-        looks_like_path = (
-            os.sep in source or source.endswith((".urdf", ".xml", ".xacro")) or os.path.exists(source)
-        )
-        if not looks_like_path:
+        looks_like_path = os.sep in source or source.endswith((".urdf", ".xml", ".xacro"))
+        if not looks_like_path and (source in robot_catalog.catalog() or not os.path.exists(source)):
             entry = robot_catalog.find(source)
             return entry.name, entry.srdf, entry.urdf
     path = Path(source)

@@ -78,10 +78,15 @@ def vector(element: Element, attribute: str, owner: str, default: Vector) -> Vec
 
 
 def numbers(element: Element, attribute: str, count: int, owner: str) -> list[float]:
+    """Exactly `count` finite numbers, in the notation that every URDF reader knows.
+
+    Raises:
+        DocumentError: One is malformed or not finite, or there are more or fewer.
+    """
     values = []
     for word in element.attributes[attribute].split():
-        finite = len(word) <= LONGEST_NUMBER and NUMBER.fullmatch(word)
-        if not finite and not NON_FINITE.fullmatch(word):
+        plain = len(word) <= LONGEST_NUMBER and NUMBER.fullmatch(word)
+        if not plain and not NON_FINITE.fullmatch(word):
             raise bad_value(element, attribute, owner, f"{_shortened(word)!r} is not a number")
         value = float(word)
         if not math.isfinite(value):
@@ -94,6 +99,7 @@ def numbers(element: Element, attribute: str, count: int, owner: str) -> list[fl
 
 
 def bad_value(element: Element, attribute: str, owner: str, cause: str) -> DocumentError:
+    """The error that quotes an attribute and says what is wrong with it."""
     text = _shortened(element.attributes[attribute])
     return DocumentError(f'<{element.tag} {attribute}="{text}">: {cause}', owner=owner, line=element.line)
 

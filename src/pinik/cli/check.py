@@ -1,0 +1,62 @@
+"""`pinik check`: what is wrong with a URDF file."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+import typer
+
+from . import output
+from .exits import ExitStatus
+from .inspection import Inspection, inspect
+from .options import AsJson, PackageDirs
+
+__all__ = ["check"]
+
+
+def check(
+    file: Annotated[
+        str,
+        typer.Argument(
+            metavar="FILE.urdf", help="A URDF file, or a name of the catalogue.", show_default=False
+        ),
+    ],
+    package_dir: PackageDirs = None,
+    as_json: AsJson = False,
+) -> ExitStatus:
+    """Check a URDF file: its faults, what pinik had to mend, and its meshes.
+
+    Exit status 3 says that it cannot be loaded.
+
+    Example:
+
+      pinik check lion
+    """
+    found = inspect(file, tuple(package_dir or ()))
+    if as_json:
+        output.emit_json(found.to_dict())
+    else:
+        _emit(found)
+    return ExitStatus.ANSWERED if found.loads else ExitStatus.NO_ROBOT
+
+
+def _emit(found: Inspection) -> None:
+    verdict = "loads" if found.loads else "cannot be loaded"
+    output.emit(painted_line(found.loads, f"{found.file}: {verdict}"))
+    for fault in found.faults:
+        output.emit("fault: " + (f"{fault.element}: " if fault.element else "") + fault.message)
+    for words in found.warnings:
+        output.emit(f"warning: {words}")
+    for address in found.missing_meshes:
+        output.emit(f"missing mesh: {address}")
+    for words in found.mesh_faults:
+        output.emit(f"mesh: {words}")
+    if found.loads:
+        output.emit(
+            f"{found.links} links, {found.joints} joints, {found.meshes} meshes, {found.shapes} shapes"
+        )
+
+
+def painted_line(good: bool, text: str) -> str:
+    """The verdict in its colour."""
+    return output.painted(text, "green" if good else "red")

@@ -1,0 +1,123 @@
+"""Look into a URDF file: by pinik's own reader, by Pinocchio, and by trimesh at its meshes."""
+
+from __future__ import annotations
+
+import os
+import warnings
+from collections.abc import Sequence
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from typing import Any
+
+from .. import packages, robot_catalog, urdf
+from ..errors import RobotLoadError, UnknownNameError
+from ..robot import Robot
+from .output import native_stdout_to_stderr
+
+__all__ = ["Fault", "Inspection", "inspect"]
+
+
+@dataclass(frozen=True)
+class Fault:
+    """Why a file cannot be loaded.
+
+    Attributes:
+        element: The faulty element, such as "joint 'elbow'"; None where the whole file is at fault.
+        message: The cause.
+    """
+
+    element: str | None
+    message: str
+
+
+@dataclass(frozen=True)
+class Inspection:
+    """What was found; the counts are 0 where the file cannot be loaded.
+
+    Attributes:
+        file: The file.
+        robot: The robot's name; None where the file cannot be loaded.
+        faults: Why it cannot be loaded.
+        warnings: What was mended or left out.
+        missing_meshes: Addresses of meshes that were not found.
+        mesh_faults: A sentence about each other shape that cannot be drawn.
+        links, joints, meshes, shapes: How many there are; joints that move, meshes with different addresses.
+    """
+
+    file: str
+    robot: str | None = None
+    faults: tuple[Fault, ...] = ()
+    warnings: tuple[str, ...] = ()
+    missing_meshes: tuple[str, ...] = ()
+    mesh_faults: tuple[str, ...] = ()
+    links: int = 0
+    joints: int = 0
+    meshes: int = 0
+    shapes: int = 0
+
+    @property
+    def loads(self) -> bool:
+        """Whether the robot can be loaded."""
+        return not self.faults
+
+    def to_dict(self) -> dict[str, Any]:
+        """The JSON form; docs/json.md explains the fields."""
+        return {"schema": 1, "loads": self.loads, **asdict(self)}
+
+
+def inspect(source: str, package_dirs: Sequence[Path]) -> Inspection:
+    """Read a file and everything that it refers to.
+
+    Args:
+        source: A file, or the name of a robot in the catalogue.
+        package_dirs: Where packages are looked for first.
+    """
+    path = _path(source)
+    try:
+        description = urdf.read(path)
+        robot = Robot(description, package_dirs=package_dirs)
+    except RobotLoadError as error:
+        return Inspection(str(path), faults=(_fault(error),))
+    missing = tuple(
+        address
+        for address in description.meshes
+        if packages.resolve(address, urdf_path=description.path, package_dirs=package_dirs) is None
+    )
+    shapes, words = _shapes(path, package_dirs)
+    return Inspection(
+        file=str(path),
+        robot=robot.name,
+        warnings=tuple(dict.fromkeys(robot.warnings)),
+        missing_meshes=missing,
+        mesh_faults=tuple(said for said in words if not any(address in said for address in missing)),
+        links=len(description.links),
+        joints=len(robot.joints),
+        meshes=len(description.meshes),
+        shapes=shapes,
+    )
+
+
+def _path(source: str) -> Path:
+    if not os.path.exists(source):
+        try:
+            return robot_catalog.find(source).urdf
+        except UnknownNameError:
+            pass
+    return Path(source)
+
+
+def _fault(error: RobotLoadError) -> Fault:
+    message = str(error).removeprefix(f"{error.source}: ")
+    if error.element:
+        message = message.removeprefix(f"{error.element}: ")
+    return Fault(error.element, message)
+
+
+def _shapes(path: Path, package_dirs: Sequence[Path]) -> tuple[int, list[str]]:
+    """How many shapes can be drawn, and a sentence about each one that cannot."""
+    with native_stdout_to_stderr(), warnings.catch_warnings():
+        warnings.simplefilter("ignore")  # of the mesh readers; what cannot be read is in the sentences
+        from ..geometry import load_shapes
+
+        shapes, words = load_shapes(path, package_dirs)
+    return len(shapes), words

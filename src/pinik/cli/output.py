@@ -1,0 +1,125 @@
+"""Data to stdout, words to stderr; colours only where somebody looks at a terminal and wants them."""
+
+from __future__ import annotations
+
+import json
+import math
+import os
+import sys
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
+from typing import Any, TextIO
+
+import typer
+
+from .exits import ExitStatus
+
+__all__ = [
+    "emit",
+    "emit_json",
+    "native_stdout_to_stderr",
+    "painted",
+    "prepare_streams",
+    "say",
+    "say_error",
+    "warn",
+]
+
+
+def prepare_streams() -> None:
+    """Let no character that a stream's encoding lacks stop the command."""
+    for stream in (sys.stdout, sys.stderr):
+        reconfigure = getattr(stream, "reconfigure", None)
+        if reconfigure is not None:
+            reconfigure(errors="backslashreplace")
+
+
+def emit(text: str) -> None:
+    """Write data to stdout at once; where the reader has gone (`| head`), say nothing more.
+
+    Raises:
+        OSError: The data cannot be written, for another reason.
+    """
+    if sys.stdout is None:
+        return
+    try:
+        sys.stdout.write(text + "\n")
+        sys.stdout.flush()
+    except BrokenPipeError:
+        _abandon_stdout()
+    except OSError:
+        _abandon_stdout()
+        raise
+
+
+def _abandon_stdout() -> None:
+    """Send what is still buffered nowhere, so that the interpreter's own last flush does not complain."""
+    nowhere = os.open(os.devnull, os.O_WRONLY)
+    os.dup2(nowhere, sys.stdout.fileno())
+    os.close(nowhere)
+
+
+def emit_json(value: Mapping[str, Any]) -> None:
+    """Write one JSON object on one line; numbers that JSON does not have become null."""
+    plain_encoding = (getattr(sys.stdout, "encoding", None) or "").lower().replace("-", "") != "utf8"
+    emit(json.dumps(_finite(value), allow_nan=False, ensure_ascii=plain_encoding))
+
+
+def _finite(value: Any) -> Any:
+    if isinstance(value, float):
+        return value if math.isfinite(value) else None
+    if isinstance(value, Mapping):
+        return {str(key): _finite(item) for key, item in value.items()}
+    if isinstance(value, (list, tuple)):
+        return [_finite(item) for item in value]
+    return value
+
+
+def say(words: str) -> None:
+    """Words for the person at the terminal: one line on stderr."""
+    if sys.stderr is not None:
+        print(words, file=sys.stderr, flush=True)
+
+
+def warn(words: str) -> None:
+    """A warning on stderr."""
+    say(f"{painted('warning:', 'yellow', sys.stderr)} {words}")
+
+
+def say_error(words: str, status: ExitStatus) -> ExitStatus:
+    """An error on stderr; gives back the status to exit with."""
+    say(f"{painted('error:', 'red', sys.stderr)} {words}")
+    return status
+
+
+def painted(text: str, color: str, stream: TextIO | None = None) -> str:
+    """`text` in a colour, if `stream` (stdout when None) is a terminal and NO_COLOR is not set."""
+    stream = stream or sys.stdout
+    wanted = not os.environ.get("NO_COLOR") and os.environ.get("TERM") != "dumb"
+    return typer.style(text, fg=color, bold=True) if wanted and is_terminal(stream) else text
+
+
+def is_terminal(stream: TextIO | None) -> bool:
+    """Whether somebody looks at it."""
+    return stream is not None and stream.isatty()
+
+
+@contextmanager
+def native_stdout_to_stderr() -> Iterator[None]:
+    """Keep what compiled code prints to stdout out of the data: it goes to stderr meanwhile."""
+    import ctypes
+
+    c_library = ctypes.CDLL(None)
+    try:
+        kept = os.dup(1)
+    except OSError:  # stdout is closed: nothing can get mixed up
+        yield
+        return
+    try:
+        c_library.fflush(None)
+        os.dup2(2, 1)
+        yield
+    finally:
+        c_library.fflush(None)
+        os.dup2(kept, 1)
+        os.close(kept)

@@ -1,0 +1,34 @@
+"""`pinik robots`: what can be loaded by name."""
+
+from __future__ import annotations
+
+from .. import robot_catalog
+from . import output
+from .exits import ExitStatus
+from .options import AsJson
+from .tables import emit_names
+
+__all__ = ["robots"]
+
+
+def robots(as_json: AsJson = False) -> ExitStatus:
+    """List the robots that can be loaded by name.
+
+    Example:
+
+      pinik robots
+    """
+    names = robot_catalog.catalog()
+    if as_json:
+        output.emit_json({"schema": 1, "robots": [_fields(robot_catalog.find(name)) for name in names]})
+    else:
+        emit_names(names)
+    return ExitStatus.ANSWERED
+
+
+def _fields(entry: robot_catalog.CatalogEntry) -> dict[str, str | None]:
+    return {
+        "name": entry.name,
+        "urdf": str(entry.urdf),
+        "srdf": None if entry.srdf is None else str(entry.srdf),
+    }

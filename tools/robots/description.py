@@ -1,0 +1,150 @@
+"""A robot on its way to a URDF and an SRDF: links, joints, shapes, named poses."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field
+from xml.sax.saxutils import quoteattr
+
+Vector = tuple[float, float, float]
+ZERO: Vector = (0.0, 0.0, 0.0)
+
+EFFORT = 100.0  # [N m]; URDF asks for one, kinematics for none
+VELOCITY = 3.0  # [rad/s]
+
+
+def number(value: float) -> str:
+    """The shortest decimal that reads back as the same float; micrometres where it is one anyway."""
+    rounded = round(value, 6)
+    return repr(float(rounded if abs(rounded - value) < 1e-12 else value) + 0.0)
+
+
+def vector(values: Iterable[float]) -> str:
+    return " ".join(number(v) for v in values)
+
+
+@dataclass(frozen=True)
+class Visual:
+    """One shape of a link: a URDF geometry element, where it sits, and its material's name."""
+
+    geometry: str
+    material: str
+    xyz: Vector = ZERO
+    rpy: Vector = ZERO
+
+
+def box(size: Vector, material: str, xyz: Vector = ZERO, rpy: Vector = ZERO) -> Visual:
+    return Visual(f'<box size="{vector(size)}"/>', material, xyz, rpy)
+
+
+def cylinder(radius: float, length: float, material: str, xyz: Vector = ZERO, rpy: Vector = ZERO) -> Visual:
+    return Visual(f'<cylinder radius="{number(radius)}" length="{number(length)}"/>', material, xyz, rpy)
+
+
+def sphere(radius: float, material: str, xyz: Vector = ZERO) -> Visual:
+    return Visual(f'<sphere radius="{number(radius)}"/>', material, xyz)
+
+
+def mesh_visual(
+    address: str, material: str, *, rpy: Vector = ZERO, scale: float = 1.0, mirrored: bool = False
+) -> Visual:
+    """A mesh file in millimetres; left and right exchanged if `mirrored`."""
+    size = 0.001 * scale
+    scales = (size, -size if mirrored else size, size)
+    return Visual(f'<mesh filename="{address}" scale="{vector(scales)}"/>', material, rpy=rpy)
+
+
+@dataclass
+class Description:
+    """Collects a robot's parts in order and writes them down."""
+
+    name: str
+    summary: str
+    materials: Mapping[str, tuple[float, float, float]] = field(default_factory=dict)
+    links: dict[str, list[Visual]] = field(default_factory=dict)
+    joints: list[str] = field(default_factory=list)
+    moving: list[str] = field(default_factory=list)
+    poses: dict[str, dict[str, float]] = field(default_factory=dict)
+    files: dict[str, bytes] = field(default_factory=dict)
+
+    def link(self, name: str, visuals: Iterable[Visual] = ()) -> None:
+        if name in self.links:
+            raise ValueError(f"link {name!r} twice")
+        self.links[name] = list(visuals)
+
+    def fixed(self, parent: str, child: str, xyz: Vector = ZERO, rpy: Vector = ZERO) -> None:
+        self.joints.append(
+            f'  <joint name="{child}_fixed" type="fixed">\n{_ends(parent, child, xyz, rpy)}  </joint>'
+        )
+
+    def revolute(
+        self,
+        name: str,
+        parent: str,
+        child: str,
+        *,
+        axis: Vector,
+        limits: tuple[float, float],
+        xyz: Vector = ZERO,
+        rpy: Vector = ZERO,
+    ) -> None:
+        """A hinge; `limits` in radians."""
+        lower, upper = limits
+        self.moving.append(name)
+        self.joints.append(
+            f'  <joint name="{name}" type="revolute">\n{_ends(parent, child, xyz, rpy)}'
+            f'    <axis xyz="{vector(axis)}"/>\n'
+            f'    <limit lower="{number(lower)}" upper="{number(upper)}" effort="{number(EFFORT)}"'
+            f' velocity="{number(VELOCITY)}"/>\n  </joint>'
+        )
+
+    def pose(self, name: str, **degrees: float) -> None:
+        """A named pose; joints left out are at zero."""
+        unknown = set(degrees) - set(self.moving)
+        if unknown:
+            raise ValueError(f"pose {name!r} sets joints that do not exist: {sorted(unknown)}")
+        self.poses[name] = {joint: math.radians(degrees.get(joint, 0.0)) for joint in self.moving}
+
+    def urdf(self) -> str:
+        lines = [
+            '<?xml version="1.0"?>',
+            f"<!-- {self.summary} Made by tools/make_robots.py; change it there. -->",
+            f'<robot name="{self.name}">',
+        ]
+        for name, rgb in self.materials.items():
+            lines.append(f'  <material name="{name}"><color rgba="{vector((*rgb, 1.0))}"/></material>')
+        for name, visuals in self.links.items():
+            if not visuals:
+                lines.append(f'  <link name="{name}"/>')
+                continue
+            lines.append(f'  <link name="{name}">')
+            for visual in visuals:
+                lines.append(
+                    f"    <visual>{_origin(visual.xyz, visual.rpy)}<geometry>{visual.geometry}</geometry>"
+                    f"<material name={quoteattr(visual.material)}/></visual>"
+                )
+            lines.append("  </link>")
+        return "\n".join([*lines, *self.joints, "</robot>"]) + "\n"
+
+    def srdf(self) -> str:
+        lines = ['<?xml version="1.0"?>', f'<robot name="{self.name}">', '  <group name="all">']
+        lines += [f'    <joint name="{joint}"/>' for joint in self.moving]
+        lines.append("  </group>")
+        for name, angles in self.poses.items():
+            lines.append(f'  <group_state name="{name}" group="all">')
+            lines += [
+                f'    <joint name="{joint}" value="{number(round(angle, 6))}"/>'
+                for joint, angle in angles.items()
+            ]
+            lines.append("  </group_state>")
+        return "\n".join([*lines, "</robot>"]) + "\n"
+
+
+def _origin(xyz: Vector, rpy: Vector) -> str:
+    return "" if xyz == rpy == ZERO else f'<origin xyz="{vector(xyz)}" rpy="{vector(rpy)}"/>'
+
+
+def _ends(parent: str, child: str, xyz: Vector, rpy: Vector) -> str:
+    origin = _origin(xyz, rpy)
+    return (f"    {origin}\n" if origin else "") + f'    <parent link="{parent}"/>\n    <child link="{child}"/>\n'

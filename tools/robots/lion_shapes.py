@@ -1,0 +1,340 @@
+"""The lion's body: for each link its surfaces by colour, sculpted where the lion stands (see lion_anatomy)."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+
+import numpy as np
+
+from .lion_anatomy import CHEST, FORE_LEG, HEAD, HEAD_SIZE, HIND_LEG, NECK, SPINE, TAIL_SEGMENT
+from .sculpt import Field, Mesh, Point, Solid, ball, blend, carve, ellipsoid, half_space, joined, limb, lock, mesh
+from .sculpt import bar, outside, outward, split, surface_point
+
+MATERIALS = {
+    "tawny": (0.80, 0.56, 0.31),
+    "pale": (0.93, 0.81, 0.62),
+    "gold": (0.74, 0.45, 0.18),
+    "mane": (0.60, 0.34, 0.14),
+    "dark_mane": (0.36, 0.19, 0.09),
+    "nose": (0.17, 0.10, 0.09),
+    "amber": (0.91, 0.60, 0.10),
+    "black": (0.05, 0.04, 0.04),
+    "white": (0.97, 0.96, 0.92),
+    "mouth": (0.66, 0.30, 0.28),
+}
+Surfaces = dict[str, Mesh]  # by material
+TRUNK_CELL, LEG_CELL, HEAD_CELL = 0.029, 0.0170, 0.0118
+
+
+def both(make: Callable[[float], Solid]) -> tuple[Solid, Solid]:
+    """The same part on the left and on the right; `make` gets the side's sign."""
+    return make(1.0), make(-1.0)
+
+
+def painted(shape: Mesh, base: str, **regions: Field) -> Surfaces:
+    """A surface in one colour, but for some regions."""
+    surfaces: Surfaces = {}
+    for material, region in regions.items():
+        inside, shape = split(shape, region)
+        if len(inside.faces):
+            surfaces[material] = inside
+    return {base: shape, **surfaces}
+
+
+# The trunk ------------------------------------------------------------------------------------------------------------
+
+TRUNK = blend(
+    0.10,
+    ellipsoid((-0.10, 0, 0.885), (0.15, 0.135, 0.15)),  # rump
+    ellipsoid((0.02, 0, 0.86), (0.20, 0.165, 0.185)),
+    limb((0.02, 0, 0.88), (0.45, 0, 0.83), 0.165, 0.19),  # loins
+    ellipsoid((0.42, 0, 0.79), (0.26, 0.185, 0.225)),
+    ellipsoid((0.64, 0, 0.785), (0.28, 0.20, 0.26)),  # ribs
+    ellipsoid((0.80, 0, 0.90), (0.17, 0.13, 0.18)),  # withers
+    ellipsoid((0.86, 0, 0.78), (0.15, 0.155, 0.20)),  # breast
+)
+BELLY = ellipsoid((0.40, 0, 0.46), (0.80, 0.165, 0.18)).field
+OVERLAP = 0.03
+
+
+def trunk() -> dict[str, Surfaces]:
+    """One skin, cut at the spine's joints; balls in the joints close the cuts when it bends."""
+    skin = mesh(TRUNK, TRUNK_CELL)
+    waist = mesh(ellipsoid(SPINE, (0.15, 0.155, 0.18)), 0.045)
+    ribs = mesh(ellipsoid(CHEST, (0.18, 0.185, 0.225)), 0.05)
+
+    def piece(start: float, end: float, *joints: Mesh) -> Surfaces:
+        part, _ = split(skin, half_space((1, 0, 0), end + OVERLAP))
+        part, _ = split(part, half_space((-1, 0, 0), OVERLAP - start))
+        surfaces = painted(part, "tawny", pale=BELLY)
+        return {**surfaces, "tawny": joined([surfaces["tawny"], *joints])}
+
+    return {
+        "pelvis": piece(-9.0, SPINE[0], waist),
+        "spine": piece(SPINE[0], CHEST[0], waist, ribs),
+        "chest": piece(CHEST[0], 9.0, ribs),
+    }
+
+
+# The head -------------------------------------------------------------------------------------------------------------
+
+SKULL = blend(
+    0.045,
+    ellipsoid((1.20, 0, 1.12), (0.15, 0.128, 0.125)),
+    limb((1.30, 0, 1.150), (1.465, 0, 1.085), 0.066, 0.051),  # bridge of the nose
+    ellipsoid((1.39, 0, 1.060), (0.115, 0.082, 0.070)),  # muzzle
+    *both(lambda s: ellipsoid((1.27, s * 0.080, 1.070), (0.085, 0.065, 0.082))),  # cheekbones
+    *both(lambda s: limb((1.28, s * 0.050, 1.186), (1.350, s * 0.064, 1.160), 0.034, 0.018)),  # brows
+)
+MOUTH = half_space((-0.06, 0, 1), 1.008 - 0.06 * 1.2)  # below it is the jaw's
+LIPS: Field = lambda x, y, z: np.maximum(MOUTH(x, y, z) - 0.001, 1.325 - x)  # noqa: E731
+
+
+def head() -> Surfaces:
+    lips = blend(
+        0.018,
+        SKULL,
+        *both(lambda s: ellipsoid((1.456, s * 0.041, 1.046), (0.062, 0.050, 0.050))),  # whisker pads
+    )
+    groove = limb((1.525, 0, 1.075), (1.525, 0, 1.00), 0.014, 0.014)
+    solid = carve(lips, outside(groove), width=0.012)
+    solid = carve(solid, lambda x, y, z: -0.005 - MOUTH(x, y, z), width=0.008)
+    eye = surface_point(solid, (1.27, 0.038, 1.128), (0.975, 0.22, 0.0))
+    liner = blend(
+        1e-3,
+        *both(lambda s: ellipsoid((eye[0], s * eye[1], eye[2]), (0.05, 0.030, 0.0175), (s * 16, 0, s * 24))),
+        *both(lambda s: limb((eye[0] + 0.02, s * (eye[1] - 0.026), eye[2] - 0.008),
+                             (eye[0] + 0.06, s * (eye[1] - 0.036), eye[2] - 0.032), 0.007, 0.003)),
+    )  # fmt: skip
+    pale = ellipsoid((1.475, 0, 1.030), (0.105, 0.14, 0.058), (0, 14, 0))
+    skin, _ = split(mesh(solid, HEAD_CELL), half_space((-1, 0, 0), -1.14))  # the rest is under the mane
+    surfaces = painted(skin, "tawny", black=liner.field, nose=LIPS, pale=pale.field)
+
+    normal = outward(solid, eye)
+    gaze = (normal[0] + 0.8, normal[1], normal[2])
+    length = math.sqrt(sum(c * c for c in gaze))
+
+    def on_eye(s: float, radius: float, towards_gaze: float) -> Mesh:
+        at = [e - 0.0160 * n + (0.006 + towards_gaze) * g / length for e, n, g in zip(eye, normal, gaze, strict=True)]
+        return mesh(ball((at[0], s * at[1], at[2]), radius), radius / 2.6)
+
+    surfaces["amber"] = joined(on_eye(s, 0.0235, 0.0) for s in (1, -1))
+    surfaces["black"] = joined([surfaces["black"], *(on_eye(s, 0.0105, 0.0148) for s in (1, -1))])
+    tip = blend(
+        0.014,
+        ellipsoid((1.500, 0, 1.098), (0.024, 0.041, 0.019), (0, 12, 0)),
+        *both(lambda s: ellipsoid((1.507, s * 0.021, 1.083), (0.016, 0.017, 0.014))),
+        ellipsoid((1.510, 0, 1.070), (0.010, 0.009, 0.020)),
+    )
+    surfaces["nose"] = joined([surfaces["nose"], mesh(tip, 0.0075)])
+    surfaces["white"] = joined(_fang((1.452, s * 0.030, 1.022), (0.004, 0, -0.044), 0.010) for s in (1, -1))
+    ears = [_ear(s) for s in (1, -1)]
+    surfaces["tawny"] = joined([surfaces["tawny"], *(ear["tawny"] for ear in ears)])
+    surfaces["dark_mane"] = joined(ear["dark_mane"] for ear in ears)
+    return {material: part.grown(HEAD_SIZE, HEAD) for material, part in surfaces.items()}
+
+
+def _ear(s: float) -> Surfaces:
+    shell = ellipsoid((1.200, s * 0.118, 1.226), (0.027, 0.044, 0.050), (s * -28, -8, s * 20))
+    hollow = ellipsoid((1.229, s * 0.124, 1.229), (0.028, 0.030, 0.035), (s * -28, -8, s * 20))
+    shape = mesh(carve(shell, outside(hollow), width=0.008), 0.008)
+    return painted(shape, "tawny", dark_mane=ellipsoid((1.227, s * 0.124, 1.229), (0.030, 0.029, 0.034), (s * -28, -8, s * 20)).field)
+
+
+def _fang(root: Point, along: Point, radius: float) -> Mesh:
+    path = [[root[i] + t * along[i] for i in range(3)] for t in (0.0, 0.4, 0.75, 1.0)]
+    return lock(path, [radius, 0.85 * radius, 0.5 * radius, 0.08 * radius], (1, 0, 0), 1.0, 7)
+
+
+def jaw() -> Surfaces:
+    bone = blend(
+        0.03,
+        *both(lambda s: limb((1.21, s * 0.075, 1.022), (1.42, s * 0.034, 1.004), 0.038, 0.030)),
+        ellipsoid((1.440, 0, 1.000), (0.056, 0.052, 0.050)),  # chin
+        ellipsoid((1.32, 0, 0.998), (0.12, 0.060, 0.034)),
+    )
+    solid = carve(bone, lambda x, y, z: MOUTH(x, y, z) - 0.002, width=0.006)
+    chin = ellipsoid((1.44, 0, 0.975), (0.11, 0.08, 0.055)).field
+    surfaces = painted(mesh(solid, HEAD_CELL), "tawny", pale=chin)
+    surfaces["mouth"] = mesh(ellipsoid((1.34, 0, 1.005), (0.105, 0.032, 0.026), (0, 1, 0)), 0.010)
+    surfaces["white"] = joined(_fang((1.464, s * 0.022, 0.992), (0.004, s * 0.002, 0.034), 0.008) for s in (1, -1))
+    beard = [
+        lock([(x, y, 0.985), (x - 0.004, 1.1 * y, 0.945), (x - 0.030, 1.2 * y, 0.900)],
+             [0.024, 0.021, 0.001], (1, 0, 0), 0.8, 6)
+        for x, y in ((1.445, 0.0), (1.430, -0.022), (1.430, 0.022), (1.395, -0.030), (1.395, 0.030), (1.395, 0.0))
+    ]  # fmt: skip
+    surfaces["pale"] = joined([surfaces["pale"], *beard])
+    return {material: part.grown(HEAD_SIZE, HEAD) for material, part in surfaces.items()}
+
+
+# The mane -------------------------------------------------------------------------------------------------------------
+
+
+def _ruff(
+    center: Point,
+    radii: tuple[float, float],
+    count: int,
+    length: tuple[float, float, float],
+    back: float,
+    droop: float,
+    width: float,
+    *,
+    first: float = 0.0,
+    span: float = 360.0,
+) -> Mesh:
+    """Locks around a circle across x: `radii` across and up, `length` at the crown, the sides and the throat."""
+    locks = []
+    for k in range(count):
+        turn = math.radians(first + span * (k + 0.5) / count)
+        side, up = math.sin(turn), math.cos(turn)
+        crown, sides, throat = length
+        reach = sides + (crown - sides) * up * up if up > 0 else sides + (throat - sides) * up * up
+        reach *= 1.0 + 0.07 * ((3 * k) % 5 - 2)
+        lean = back * (1.0 + 0.10 * ((7 * k) % 3 - 1))
+        path = []
+        for t in (0.0, 0.25, 0.5, 0.75, 0.92, 1.0):
+            out = reach * (t - 0.30 * t * t)
+            path.append(
+                (
+                    center[0] - lean * reach * t * (0.35 + 0.65 * t),
+                    center[1] + (radii[0] + out) * side,
+                    center[2] + (radii[1] + out) * up - droop * t * t,
+                )
+            )
+        widths = [width * f for f in (0.75, 1.0, 0.95, 0.68, 0.30, 0.03)]
+        locks.append(lock(path, widths, (0.25, side, up), 0.55, 6))
+    return joined(locks)
+
+
+def mane() -> dict[str, Surfaces]:
+    cap = blend(0.05, ellipsoid((1.10, 0, 1.08), (0.13, 0.185, 0.20)), ellipsoid((1.14, 0, 1.02), (0.09, 0.15, 0.13)))
+    scruff = blend(0.06, limb(NECK, HEAD, 0.200, 0.180), ellipsoid((0.97, 0, 0.95), (0.17, 0.195, 0.25)))
+    return {
+        "head": {
+            "gold": _ruff((1.245, 0, 1.085), (0.128, 0.118), 28, (0.11, 0.13, 0.13), 0.70, 0.020, 0.026),
+            "mane": joined([
+                mesh(cap, 0.034),
+                _ruff((1.210, 0, 1.085), (0.138, 0.133), 30, (0.15, 0.20, 0.21), 0.62, 0.035, 0.032, first=6),
+            ]),
+            "dark_mane": _ruff((1.145, 0, 1.080), (0.150, 0.160), 30, (0.17, 0.24, 0.28), 0.70, 0.055, 0.038),
+        },
+        "neck": {
+            "dark_mane": joined([
+                mesh(scruff, 0.045),
+                _ruff((1.06, 0, 1.03), (0.155, 0.165), 28, (0.16, 0.23, 0.32), 0.85, 0.08, 0.042, first=6),
+                _ruff((0.98, 0, 0.97), (0.160, 0.190), 28, (0.15, 0.22, 0.33), 0.95, 0.08, 0.044),
+            ]),
+        },
+        "chest": {
+            "dark_mane": joined([
+                mesh(ellipsoid((0.89, 0, 0.90), (0.14, 0.165, 0.22)), 0.045),
+                _ruff((0.90, 0, 0.90), (0.12, 0.17), 20, (0.14, 0.13, 0.22), 0.8, 0.07, 0.046, first=9),
+                _ruff((0.97, 0, 0.88), (0.10, 0.12), 11, (0.10, 0.15, 0.19), 0.25, 0.10, 0.042, first=95, span=170),
+                _ruff((0.99, 0, 0.80), (0.08, 0.08), 9, (0.10, 0.12, 0.17), 0.30, 0.09, 0.036, first=100, span=160),
+            ]),
+        },
+    }  # fmt: skip
+
+
+# The legs (left) ------------------------------------------------------------------------------------------------------
+
+
+def _above_ground(solid: Solid) -> Solid:
+    return carve(solid, half_space((0, 0, -1), 0.0), width=0.008)
+
+
+def _paw(at: Point, heel: Point, size: float) -> Surfaces:
+    """A paw around its frame `at`, from the joint `heel`: a pad, four toes, their claws."""
+    x, y, _ = at
+    toes = [(0.052, -0.044), (0.072, -0.016), (0.072, 0.016), (0.052, 0.044)]
+    pad = blend(
+        0.014 * size,
+        ball(heel, 0.041 * size),
+        ellipsoid((x + 0.005, y, 0.036 * size), (0.068 * size, 0.058 * size, 0.040 * size)),
+        *(
+            ellipsoid((x + tx * size, y + ty * size, 0.027 * size), (0.040 * size, 0.0205 * size, 0.030 * size), (0, 14, 0))
+            for tx, ty in toes
+        ),
+    )
+    claws = [
+        lock(
+            [(x + (tx + 0.030) * size, y + ty * size, 0.022 * size), (x + (tx + 0.045) * size, y + ty * size, 0.020 * size),
+             (x + (tx + 0.053) * size, y + ty * size, 0.008 * size)],
+            [0.007 * size, 0.006 * size, 0.001], (0, 1, 0), 0.7, 5)
+        for tx, ty in toes
+    ]  # fmt: skip
+    return {"tawny": mesh(_above_ground(pad), 0.0115), "nose": joined(claws)}
+
+
+def fore_leg() -> dict[str, Surfaces]:
+    shoulder, elbow, wrist, toes, paw = (FORE_LEG[name] for name in ("shoulder", "elbow", "wrist", "toes", "paw"))
+    upper = blend(
+        0.07,
+        limb(shoulder, elbow, 0.092, 0.068),
+        ellipsoid((0.795, 0.150, 0.85), (0.105, 0.062, 0.17), (0, 14, 0)),  # shoulder blade
+        ellipsoid((0.725, 0.152, 0.68), (0.085, 0.060, 0.125), (0, 20, 0)),  # triceps
+    )
+    forearm = blend(
+        0.05,
+        limb(elbow, wrist, 0.054, 0.046),
+        ellipsoid((0.712, 0.147, 0.41), (0.056, 0.051, 0.105), (0, -7, 0)),
+        ball((0.652, 0.147, 0.522), 0.032),  # point of the elbow
+    )
+    metacarpus = blend(0.03, limb(wrist, toes, 0.039, 0.050), ball((0.720, 0.135, 0.148), 0.026))
+    return {
+        "upper_arm": {"tawny": mesh(upper, 0.023)},
+        "forearm": {"tawny": mesh(forearm, LEG_CELL)},
+        "metacarpus": {"tawny": mesh(metacarpus, LEG_CELL)},
+        "fore_toes": _paw(paw, toes, 1.18),
+    }
+
+
+def hind_leg() -> dict[str, Surfaces]:
+    hip, knee, hock, toes, paw = (HIND_LEG[name] for name in ("hip", "knee", "hock", "toes", "paw"))
+    thigh = blend(
+        0.08,
+        limb(hip, knee, 0.125, 0.076),
+        ellipsoid((-0.02, 0.118, 0.74), (0.125, 0.075, 0.20), (0, -18, 0)),
+        ellipsoid((0.07, 0.130, 0.67), (0.105, 0.065, 0.18), (0, -28, 0)),
+    )
+    shank = blend(
+        0.05,
+        limb(knee, hock, 0.062, 0.043),
+        ellipsoid((0.07, 0.143, 0.43), (0.062, 0.052, 0.125), (0, 45, 0)),
+        limb((0.0, 0.140, 0.40), (-0.145, 0.135, 0.268), 0.030, 0.022),  # Achilles' tendon
+    )
+    metatarsus = blend(0.035, limb(hock, toes, 0.036, 0.046), ball((-0.140, 0.135, 0.256), 0.024))
+    return {
+        "thigh": {"tawny": mesh(thigh, 0.024)},
+        "shank": {"tawny": mesh(shank, LEG_CELL)},
+        "metatarsus": {"tawny": mesh(metatarsus, LEG_CELL)},
+        "hind_toes": _paw(paw, toes, 1.06),
+    }
+
+
+# The tail, each segment in its own frame along -x ---------------------------------------------------------------------
+
+
+def tail(number: int, count: int) -> Surfaces:
+    thick = [0.046 - 0.024 * min(k / (count - 1), 1.0) for k in (number - 1, number)]
+    surfaces: Surfaces = {"tawny": bar((0, 0, 0), (-TAIL_SEGMENT, 0, 0), *thick)}
+    if number == 1:
+        surfaces["tawny"] = bar((0.03, 0, 0.0), (-TAIL_SEGMENT, 0, 0), 0.062, thick[1])
+    if number == count:
+        surfaces["dark_mane"] = joined(_tuft(k) for k in range(11))
+    return surfaces
+
+
+def _tuft(k: int) -> Mesh:
+    turn = 2 * math.pi * k / 10
+    y, z = (0.0, 0.0) if k == 10 else (math.cos(turn), math.sin(turn))
+    end = TAIL_SEGMENT + 0.10 - (0.045 if k % 2 else 0.0)
+    path: Sequence[Point] = [
+        (-0.030, 0.012 * y, 0.012 * z),
+        (-0.08, 0.040 * y, 0.040 * z),
+        (-0.14, 0.050 * y, 0.050 * z),
+        (-end + 0.025, 0.026 * y, 0.026 * z),
+        (-end, 0.010 * y, 0.010 * z),
+    ]
+    return lock(path, [0.016, 0.030, 0.032, 0.016, 0.001], (0, y, z) if k < 10 else (0, 0, 1), 0.75, 6)
