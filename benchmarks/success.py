@@ -25,16 +25,21 @@ import pinik
 POSITION, ORIENTATION = 1e-3, 1e-2  # [m], [rad]: what the judge accepts
 
 PAWS = ("left_fore_paw", "right_fore_paw", "left_hind_paw", "right_hind_paw", "nose", "tail_tip")
+ARMS = {
+    "panda": "panda_hand_tcp",
+    "ur5": "tool0",
+    "z1": "gripperStator",
+    "xarm7": "link_eef",
+    "kinova": "j2s6s200_end_effector",
+}
 PROBLEMS = [
-    *[(robot, frame, "pose") for robot, frame in {
-        "panda": "panda_hand_tcp", "ur5": "tool0", "z1": "gripperStator", "xarm7": "link_eef", "kinova": "j2s6s200_end_effector",
-    }.items()],
-    *[(robot, frame, "position") for robot, frame in {
-        "panda": "panda_hand_tcp", "ur5": "tool0", "z1": "gripperStator", "xarm7": "link_eef", "kinova": "j2s6s200_end_effector",
-        "so101": "gripper_frame_link", "arm": "tip", "two_link": "tip",
-    }.items()],
+    *[(robot, frame, "pose") for robot, frame in ARMS.items()],
+    *[(robot, frame, "position") for robot, frame in ARMS.items()],
+    ("so101", "gripper_frame_link", "position"),
+    ("arm", "tip", "position"),
+    ("two_link", "tip", "position"),
     *[("lion", frame, "position") for frame in PAWS],
-]  # fmt: skip
+]
 
 
 @dataclass
@@ -115,8 +120,11 @@ def main() -> None:
         for robot, frame, kind in PROBLEMS
         if kind in arguments.kinds and (not arguments.robots or robot in arguments.robots)
     ]
-    about = f"pinocchio {pinocchio.__version__}, numpy {np.__version__}, Python {platform.python_version()}, {platform.machine()}"
-    print(f"# {about}, seed {arguments.seed}, {arguments.poses} targets a row, options {arguments.options or 'default'}")
+    versions = f"pinocchio {pinocchio.__version__}, numpy {np.__version__}, Python {platform.python_version()}"
+    about = f"{versions}, {platform.machine()}"
+    print(
+        f"# {about}, seed {arguments.seed}, {arguments.poses} targets a row, options {arguments.options or 'default'}"
+    )
     print(f"{'robot':9} {'frame':22} {'kind':9} {'method':5} {'solved':>7} {'claimed':>8} {'wrong':>5} "
           f"{'median':>8} {'mean':>8} {'p99':>8} [ms] {'iter.':>7} {'restarts':>8}")  # fmt: skip
     rows = []

@@ -98,7 +98,7 @@ def link_placements(
     base: Array | None = None,
 ) -> dict[str, Array]:
     """Link → 4×4, for these angles (followers' are worked out) and placements; `base` is the root link's."""
-    joints = {tag.attrib["name"]: tag for tag in ElementTree.fromstring(text).iter("joint")}
+    joints = {tag.attrib["name"]: tag for tag in ElementTree.fromstring(text).findall("joint")}
     children = {_end(tag, "child") for tag in joints.values()}
     root = next(_end(tag, "parent") for tag in joints.values() if _end(tag, "parent") not in children)
     placed = {root: np.eye(4) if base is None else base}
@@ -135,14 +135,14 @@ def _origin(tag: ElementTree.Element) -> Array:
 
 
 def _motion(tag: ElementTree.Element, angle: float) -> Array:
-    element = tag.find("axis")
+    kind, element = tag.attrib["type"], tag.find("axis")
+    if kind not in ("revolute", "continuous", "prismatic"):
+        return np.eye(4)
     direction = np.array([1.0, 0, 0] if element is None else [float(w) for w in element.attrib["xyz"].split()])
     direction /= np.linalg.norm(direction)
-    if tag.attrib["type"] == "prismatic":
+    if kind == "prismatic":
         return homogeneous(np.eye(3), angle * direction)
-    if tag.attrib["type"] in ("revolute", "continuous"):
-        return homogeneous(rotation_about(direction, angle), (0, 0, 0))
-    return np.eye(4)
+    return homogeneous(rotation_about(direction, angle), (0, 0, 0))
 
 
 def homogeneous(rotation: Array, translation: Sequence[float] | Array) -> Array:

@@ -35,19 +35,10 @@ class Coordinate:
     movers: tuple[tuple[Joint, float], ...]
 
     @property
-    def leaves_others_in_place(self) -> bool:
-        """Whether the lines of the coordinates still to come stay where they are when this one changes."""
-        return self.joint.nv == 1 and len(self.movers) == 1
-
-    @property
     def slides(self) -> bool:
         """Whether the first mover slides along its line instead of turning about it."""
         kind = self.movers[0][0].kind
-        return (
-            kind == "prismatic"
-            or (kind == "floating" and self.index < 3)
-            or (kind == "planar" and self.index < 2)
-        )
+        return kind == "prismatic" or (kind == "floating" and self.index < 3) or (kind == "planar" and self.index < 2)
 
     def line(self, data: Any) -> tuple[Array, Array]:
         """(unit axis (3,), a point on it (3,)) of the first mover in the world, from `data.oMi`."""

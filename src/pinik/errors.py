@@ -64,9 +64,7 @@ class UnknownNameError(PinikError, KeyError):
             help_ = "near: " + ", ".join(repr(n) for n in near)
         else:
             shown = ", ".join(repr(n) for n in self.valid[:12]) or "none"
-            help_ = f"there are: {shown}" + (
-                f" and {len(self.valid) - 12} more" if len(self.valid) > 12 else ""
-            )
+            help_ = f"there are: {shown}" + (f" and {len(self.valid) - 12} more" if len(self.valid) > 12 else "")
         super().__init__(f"no {kind} {name!r}; {help_}" + (f"; {hint}" if hint else ""))
 
     def __str__(self) -> str:

@@ -72,9 +72,7 @@ def load_shapes(
         for index, visual in enumerate(link.findall("visual")):
             try:
                 parts = _parts(visual, path, package_dirs, files)
-            except (
-                Exception
-            ) as fault:  # a shape is never worth an error, whatever its file makes trimesh raise
+            except Exception as fault:  # a shape is never worth an error, whatever its file makes trimesh raise
                 warnings.append(f"link '{link_name}': a shape is left out: {fault}")
                 continue
             given = _visual_color(visual, named)

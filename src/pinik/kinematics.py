@@ -118,17 +118,20 @@ class Kinematics:
         self.model = self.robot.model
         ids = [(self._frame_id(t), _reference_id(self.robot, t)) for t in self.targets]
         self.data = self.model.createData()
-        self.terms = [
-            TargetTerm(self, t, frame, ref) for t, (frame, ref) in zip(self.targets, ids, strict=True)
-        ]
+        self.terms = [TargetTerm(self, t, frame, ref) for t, (frame, ref) in zip(self.targets, ids, strict=True)]
         self.size = sum(term.size for term in self.terms)
         self.free = np.zeros(self.model.nv, dtype=bool)
         for term in self.terms:
             for joint in term.movers:
+                if joint.multiplier == 0.0:
+                    continue
                 owner = self.robot.joint(joint.leader or joint.name)
                 self.free[owner.idx_v : owner.idx_v + owner.nv] = True
-        self._locked_columns = [i for j in self.locked for i in range(j.idx_v, j.idx_v + j.nv)]
-        self.free[self._locked_columns] = False
+        for joint in self.locked:
+            self.free[joint.idx_v : joint.idx_v + joint.nv] = False
+        # Without a reference the other columns are zero anyway; with one, what moves both cancels but for rounding.
+        relative = any(target.relative_to is not None for target in self.targets)
+        self._columns_to_clear = np.flatnonzero(~self.free) if relative or self.locked else None
         self.coordinates = self._coordinates()
 
     def _coordinates(self) -> tuple[Coordinate, ...]:
@@ -156,8 +159,8 @@ class Kinematics:
             e = np.concatenate([part[0] for part in parts])
             J = np.vstack([part[1] for part in parts])
             errors = [part[2] for part in parts]
-        if self._locked_columns:
-            J[:, self._locked_columns] = 0.0
+        if self._columns_to_clear is not None:
+            J[:, self._columns_to_clear] = 0.0
         return Linearization(q, e, J, errors, self.free)
 
     def shortened(self, e: Array, longest: float) -> Array:
@@ -183,9 +186,7 @@ class Kinematics:
         placement = frame.placement * target.tool
         name = f"tool {self.model.nframes}"
         return int(
-            self.model.addFrame(
-                pinocchio.Frame(name, frame.parentJoint, frame_id, placement, pinocchio.OP_FRAME)
-            )
+            self.model.addFrame(pinocchio.Frame(name, frame.parentJoint, frame_id, placement, pinocchio.OP_FRAME))
         )
 
 
@@ -204,9 +205,7 @@ class TargetTerm:
 
     def __init__(self, kinematics: Kinematics, target: Target, frame: int, reference: int | None) -> None:
         self.target = target
-        self.size = 3 * (
-            (target.position is not None) + (target.rotation is not None or target.axis is not None)
-        )
+        self.size = 3 * ((target.position is not None) + (target.rotation is not None or target.axis is not None))
         self._kinematics = kinematics
         model, data = kinematics.model, kinematics.data
         self._frame = frame
@@ -253,11 +252,8 @@ class TargetTerm:
     def linearize(self, q: Array) -> tuple[Array, Array, TargetError]:
         """(e, J, error) of this target alone, weighted but for the error."""
         k, target = self._kinematics, self.target
-        # computeFrameJacobian walks only the frame's own chain, and leaves its placement up to date.
-        J = pinocchio.computeFrameJacobian(k.model, k.data, q, self._frame, _ALIGNED)
-        moving = None
-        if self._reference is not None:
-            moving = pinocchio.computeFrameJacobian(k.model, k.data, q, self._reference, _ALIGNED)
+        J = _frame_jacobian(k, q, self._frame)
+        moving = None if self._reference is None else _frame_jacobian(k, q, self._reference)
         position, rotation, direction, at = self.wanted()
         if position is None:
             e, J, orientation_error = self._orientation_rows(J, moving, rotation, direction, at)
@@ -275,9 +271,7 @@ class TargetTerm:
                 if self.size == 3:
                     J, orientation_error = J_position, None
                 else:
-                    e_orientation, J, orientation_error = self._orientation_rows(
-                        J, moving, rotation, direction, at
-                    )
+                    e_orientation, J, orientation_error = self._orientation_rows(J, moving, rotation, direction, at)
                     e, J = np.concatenate((e, e_orientation)), np.concatenate((J_position, J))
             error = TargetError(position_error, orientation_error)
         if target.weight != 1.0:
@@ -311,15 +305,21 @@ class TargetTerm:
             return e, J_angular - np.outer(axis, axis.dot(J_angular)), angle
         line = at - self.p
         distance = math.sqrt(line.dot(line))
-        if (
-            distance < _NO_DIRECTION
-        ):  # the frame sits on the point that it should look at: every direction is right
+        if distance < _NO_DIRECTION:  # the frame sits on the point that it should look at: every direction is right
             return np.zeros(3), np.zeros_like(J_angular), 0.0
         direction = line / distance
         e, angle = _shortest_rotation(axis, direction)
         J_linear = J[:3] if moving is None else J[:3] - _linear_rows_at(moving, at - self._reference_p)
         turning = J_angular - np.outer(axis, axis.dot(J_angular))
         return e, turning + pinocchio.skew(direction).dot(J_linear) / distance, angle
+
+
+def _frame_jacobian(kinematics: Kinematics, q: Array, frame: int) -> Array:
+    """World-aligned Jacobian (6, nv) of a frame, whose placement is up to date afterwards."""
+    model = kinematics.model
+    # Walks only the frame's own chain; a single column comes back as (6,).
+    J: Array = pinocchio.computeFrameJacobian(model, kinematics.data, q, frame, _ALIGNED)
+    return J if J.ndim == 2 else J.reshape(6, model.nv)
 
 
 def _linear_rows_at(J: Array, offset: Array) -> Array:

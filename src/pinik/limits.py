@@ -48,9 +48,7 @@ class Limits:
                     entry[joint.idx_v] = joint.idx_q
         if enabled:
             return cls(robot, True, robot.lower_q, robot.upper_q, entry, turning)
-        return cls(
-            robot, False, np.full(robot.model.nq, -np.inf), np.full(robot.model.nq, np.inf), entry, turning
-        )
+        return cls(robot, False, np.full(robot.model.nq, -np.inf), np.full(robot.model.nq, np.inf), entry, turning)
 
     def clip(self, q: Array) -> Array:
         """The nearest configuration inside, entry by entry."""
@@ -73,14 +71,10 @@ class Limits:
             q[i] = inside if inside <= self.upper[i] else nearest_to_middle
         return q
 
-    def blocked(self, q: Array, dq: Array) -> NDArray[np.bool_]:
-        """(nv,) which coordinates of the step `dq` push a joint that sits at a limit further out."""
-        bounded = self.entry >= 0
-        value = q[self.entry]
-        out = ((dq < 0.0) & (value <= self.lower[self.entry])) | (
-            (dq > 0.0) & (value >= self.upper[self.entry])
-        )
-        return out & bounded
+    def blocked(self, q: Array, wanted: Array, inside: Array) -> NDArray[np.bool_]:
+        """(nv,) the coordinates that sat at a limit at `q` and would leave it towards `wanted`; `inside`: its clip."""
+        entries: NDArray[np.bool_] = (inside != wanted) & (inside == q)
+        return np.asarray(entries[self.entry] & (self.entry >= 0))
 
     def active(self, q: Array) -> dict[str, str]:
         """Joint name → "lower", "upper" or "both", for the joints that sit at a limit."""

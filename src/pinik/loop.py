@@ -131,9 +131,7 @@ def solve(
         start=_start(robot, box, q0),
         restarts=solver.restarts if restarts is None else _count(restarts, "restarts", least=0),
         seed=_count(seed, "seed", least=0),
-        max_iterations=solver.max_iterations
-        if max_iterations is None
-        else _count(max_iterations, "max_iterations"),
+        max_iterations=solver.max_iterations if max_iterations is None else _count(max_iterations, "max_iterations"),
         tolerance=Tolerance.of(tolerance),
         deadline=math.inf if time_limit is None else began + _seconds(time_limit),
         states=[] if trace else None,
@@ -159,7 +157,8 @@ def solve_from_keywords(
 
 
 _TARGET_KEYWORDS = (
-    "rotation", "rpy", "quat_xyzw", "quat_wxyz", "placement", "axis", "direction", "at", "tool", "relative_to", "weight",
+    "rotation", "rpy", "quat_xyzw", "quat_wxyz", "placement", "axis", "direction", "at", "tool", "relative_to",
+    "weight",
 )  # fmt: skip
 
 
@@ -228,36 +227,49 @@ def _advance(
     assert isinstance(solver, JacobianSolver)
     if solver.max_residual < math.inf:
         at = at._replace(e=kinematics.shortened(at.e, solver.max_residual))
-    dq = solver.step(at, kinematics)
-    if limits.enabled:
-        dq = _spread_over_free_joints(dq, solver, kinematics, limits, at)
+    q = _stepped(solver.step(at, kinematics), solver, kinematics, at.q)
+    if not limits.enabled:
+        return q, 0
+    inside = limits.clip(q)
+    if (inside == q).all():
+        return q, 0
+    return _step_along_limits(q, solver, kinematics, limits, at), 0
+
+
+def _stepped(dq: Array, solver: JacobianSolver, kinematics: Kinematics, q: Array) -> Array:
+    """The configuration after the step, clamped and scaled."""
     length = math.sqrt(dq.dot(dq))
     if not math.isfinite(length):
-        return at.q, 0  # no step: the loop will say that it stalled
+        return q  # no step: the loop will say that it stalled
     if length > solver.max_step:
         largest = float(np.abs(dq).max())
         if largest > solver.max_step:
             dq = dq * (solver.max_step / largest)
     if solver.step_size is not None and solver.step_size != 1.0:
         dq = dq * solver.step_size
-    q = pinocchio.integrate(kinematics.model, at.q, dq)
-    return limits.clip(q) if limits.enabled else q, 0
+    return np.array(pinocchio.integrate(kinematics.model, q, dq))
 
 
-def _spread_over_free_joints(
-    dq: Array, solver: JacobianSolver, kinematics: Kinematics, limits: Limits, at: Linearization
+def _step_along_limits(
+    q: Array, solver: JacobianSolver, kinematics: Kinematics, limits: Limits, at: Linearization
 ) -> Array:
-    """The step when joints that sit at a limit and would push outwards hold still and leave their part to others."""
-    held = limits.blocked(at.q, dq)
-    newly = held
-    while newly.any():
+    """The step again, after the first try `q` left the limits.
+
+    Joints that sat at a limit already and would go further out hold still and leave their part to the others, until
+    none does; what is outside then is clipped.
+    """
+    held = np.zeros_like(at.free)
+    while True:
+        inside = limits.clip(q)
+        pushing = limits.blocked(at.q, q, inside) & ~held
+        if not pushing.any():
+            return inside
+        held |= pushing
         J = at.J.copy()
         J[:, held] = 0.0
         dq = solver.step(at._replace(J=J, free=at.free & ~held), kinematics)
         dq[held] = 0.0
-        newly = limits.blocked(at.q, dq)
-        held = held | newly
-    return dq
+        q = _stepped(dq, solver, kinematics, at.q)
 
 
 @dataclasses.dataclass
@@ -302,9 +314,7 @@ class _Attempts:
             self.kinematics, self.limits, self.start, seed=self.seed, target=self.target, attempt=attempt
         )
 
-    def _attempt(
-        self, start: Array, attempt: int, patience: Patience, *, judge_limits_at_end: bool
-    ) -> Status:
+    def _attempt(self, start: Array, attempt: int, patience: Patience, *, judge_limits_at_end: bool) -> Status:
         run = _run(
             self.solver,
             self.kinematics,
@@ -355,9 +365,7 @@ class _Attempts:
             robot=robot,
             targets=targets,
             status=status,
-            message=explain(
-                status, targets, errors, self.tolerance, active, proof, self.kinematics.free.any()
-            ),
+            message=explain(status, targets, errors, self.tolerance, active, proof, self.kinematics.free.any()),
             q=q,
             errors=errors,
             iterations=self.iterations,
@@ -375,9 +383,7 @@ class _Attempts:
         return bool(self.kinematics.free[self.kinematics.robot.joint(name).idx_v])
 
 
-def _kinematics(
-    robot: Robot, targets: Target | Sequence[Target], solver: Solver, locked: Iterable[str]
-) -> Kinematics:
+def _kinematics(robot: Robot, targets: Target | Sequence[Target], solver: Solver, locked: Iterable[str]) -> Kinematics:
     if isinstance(targets, Target):
         targets = [targets]
     for target in targets:

@@ -64,9 +64,7 @@ def example_robot_data() -> Path | None:
     return None
 
 
-def _relative(
-    address: str, urdf_path: Path | None, package_dirs: Sequence[os.PathLike[str] | str]
-) -> Path | None:
+def _relative(address: str, urdf_path: Path | None, package_dirs: Sequence[os.PathLike[str] | str]) -> Path | None:
     base = Path() if urdf_path is None else urdf_path.parent
     for directory in (base, *map(Path, package_dirs)):
         if os.path.isfile(directory / address):

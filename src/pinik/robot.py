@@ -115,14 +115,14 @@ class Robot:
         self._joints_by_name = {joint.name: joint for joint in self.joints}
         self._settable = tuple(j for j in self.joints if j.has_one_axis and j.leader is None)
         self.joint_names = tuple(j.name for j in self._settable)
-        self.mimics = {
-            j.name: (j.leader, j.multiplier, j.offset) for j in self.joints if j.leader is not None
-        }
+        self.mimics = {j.name: (j.leader, j.multiplier, j.offset) for j in self.joints if j.leader is not None}
         self.lower, self.upper = self._joint_limits()
         self.lower_q, self.upper_q = self._configuration_limits()
 
     def __repr__(self) -> str:
-        return f"<Robot {self.name!r}: {len(self.joint_names)} joints, {len(self.frame_names)} frames, {self.root} root>"
+        return (
+            f"<Robot {self.name!r}: {len(self.joint_names)} joints, {len(self.frame_names)} frames, {self.root} root>"
+        )
 
     @property
     def data(self) -> Any:
@@ -238,11 +238,11 @@ class Robot:
             if not joint.has_one_axis:
                 raise InputError(f"joint {name!r} is {joint.kind}; give its SE3 in joint_placements")
             self.set_angle(q, joint, as_finite_number(value, f"the angle of joint {name!r}"))
-        for name, value in (joint_placements or {}).items():
+        for name, given in (joint_placements or {}).items():
             joint = self.settable_joint(name)
             if joint.has_one_axis:
                 raise InputError(f"joint {name!r} is {joint.kind}; give its scalar in angles")
-            self._set_joint_placement(q, joint, as_se3(value, f"the placement of joint {name!r}"))
+            self._set_joint_placement(q, joint, as_se3(given, f"the placement of joint {name!r}"))
         return q
 
     @staticmethod
@@ -330,8 +330,8 @@ class Robot:
             UnknownNameError: No such frame.
             InputError: Unknown axes, or `q` is not a configuration of this robot.
         """
-        if isinstance(axes, str):
-            if axes not in _AXES:
+        if not isinstance(axes, pinocchio.ReferenceFrame):
+            if not isinstance(axes, str) or axes not in _AXES:
                 raise InputError(
                     f"axes is one of {', '.join(map(repr, _AXES))} or a pinocchio.ReferenceFrame; got {axes!r}"
                 )
@@ -341,12 +341,18 @@ class Robot:
         values = self.check_configuration(q)
         pinocchio.computeJointJacobians(self.model, self.data, values)
         if reference is None:
-            return np.array(pinocchio.getFrameJacobian(self.model, self.data, frame_id, axes))
+            return self._frame_jacobian(frame_id, axes)
         return self._relative_jacobian(frame_id, reference, axes)
 
+    def _frame_jacobian(self, frame_id: int, axes: pinocchio.ReferenceFrame) -> Array:
+        if self.model.nv == 0:
+            return np.zeros((6, 0))  # without a column Pinocchio ends the process
+        J = np.array(pinocchio.getFrameJacobian(self.model, self.data, frame_id, axes))
+        return J.reshape(6, self.model.nv)  # a single one comes back as (6,)
+
     def _relative_jacobian(self, frame_id: int, reference: int, axes: pinocchio.ReferenceFrame) -> Array:
-        local = pinocchio.getFrameJacobian(self.model, self.data, frame_id, pinocchio.LOCAL)
-        moving = pinocchio.getFrameJacobian(self.model, self.data, reference, pinocchio.LOCAL)
+        local = self._frame_jacobian(frame_id, pinocchio.LOCAL)
+        moving = self._frame_jacobian(reference, pinocchio.LOCAL)
         oMf = pinocchio.updateFramePlacement(self.model, self.data, frame_id)
         rMf = pinocchio.updateFramePlacement(self.model, self.data, reference).actInv(oMf)
         J = local - rMf.toActionMatrixInverse() @ moving
@@ -384,9 +390,7 @@ class Robot:
             for follower in self.joints:
                 if follower.leader != joint.name or follower.multiplier == 0.0:
                     continue
-                ends = [
-                    (limit - follower.offset) / follower.multiplier for limit in self._own_limits(follower)
-                ]
+                ends = [(limit - follower.offset) / follower.multiplier for limit in self._own_limits(follower)]
                 low, high = max(low, min(ends)), min(high, max(ends))
             if low > high:
                 raise RobotLoadError(

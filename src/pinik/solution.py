@@ -149,8 +149,7 @@ class Solution:
     def to_dict(self) -> dict[str, Any]:
         """The JSON form, plain numbers, strings and lists; docs/json.md explains the fields."""
         targets = [
-            target.to_dict()
-            | {"position_error_m": error.position, "orientation_error_rad": error.orientation}
+            target.to_dict() | {"position_error_m": error.position, "orientation_error_rad": error.orientation}
             for target, error in zip(self.targets, self.errors, strict=True)
         ]
         return {
@@ -193,6 +192,7 @@ def _measure(robot: Robot, target: Target, q: Array) -> TargetError:
     elif target.axis is not None:
         axis = placement.rotation @ target.axis
         direction = target.direction if target.at is None else target.at - placement.translation
+        assert direction is not None
         if not np.any(direction):  # the frame sits on the point that it should look at
             return TargetError(position, 0.0)
         orientation = math.atan2(float(np.linalg.norm(np.cross(axis, direction))), float(axis @ direction))

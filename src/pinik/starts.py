@@ -28,9 +28,7 @@ def uniform(seed: int, target: int, attempt: int, index: int) -> float:
     return float((state >> 11) * 2.0**-53)
 
 
-def random_start(
-    kinematics: Kinematics, limits: Limits, q0: Array, *, seed: int, target: int, attempt: int
-) -> Array:
+def random_start(kinematics: Kinematics, limits: Limits, q0: Array, *, seed: int, target: int, attempt: int) -> Array:
     """A configuration with every free one-axis joint drawn anew, and all others as in `q0`.
 
     Angles are uniform inside the limits; in ±π about zero for a hinge without, ±1 m about `q0` for a slide without.

@@ -158,9 +158,7 @@ class Target:
             UnknownNameError: A key that is not one of the keywords.
         """
         if not isinstance(fields, Mapping):
-            raise InputError(
-                f'a target is an object such as {{"frame": …, "position": [x, y, z]}}; got {fields!r}'
-            )
+            raise InputError(f'a target is an object such as {{"frame": …, "position": [x, y, z]}}; got {fields!r}')
         for key in fields:
             if key not in _KEYWORDS:
                 raise UnknownNameError("target keyword", key, _KEYWORDS)
@@ -200,9 +198,7 @@ def _rotation(
     if rotation is not None:
         return as_rotation(rotation, f"{what}rotation")
     if rpy is not None:
-        return np.array(
-            pinocchio.rpy.rpyToMatrix(as_vector(rpy, 3, f"{what}rpy", "roll, pitch, yaw in radians"))
-        )
+        return np.array(pinocchio.rpy.rpyToMatrix(as_vector(rpy, 3, f"{what}rpy", "roll, pitch, yaw in radians")))
     if quat_xyzw is None and quat_wxyz is None:
         return None
     if quat_xyzw is not None:

@@ -138,9 +138,7 @@ def _read_axis(joint: Element, kind: str, owner: str, warnings: list[str]) -> Ve
     length = math.hypot(x, y, z)
     axis = (x / length, y / length, z / length)
     if kind == "planar" and axis != (0.0, 0.0, 1.0):
-        warnings.append(
-            f"{owner}: a planar joint moves in the xy-plane of its own frame here; its axis is ignored"
-        )
+        warnings.append(f"{owner}: a planar joint moves in the xy-plane of its own frame here; its axis is ignored")
     return axis
 
 
@@ -166,9 +164,7 @@ def _read_limit(
     absent = [name for name, value in (("lower", lower), ("upper", upper)) if value is None]
     if absent:
         bounds = f"{lower or 0.0:g}..{upper or 0.0:g}"
-        warnings.append(
-            f"{owner}: <limit> has no {' and no '.join(absent)}, read as 0: its range is {bounds}"
-        )
+        warnings.append(f"{owner}: <limit> has no {' and no '.join(absent)}, read as 0: its range is {bounds}")
     if (lower or 0.0) > (upper or 0.0):
         note = f" (no {absent[0]}, read as 0)" if absent else ""
         raise DocumentError(

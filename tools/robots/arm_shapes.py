@@ -22,7 +22,7 @@ CHEEK = (0.74, 1.04)  # a fork's cheeks, in radii from the middle
 def _cheek(side: float, towards: float, radius: float) -> Mesh:
     """One cheek of a fork, facing z: a round eye at the joint, narrowing to its root at `towards` * FOOT along y."""
     eye, root = 0.80 * radius, 0.64 * radius
-    arc = [math.radians(a) for a in range(-192, 13, 12)]
+    arc = [math.radians(a) for a in range(-195, 16, 15)]
     outline = [(eye * math.cos(a), eye * math.sin(a)) for a in arc] + [(root, FOOT * radius), (-root, FOOT * radius)]
     if towards < 0:
         outline = [(-x, -y) for x, y in outline]
@@ -74,9 +74,9 @@ def _flange(radius: float, root: float, height: float) -> Mesh:
 
 def base(height: float, radius: float) -> Surfaces:
     """The foot on the ground (its middle at the origin, y up) and the first fork."""
-    foot = lathe([(0, 0), (0.155, 0), (0.155, 0.012), (0.150, 0.017), (0, 0.017)], 48).facing("y")
+    foot = lathe([(0, 0), (0.155, 0), (0.155, 0.012), (0.150, 0.017), (0, 0.017)], 36).facing("y")
     top = height - FOOT * radius
-    cone = lathe([(0, 0.014), (0.118, 0.014), (0.108, 0.021), (FLANGE * radius + 0.002, top), (FLANGE * radius - 0.002, top + 0.004), (0, top + 0.004)], 48)
+    cone = lathe([(0, 0.014), (0.118, 0.014), (0.108, 0.021), (FLANGE * radius + 0.002, top), (FLANGE * radius - 0.002, top + 0.004), (0, top + 0.004)], 36)
     bolts = [
         lathe([(0, 0.010), (0.010, 0.010), (0.010, 0.022), (0.008, 0.024), (0, 0.024)], 6).facing("y").moved(
             (0.134 * math.sin(turn), 0, 0.134 * math.cos(turn))

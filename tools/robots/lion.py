@@ -25,6 +25,7 @@ from .lion_anatomy import (
     TAIL_DROOP,
     TAIL_SEGMENT,
 )
+from .lion_poses import POSES
 from .lion_shapes import Surfaces
 
 AXES: dict[str, Vector] = {"roll": (1, 0, 0), "pitch": (0, 1, 0), "yaw": (0, 0, 1)}
@@ -41,9 +42,9 @@ SHOULDER_HINGES: list[Hinge] = [("yaw", -20, 30), ("roll", -15, 40), ("pitch", -
 ELBOW_HINGES: list[Hinge] = [("pitch", -105, 20)]
 WRIST_HINGES: list[Hinge] = [("pitch", -30, 90)]
 FORE_TOES_HINGES: list[Hinge] = [("pitch", -60, 60)]
-HIP_HINGES: list[Hinge] = [("yaw", -25, 25), ("roll", -15, 40), ("pitch", -70, 60)]
-KNEE_HINGES: list[Hinge] = [("pitch", -50, 70)]
-HOCK_HINGES: list[Hinge] = [("pitch", -65, 45)]
+HIP_HINGES: list[Hinge] = [("yaw", -25, 25), ("roll", -15, 40), ("pitch", -90, 60)]
+KNEE_HINGES: list[Hinge] = [("pitch", -50, 80)]
+HOCK_HINGES: list[Hinge] = [("pitch", -70, 45)]
 HIND_TOES_HINGES: list[Hinge] = [("pitch", -60, 70)]
 
 
@@ -158,6 +159,6 @@ def build() -> Description:
     robot.link("tail_tip")
     robot.fixed(parent, "tail_tip", xyz=xyz)
     _dress(robot)
-    robot.pose("relaxed")
-    robot.pose("reach", left_shoulder_pitch=-60, left_elbow=-30)
+    for name, angles in POSES.items():
+        robot.pose(name, **angles)
     return robot

@@ -24,7 +24,7 @@ MATERIALS = {
     "mouth": (0.66, 0.30, 0.28),
 }
 Surfaces = dict[str, Mesh]  # by material
-TRUNK_CELL, LEG_CELL, HEAD_CELL = 0.029, 0.0170, 0.0118
+TRUNK_CELL, LEG_CELL, HEAD_CELL = 0.030, 0.0175, 0.0125
 
 
 def both(make: Callable[[float], Solid]) -> tuple[Solid, Solid]:
@@ -138,7 +138,7 @@ def head() -> Surfaces:
 def _ear(s: float) -> Surfaces:
     shell = ellipsoid((1.200, s * 0.118, 1.226), (0.027, 0.044, 0.050), (s * -28, -8, s * 20))
     hollow = ellipsoid((1.229, s * 0.124, 1.229), (0.028, 0.030, 0.035), (s * -28, -8, s * 20))
-    shape = mesh(carve(shell, outside(hollow), width=0.008), 0.008)
+    shape = mesh(carve(shell, outside(hollow), width=0.008), 0.0105)
     return painted(shape, "tawny", dark_mane=ellipsoid((1.227, s * 0.124, 1.229), (0.030, 0.029, 0.034), (s * -28, -8, s * 20)).field)
 
 
@@ -160,9 +160,9 @@ def jaw() -> Surfaces:
     surfaces["mouth"] = mesh(ellipsoid((1.34, 0, 1.005), (0.105, 0.032, 0.026), (0, 1, 0)), 0.010)
     surfaces["white"] = joined(_fang((1.464, s * 0.022, 0.992), (0.004, s * 0.002, 0.034), 0.008) for s in (1, -1))
     beard = [
-        lock([(x, y, 0.985), (x - 0.004, 1.1 * y, 0.945), (x - 0.030, 1.2 * y, 0.900)],
-             [0.024, 0.021, 0.001], (1, 0, 0), 0.8, 6)
-        for x, y in ((1.445, 0.0), (1.430, -0.022), (1.430, 0.022), (1.395, -0.030), (1.395, 0.030), (1.395, 0.0))
+        lock([(x, y, 0.985), (x - 0.004, 1.1 * y, 0.955), (x - 0.025, 1.1 * y, 0.925)],
+             [0.026, 0.022, 0.001], (1, 0, 0), 0.8, 6)
+        for x, y in ((1.445, 0.0), (1.430, -0.022), (1.430, 0.022), (1.400, -0.028), (1.400, 0.028))
     ]  # fmt: skip
     surfaces["pale"] = joined([surfaces["pale"], *beard])
     return {material: part.grown(HEAD_SIZE, HEAD) for material, part in surfaces.items()}
@@ -193,7 +193,7 @@ def _ruff(
         reach *= 1.0 + 0.07 * ((3 * k) % 5 - 2)
         lean = back * (1.0 + 0.10 * ((7 * k) % 3 - 1))
         path = []
-        for t in (0.0, 0.25, 0.5, 0.75, 0.92, 1.0):
+        for t in (0.0, 0.3, 0.6, 0.86, 1.0):
             out = reach * (t - 0.30 * t * t)
             path.append(
                 (
@@ -202,7 +202,7 @@ def _ruff(
                     center[2] + (radii[1] + out) * up - droop * t * t,
                 )
             )
-        widths = [width * f for f in (0.75, 1.0, 0.95, 0.68, 0.30, 0.03)]
+        widths = [width * f for f in (0.75, 1.0, 0.88, 0.48, 0.03)]
         locks.append(lock(path, widths, (0.25, side, up), 0.55, 6))
     return joined(locks)
 
@@ -214,21 +214,21 @@ def mane() -> dict[str, Surfaces]:
         "head": {
             "gold": _ruff((1.245, 0, 1.085), (0.128, 0.118), 28, (0.11, 0.13, 0.13), 0.70, 0.020, 0.026),
             "mane": joined([
-                mesh(cap, 0.034),
+                mesh(cap, 0.05),
                 _ruff((1.210, 0, 1.085), (0.138, 0.133), 30, (0.15, 0.20, 0.21), 0.62, 0.035, 0.032, first=6),
             ]),
             "dark_mane": _ruff((1.145, 0, 1.080), (0.150, 0.160), 30, (0.17, 0.24, 0.28), 0.70, 0.055, 0.038),
         },
         "neck": {
             "dark_mane": joined([
-                mesh(scruff, 0.045),
+                mesh(scruff, 0.065),
                 _ruff((1.06, 0, 1.03), (0.155, 0.165), 28, (0.16, 0.23, 0.32), 0.85, 0.08, 0.042, first=6),
                 _ruff((0.98, 0, 0.97), (0.160, 0.190), 28, (0.15, 0.22, 0.33), 0.95, 0.08, 0.044),
             ]),
         },
         "chest": {
             "dark_mane": joined([
-                mesh(ellipsoid((0.89, 0, 0.90), (0.14, 0.165, 0.22)), 0.045),
+                mesh(ellipsoid((0.89, 0, 0.90), (0.14, 0.165, 0.22)), 0.065),
                 _ruff((0.90, 0, 0.90), (0.12, 0.17), 20, (0.14, 0.13, 0.22), 0.8, 0.07, 0.046, first=9),
                 _ruff((0.97, 0, 0.88), (0.10, 0.12), 11, (0.10, 0.15, 0.19), 0.25, 0.10, 0.042, first=95, span=170),
                 _ruff((0.99, 0, 0.80), (0.08, 0.08), 9, (0.10, 0.12, 0.17), 0.30, 0.09, 0.036, first=100, span=160),

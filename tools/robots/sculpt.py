@@ -287,7 +287,7 @@ def bar(a: Point, b: Point, radius_a: float, radius_b: float, sides: int = 14) -
     return _skin(rings)
 
 
-def lathe(profile: Sequence[tuple[float, float]], sides: int = 36) -> Mesh:
+def lathe(profile: Sequence[tuple[float, float]], sides: int = 30) -> Mesh:
     """A solid of revolution about z from (radius, height) pairs, bottom to top."""
     angles = [2 * math.pi * k / sides for k in range(sides)]
     return _skin([[np.array([r * math.cos(a), r * math.sin(a), h]) for a in angles] for r, h in profile])

@@ -59,9 +59,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
     Returns:
         The exit status, see `ExitStatus`.
     """
-    output.prepare_streams()
-    command = typer.main.get_command(_app)
     try:
+        output.prepare_streams()
+        command = typer.main.get_command(_app)
         # The commands return their status; --help and --version, which leave early, come back as one too.
         returned = command.main(args=arguments, prog_name="pinik", standalone_mode=False)
         status = ExitStatus(returned or ExitStatus.ANSWERED)

@@ -10,15 +10,13 @@ from ..errors import UnknownNameError
 from ..robot import Robot
 from ..solvers import Solver, make_solver
 from .exits import CommandError
-from .output import native_stdout_to_stderr
+from .output import native_output_silenced
 from .units import Units
 
 __all__ = ["configuration", "named_poses", "solver_with"]
 
 
-def configuration(
-    robot: Robot, pose: str | None, settings: Iterable[str] | None, option: str, units: Units
-) -> Any:
+def configuration(robot: Robot, pose: str | None, settings: Iterable[str] | None, option: str, units: Units) -> Any:
     """The configuration (nq,) of a named pose, or neutral, with some joints set.
 
     Args:
@@ -41,9 +39,7 @@ def configuration(
     for name, text in _pairs(settings, option, "JOINT=ANGLE"):
         joint = robot.settable_joint(name)
         if not joint.has_one_axis:
-            raise CommandError(
-                f"{option} sets joints that turn or slide about one axis; {name!r} is {joint.kind}"
-            )
+            raise CommandError(f"{option} sets joints that turn or slide about one axis; {name!r} is {joint.kind}")
         try:
             angle = units.scalar(float(text), joint)
             robot.configuration({name: angle})  # refuses what is not finite
@@ -54,8 +50,8 @@ def configuration(
 
 
 def named_poses(robot: Robot) -> dict[str, Any]:
-    """`robot.poses`, read without a word on stdout."""
-    with native_stdout_to_stderr():
+    """`robot.poses`, read without the words of Pinocchio's SRDF reader."""
+    with native_output_silenced():
         return robot.poses
 
 

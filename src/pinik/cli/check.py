@@ -17,9 +17,7 @@ __all__ = ["check"]
 def check(
     file: Annotated[
         str,
-        typer.Argument(
-            metavar="FILE.urdf", help="A URDF file, or a name of the catalogue.", show_default=False
-        ),
+        typer.Argument(metavar="FILE.urdf", help="A URDF file, or a name of the catalogue.", show_default=False),
     ],
     package_dir: PackageDirs = None,
     as_json: AsJson = False,
@@ -52,9 +50,7 @@ def _emit(found: Inspection) -> None:
     for words in found.mesh_faults:
         output.emit(f"mesh: {words}")
     if found.loads:
-        output.emit(
-            f"{found.links} links, {found.joints} joints, {found.meshes} meshes, {found.shapes} shapes"
-        )
+        output.emit(f"{found.links} links, {found.joints} joints, {found.meshes} meshes, {found.shapes} shapes")
 
 
 def painted_line(good: bool, text: str) -> str:

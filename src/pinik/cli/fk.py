@@ -57,8 +57,7 @@ def fk(
     angle = units.angle
     titles = ("frame", "x m", "y m", "z m", f"roll {angle}", f"pitch {angle}", f"yaw {angle}")
     rows = [
-        (name, *map(length, M.translation), *map(units.show_angle, roll_pitch_yaw(M)))
-        for name, M in placements.items()
+        (name, *map(length, M.translation), *map(units.show_angle, roll_pitch_yaw(M))) for name, M in placements.items()
     ]
     emit_table(titles, rows, numeric=titles[1:])
     return ExitStatus.ANSWERED

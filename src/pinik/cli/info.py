@@ -60,9 +60,7 @@ def _fields(robot: Robot) -> dict[str, Any]:
             for follower, (leader, multiplier, offset) in robot.mimics.items()
         },
         "frames": list(robot.frame_names),
-        "poses": {
-            name: {"angles": robot.angles(q), "q": q.tolist()} for name, q in named_poses(robot).items()
-        },
+        "poses": {name: {"angles": robot.angles(q), "q": q.tolist()} for name, q in named_poses(robot).items()},
         "warnings": list(robot.warnings),
         "engine": _ENGINE,
         "version": _version(),
@@ -139,6 +137,4 @@ def _following(joint: Joint) -> str:
 def _wrapped(title: str, names: tuple[str, ...]) -> str:
     width = shutil.get_terminal_size().columns if output.is_terminal(sys.stdout) else 100
     text = f"{title:8}  " + ", ".join(names)
-    return textwrap.fill(
-        text, width, subsequent_indent=" " * 10, break_long_words=False, break_on_hyphens=False
-    )
+    return textwrap.fill(text, width, subsequent_indent=" " * 10, break_long_words=False, break_on_hyphens=False)

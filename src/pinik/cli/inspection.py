@@ -12,7 +12,7 @@ from typing import Any
 from .. import packages, robot_catalog, urdf
 from ..errors import RobotLoadError, UnknownNameError
 from ..robot import Robot
-from .output import native_stdout_to_stderr
+from .output import native_output_silenced
 
 __all__ = ["Fault", "Inspection", "inspect"]
 
@@ -115,7 +115,7 @@ def _fault(error: RobotLoadError) -> Fault:
 
 def _shapes(path: Path, package_dirs: Sequence[Path]) -> tuple[int, list[str]]:
     """How many shapes can be drawn, and a sentence about each one that cannot."""
-    with native_stdout_to_stderr(), warnings.catch_warnings():
+    with native_output_silenced(), warnings.catch_warnings():
         warnings.simplefilter("ignore")  # of the mesh readers; what cannot be read is in the sentences
         from ..geometry import load_shapes
 

@@ -67,10 +67,7 @@ def jacobian(
             }
         )
     else:
-        rows = [
-            (name, *(f"{value:z.5f}" for value in column))
-            for name, column in zip(columns, matrix.T, strict=True)
-        ]
+        rows = [(name, *(f"{value:z.5f}" for value in column)) for name, column in zip(columns, matrix.T, strict=True)]
         emit_table(("joint", *_ROWS), rows, numeric=_ROWS)
     return ExitStatus.ANSWERED
 

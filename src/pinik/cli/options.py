@@ -31,15 +31,11 @@ Root = Annotated[
 ]
 PackageDirs = Annotated[
     list[Path] | None,
-    typer.Option(
-        "--package-dir", metavar="DIR", help="Where package:// addresses are looked up first; repeatable."
-    ),
+    typer.Option("--package-dir", metavar="DIR", help="Where package:// addresses are looked up first; repeatable."),
 ]
 PoseName = Annotated[
     str | None,
-    typer.Option(
-        "--pose", metavar="NAME", help="Take the joints from this named pose ('pinik info' lists them)."
-    ),
+    typer.Option("--pose", metavar="NAME", help="Take the joints from this named pose ('pinik info' lists them)."),
 ]
 Settings = Annotated[
     list[str] | None,

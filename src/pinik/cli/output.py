@@ -12,12 +12,13 @@ from typing import Any, TextIO
 
 import typer
 
-from .exits import ExitStatus
+from .exits import CommandError, ExitStatus
 
 __all__ = [
     "emit",
     "emit_json",
-    "native_stdout_to_stderr",
+    "is_terminal",
+    "native_output_silenced",
     "painted",
     "prepare_streams",
     "say",
@@ -38,7 +39,7 @@ def emit(text: str) -> None:
     """Write data to stdout at once; where the reader has gone (`| head`), say nothing more.
 
     Raises:
-        OSError: The data cannot be written, for another reason.
+        CommandError: The data cannot be written, for another reason.
     """
     if sys.stdout is None:
         return
@@ -47,9 +48,9 @@ def emit(text: str) -> None:
         sys.stdout.flush()
     except BrokenPipeError:
         _abandon_stdout()
-    except OSError:
+    except OSError as error:
         _abandon_stdout()
-        raise
+        raise CommandError(f"the answer cannot be written: {error.strerror}") from None
 
 
 def _abandon_stdout() -> None:
@@ -105,21 +106,29 @@ def is_terminal(stream: TextIO | None) -> bool:
 
 
 @contextmanager
-def native_stdout_to_stderr() -> Iterator[None]:
-    """Keep what compiled code prints to stdout out of the data: it goes to stderr meanwhile."""
+def native_output_silenced() -> Iterator[None]:
+    """Keep what compiled code prints out of the data and out of the words: below Python, both go nowhere."""
     import ctypes
 
     c_library = ctypes.CDLL(None)
-    try:
-        kept = os.dup(1)
-    except OSError:  # stdout is closed: nothing can get mixed up
-        yield
-        return
+    kept = [(number, os.dup(number)) for number in (1, 2) if _is_open(number)]
+    nowhere = os.open(os.devnull, os.O_WRONLY)
     try:
         c_library.fflush(None)
-        os.dup2(2, 1)
+        for number, _ in kept:
+            os.dup2(nowhere, number)
         yield
     finally:
-        c_library.fflush(None)
-        os.dup2(kept, 1)
-        os.close(kept)
+        c_library.fflush(None)  # while it still goes nowhere
+        for number, copy in kept:
+            os.dup2(copy, number)
+            os.close(copy)
+        os.close(nowhere)
+
+
+def _is_open(number: int) -> bool:
+    try:
+        os.fstat(number)
+    except OSError:
+        return False
+    return True

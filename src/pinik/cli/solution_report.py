@@ -59,8 +59,7 @@ def _limit_note(name: str, value: float, lower: float, upper: float, solution: S
 
 def _emit_targets(solution: Solution, units: Units) -> None:
     rows = [
-        (target.frame, _errors(error, units))
-        for target, error in zip(solution.targets, solution.errors, strict=True)
+        (target.frame, _errors(error, units)) for target, error in zip(solution.targets, solution.errors, strict=True)
     ]
     emit_table(("target", "error"), rows)
 

@@ -39,15 +39,11 @@ def solve(
     ] = None,
     rpy: Annotated[
         Vector | None,
-        typer.Option(
-            metavar="R P Y", help="Its orientation: fixed-axis roll, pitch, yaw.", rich_help_panel=_TARGET
-        ),
+        typer.Option(metavar="R P Y", help="Its orientation: fixed-axis roll, pitch, yaw.", rich_help_panel=_TARGET),
     ] = None,
     quat_xyzw: Annotated[
         tuple[float, float, float, float] | None,
-        typer.Option(
-            metavar="X Y Z W", help="Its orientation: a quaternion, scalar last.", rich_help_panel=_TARGET
-        ),
+        typer.Option(metavar="X Y Z W", help="Its orientation: a quaternion, scalar last.", rich_help_panel=_TARGET),
     ] = None,
     axis: Annotated[
         str | None,
@@ -67,15 +63,11 @@ def solve(
     ] = None,
     tool: Annotated[
         Vector | None,
-        typer.Option(
-            metavar="X Y Z", help="The point meant, in the frame, in metres.", rich_help_panel=_TARGET
-        ),
+        typer.Option(metavar="X Y Z", help="The point meant, in the frame, in metres.", rich_help_panel=_TARGET),
     ] = None,
     relative_to: Annotated[
         str | None,
-        typer.Option(
-            metavar="FRAME", help="Express the target in this frame, moving or not.", rich_help_panel=_TARGET
-        ),
+        typer.Option(metavar="FRAME", help="Express the target in this frame, moving or not.", rich_help_panel=_TARGET),
     ] = None,
     targets: Annotated[
         str | None,
@@ -88,9 +80,7 @@ def solve(
     degrees: Degrees = False,
     method: Annotated[
         str,
-        typer.Option(
-            metavar=method_names(), help="The method; module:Class finds yours.", rich_help_panel=_SOLVER
-        ),
+        typer.Option(metavar=method_names(), help="The method; module:Class finds yours.", rich_help_panel=_SOLVER),
     ] = "dls",
     param: Annotated[
         list[str] | None,
@@ -118,9 +108,7 @@ def solve(
     ] = None,
     restarts: Annotated[
         int | None,
-        typer.Option(
-            metavar="N", help="Fresh starts at most; 0 is the bare method.", rich_help_panel=_SOLVER
-        ),
+        typer.Option(metavar="N", help="Fresh starts at most; 0 is the bare method.", rich_help_panel=_SOLVER),
     ] = None,
     seed: Annotated[int, typer.Option(metavar="N", help="Of the fresh starts.", rich_help_panel=_SOLVER)] = 0,
     engine: Annotated[
@@ -145,9 +133,7 @@ def solve(
     ] = None,
     lock: Annotated[
         list[str] | None,
-        typer.Option(
-            metavar="JOINT", help="Hold this joint where it starts; repeatable.", rich_help_panel=_START
-        ),
+        typer.Option(metavar="JOINT", help="Hold this joint where it starts; repeatable.", rich_help_panel=_START),
     ] = None,
     no_limits: Annotated[
         bool, typer.Option("--no-limits", help="Let joints leave their limits.", rich_help_panel=_START)

@@ -50,9 +50,7 @@ def make_solver(method: str | type[Solver] | Solver, **parameters: Any) -> Solve
     if isinstance(method, str):
         method = _class_by_name(method)
     if not (isinstance(method, type) and issubclass(method, Solver)):
-        raise InputError(
-            f"method is a name ({', '.join(SOLVERS)}), a Solver class or an instance; got {method!r}"
-        )
+        raise InputError(f"method is a name ({', '.join(SOLVERS)}), a Solver class or an instance; got {method!r}")
     return method.make(**parameters)
 
 

@@ -66,7 +66,7 @@ class Patience:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Solver(ABC):
+class Solver:
     """Parameters of an iterative method. State lives in the loop; instances are immutable and comparable.
 
     Subclass `JacobianSolver` or `SweepingSolver`.
@@ -81,12 +81,8 @@ class Solver(ABC):
     patience: ClassVar[Patience] = Patience(5, 0.05)
     """When an attempt counts as stalled."""
 
-    max_step: float = parameter(
-        math.inf, "largest change of one joint in one step", unit="rad or m", low=1e-6
-    )
-    max_residual: float = parameter(
-        math.inf, "D_max: the part of a position residual used", unit="m", low=1e-6
-    )
+    max_step: float = parameter(math.inf, "largest change of one joint in one step", unit="rad or m", low=1e-6)
+    max_residual: float = parameter(math.inf, "D_max: the part of a position residual used", unit="m", low=1e-6)
 
     def __post_init__(self) -> None:
         """Check every parameter against its field's range.
@@ -118,13 +114,11 @@ class Solver(ABC):
 
 
 @dataclass(frozen=True, kw_only=True)
-class JacobianSolver(Solver):
+class JacobianSolver(Solver, ABC):
     """A method whose step is a function of Jacobian and residual; subclasses write `direction` and are complete."""
 
     step_size: float | None = parameter(1.0, "α: factor on the step, after its clamp", low=1e-6, high=2.0)
-    target_jacobian: bool = parameter(
-        False, "take the Jacobian at the target instead of the effector (eq. 3.9)"
-    )
+    target_jacobian: bool = parameter(False, "take the Jacobian at the target instead of the effector (eq. 3.9)")
 
     @abstractmethod
     def direction(self, J: Array, e: Array) -> Array:
@@ -136,13 +130,11 @@ class JacobianSolver(Solver):
 
 
 @dataclass(frozen=True, kw_only=True)
-class SweepingSolver(Solver):
+class SweepingSolver(Solver, ABC):
     """A method that changes joint after joint."""
 
     @abstractmethod
-    def sweep(
-        self, q: Array, kinematics: Kinematics, limits: Limits, tolerance: Tolerance
-    ) -> tuple[Array, int]:
+    def sweep(self, q: Array, kinematics: Kinematics, limits: Limits, tolerance: Tolerance) -> tuple[Array, int]:
         """One pass over the joints, which ends as soon as every target is within tolerance.
 
         Returns:
@@ -174,11 +166,7 @@ def _checked(method: str, field: dataclasses.Field[Any], value: Any) -> Any:
 def _number(what: str, value: Any, about: Mapping[str, Any]) -> float:
     low = -math.inf if about["low"] is None else about["low"]
     high = math.inf if about["high"] is None else about["high"]
-    if (
-        isinstance(value, (bool, str))
-        or not isinstance(value, (int, float, np.number))
-        or not low <= value <= high
-    ):
+    if isinstance(value, (bool, str)) or not isinstance(value, (int, float, np.number)) or not low <= value <= high:
         bounds = f"a number from {low:g} to {high:g}" + (f" [{about['unit']}]" if about["unit"] else "")
         raise InputError(f"{what} is {bounds}{' or None' if about['optional'] else ''}; got {value!r}")
     return float(value)

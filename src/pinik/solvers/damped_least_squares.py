@@ -18,7 +18,8 @@ _SMALLEST_DAMPING_SQUARED = 1e-12
 
 @dataclass(frozen=True, kw_only=True)
 class DampedLeastSquares(JacobianSolver):
-    r"""$\Delta q = J^\top (JJ^\top + \lambda^2 I)^{-1} e = \sum_i \frac{\sigma_i}{\sigma_i^2 + \lambda^2} v_i u_i^\top e$.
+    r"""$\Delta q = J^\top (JJ^\top + \lambda^2 I)^{-1} e
+    = \sum_i \frac{\sigma_i}{\sigma_i^2 + \lambda^2} v_i u_i^\top e$.
 
     Minimises $\|J\Delta q - e\|^2 + \lambda^2\|\Delta q\|^2$. With λ the `damping`, the rules are:
 

@@ -19,7 +19,8 @@ __all__ = ["PseudoInverse"]
 
 @dataclass(frozen=True, kw_only=True)
 class PseudoInverse(JacobianSolver):
-    r"""$\Delta q = J^\dagger e + (I - J^\dagger J)\,\varphi$, $J^\dagger = \sum_{\sigma_i > \tau} \sigma_i^{-1} v_i u_i^\top$.
+    r"""$\Delta q = J^\dagger e + (I - J^\dagger J)\,\varphi$ with
+    $J^\dagger = \sum_{\sigma_i > \tau} \sigma_i^{-1} v_i u_i^\top$.
 
     The shortest step that solves the linearised problem best. Singular values below τ = cutoff · σ₁ are dropped;
     φ pulls towards a rest posture inside the null space, where it does not move the effector.
@@ -33,22 +34,16 @@ class PseudoInverse(JacobianSolver):
     patience = Patience(6, 0.05)
 
     max_step: float = parameter(0.5, "largest change of one joint in one step", unit="rad or m", low=1e-6)
-    cutoff: float = parameter(
-        1e-3, "singular values below this part of the largest are dropped", low=0.0, high=1.0
-    )
-    rest_posture: Mapping[str, float] = parameter(
-        {}, "joint angles to tend to in the null space", unit="rad or m"
-    )
-    rest_gain: float = parameter(
-        0.1, "part of the way to the rest posture taken in one step", low=0.0, high=1.0
-    )
+    cutoff: float = parameter(1e-3, "singular values below this part of the largest are dropped", low=0.0, high=1.0)
+    rest_posture: Mapping[str, float] = parameter({}, "joint angles to tend to in the null space", unit="rad or m")
+    rest_gain: float = parameter(0.1, "part of the way to the rest posture taken in one step", low=0.0, high=1.0)
 
     def direction(self, J: Array, e: Array, pull: Array | None = None) -> Array:
         """J†e, and (I − J†J)·pull with a pull (nv,)."""
         left, sigma, right = np.linalg.svd(J, full_matrices=False)
         rank = int((sigma > max(self.cutoff * sigma[0], 1e-12)).sum())
         basis = right[:rank]  # (rank, nv): the row space
-        dq = (left[:, :rank].T.dot(e) / sigma[:rank]).dot(basis)
+        dq: Array = (left[:, :rank].T.dot(e) / sigma[:rank]).dot(basis)
         return dq if pull is None else dq + pull - basis.T.dot(basis.dot(pull))
 
     def step(self, at: Linearization, kinematics: Kinematics) -> Array:

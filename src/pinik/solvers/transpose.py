@@ -26,13 +26,11 @@ class JacobianTranspose(JacobianSolver):
     restarts = 20
     patience = Patience(50, 0.02)
 
-    step_size: float | None = parameter(
-        None, "α; None takes the optimal one in every step", low=1e-6, optional=True
-    )
+    step_size: float | None = parameter(None, "α; None takes the optimal one in every step", low=1e-6, optional=True)
 
     def direction(self, J: Array, e: Array) -> Array:
         """α Jᵀe, or Jᵀe where `step_size` fixes α."""
-        dq = J.T.dot(e)
+        dq: Array = J.T.dot(e)
         if self.step_size is not None:
             return dq
         JJte = J.dot(dq)

@@ -1,0 +1,51 @@
+from __future__ import annotations
+
+import dataclasses
+import shlex
+import subprocess
+import sys
+
+import pytest
+
+import pinik
+
+COMMANDS = ("solve", "fk", "jacobian", "info", "check", "robots")
+
+
+def examples(text: str) -> list[str]:
+    """The example command lines in a help text."""
+    lines = [line.strip() for line in text.splitlines()]
+    return [line for line in lines if line.startswith(("pinik ", "echo "))]
+
+
+@pytest.mark.parametrize("command", ["", *COMMANDS])
+def test_every_example_in_the_help_works(run, environment, command):
+    shown = run(*filter(None, [command]), "--help")
+    assert shown.status == 0
+    found = examples(shown.out)
+    assert found
+    for example in found:
+        if "|" not in example:
+            assert run(*shlex.split(example)[1:]).status == 0, example
+            continue
+        script = f'pinik() {{ {shlex.quote(sys.executable)} -m pinik "$@"; }}; {example}'
+        done = subprocess.run(["bash", "-c", script], env=environment, capture_output=True, timeout=30, check=False)
+        assert done.returncode == 0, done.stderr.decode()
+
+
+def test_the_front_page_lists_every_command(run):
+    text = run("--help").out
+    assert all(command in text for command in COMMANDS)
+
+
+def test_the_help_of_solve_explains_every_method_and_parameter(run):
+    text = run("solve", "--help").out
+    for name, solver in pinik.SOLVERS.items():
+        assert f"{name}:" in text
+        for field in dataclasses.fields(solver):
+            assert f"{field.name}: " in text
+
+
+def test_the_help_says_which_units_json_has(run):
+    text = " ".join(run("solve", "--help").out.replace("│", " ").split())
+    assert "always in metres and radians" in text

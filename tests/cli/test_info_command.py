@@ -1,0 +1,71 @@
+from __future__ import annotations
+
+import pinocchio
+import pytest
+
+import pinik
+
+
+def test_joints_with_kind_unit_limits_and_leader(run):
+    answer = run("info", "panda", "--json").json
+    joints = {joint["name"]: joint for joint in answer["joints"]}
+    assert joints["panda_joint1"] == {
+        "name": "panda_joint1",
+        "kind": "revolute",
+        "unit": "rad",
+        "lower": -2.8973,
+        "upper": 2.8973,
+        "axis": [0.0, 0.0, 1.0],
+        "mimics": None,
+    }
+    assert joints["panda_finger_joint2"]["unit"] == "m"
+    assert joints["panda_finger_joint2"]["mimics"] == "panda_finger_joint1"
+    assert joints["panda_finger_joint2"]["upper"] == 0.04
+    assert answer["mimics"]["panda_finger_joint2"] == {
+        "leader": "panda_finger_joint1",
+        "multiplier": 1.0,
+        "offset": 0.0,
+    }
+
+
+def test_a_joint_without_limits_has_null(run):
+    joints = run("info", "double_pendulum_continuous", "--json").json["joints"]
+    assert {(joint["kind"], joint["lower"], joint["upper"]) for joint in joints} == {("continuous", None, None)}
+    assert "∞" in run("info", "double_pendulum_continuous").out
+
+
+def test_a_floating_root_has_neither_unit_nor_limits(run):
+    root = run("info", "lion", "--root", "free_flyer", "--json").json["joints"][0]
+    assert (root["name"], root["kind"], root["unit"], root["lower"]) == ("root_joint", "floating", None, None)
+
+
+def test_frames_poses_and_versions(run):
+    answer = run("info", "arm", "--json").json
+    robot = pinik.load("arm")
+    assert answer["frames"] == list(robot.frame_names)
+    assert set(answer["poses"]) == set(robot.poses)
+    assert answer["poses"]["reach"]["angles"] == pytest.approx(robot.angles(robot.poses["reach"]))
+    assert (answer["version"], answer["pinocchio"]) == (pinik.__version__, pinocchio.__version__)
+    assert (answer["nq"], answer["nv"]) == (robot.model.nq, robot.model.nv)
+
+
+def test_warnings_are_one_line_each_on_stderr_and_in_the_json(run):
+    result = run("info", "quadruped", "--json")
+    lines = result.err.splitlines()
+    assert lines == [f"warning: quadruped: {words}" for words in result.json["warnings"]]
+    assert len(lines) == len(set(lines)) > 0
+
+
+def test_the_tables_name_everything(run):
+    text = run("info", "arm").out
+    robot = pinik.load("arm")
+    for name in (*robot.joint_names, *robot.frame_names, *robot.poses):
+        assert name in text
+    assert "0.78540" in text
+    assert "45.000" in run("info", "arm", "--deg").out
+    assert pinocchio.__version__ in text
+
+
+def test_a_robot_without_joints(run):
+    assert run("info", "hector").status == 0
+    assert run("info", "hector", "--json").json["joints"] == []

@@ -1,0 +1,66 @@
+"""docs/json.md and what the commands print: neither has a field that the other has not."""
+
+from __future__ import annotations
+
+import json
+import re
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+DOCUMENT = Path(__file__).parents[2] / "docs" / "json.md"
+PLACEHOLDERS = {
+    "angles": "JOINT",
+    "joint_placements": "JOINT",
+    "mimics": "JOINT",
+    "parameters": "NAME",
+    "poses": "POSE",
+}
+TARGETS = [
+    {"frame": "tip", "position": [0.2, 0.1, 0.8], "rpy": [0, 0.3, 0], "tool": [0, 0, 0.1], "weight": 2},
+    {"frame": "tip", "axis": "z", "direction": [1, 0, 0], "relative_to": "bone2_x"},
+    {"frame": "tip", "axis": "x", "at": [1, 0, 0]},
+]
+RUNS = {
+    "solve": [
+        ("solve", "arm", "--targets", "-", "--root", "planar", "--json"),
+        ("solve", "arm", "--frame", "tip", "--position", "0", "0", "9", "--method", "ccd", "--json"),
+    ],
+    "fk": [("fk", "panda", "--root", "free_flyer", "--json")],
+    "jacobian": [("jacobian", "panda", "--frame", "panda_hand", "--root", "free_flyer", "--json")],
+    "info": [("info", "panda", "--root", "free_flyer", "--json")],
+    "check": [("check", "ur3_empty", "--json"), ("check", "two_link", "--json")],
+    "robots": [("robots", "--json")],
+}
+
+
+def documented(command: str) -> set[str]:
+    """The fields that the document lists for a command."""
+    section = re.search(rf"^## `pinik {command}`$(.*?)(?=^## |\Z)", DOCUMENT.read_text(), re.MULTILINE | re.DOTALL)
+    assert section
+    return set(re.findall(r"^\| `([^`]+)` \|", section[1], re.MULTILINE))
+
+
+def fields(value: dict[str, Any], prefix: str = "", names: str = "") -> Iterator[str]:
+    """Every field of an object, names of joints and the like replaced by what stands for them."""
+    for key, item in value.items():
+        path = f"{prefix}{names or key}"
+        yield path
+        if isinstance(item, dict) and names != "NAME":
+            yield from fields(item, f"{path}.", "" if names else PLACEHOLDERS.get(key, ""))
+        elif isinstance(item, list):
+            for element in item:
+                if isinstance(element, dict):
+                    yield from fields(element, f"{path}[].")
+
+
+@pytest.mark.parametrize("command", RUNS)
+def test_every_field_is_documented_and_every_documented_field_exists(run, command):
+    found = set()
+    for arguments in RUNS[command]:
+        answer = run(*arguments, stdin=json.dumps(TARGETS)).json
+        assert answer["schema"] == 1
+        found |= set(fields(answer))
+    assert found == documented(command)
