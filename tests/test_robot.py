@@ -29,6 +29,7 @@ from by_hand import (
     origin,
     random_placement,
     rotation_from_rpy,
+    two_hinges,
 )
 from conftest import load_quietly
 from pinik import InputError, RobotLoadError, UnknownNameError, UrdfWarning
@@ -609,8 +610,8 @@ class TestPoses:
             mine = pinik.load(tmp_path / "mine.urdf")
         np.testing.assert_array_equal(mine.poses["reach"], arm.poses["reach"])
 
-    def test_of_a_faulty_srdf_are_an_error_that_names_the_file(self, tmp_path, two_link):
-        shutil.copy(two_link.description.path, tmp_path / "mine.urdf")
+    def test_of_a_faulty_srdf_are_an_error_that_names_the_file(self, tmp_path):
+        (tmp_path / "mine.urdf").write_text(two_hinges(0.5, 0.4))
         (tmp_path / "mine.srdf").write_text("<robot><group_state name='x'>")
         mine = pinik.load(tmp_path / "mine.urdf")
         with pytest.raises(RobotLoadError, match=r"mine\.srdf"):
@@ -618,20 +619,28 @@ class TestPoses:
 
 
 class TestLoad:
-    def test_by_name_path_and_text_gives_the_same_robot(self, two_link):
-        path = two_link.description.path
-        for source in (path, str(path), path.read_text(), "\n  " + path.read_text(), "\ufeff" + path.read_text()):
+    def test_by_path_and_text_gives_the_same_robot(self, tmp_path):
+        text = two_hinges(0.5, 0.4)
+        path = tmp_path / "mine.urdf"
+        path.write_text(text)
+        for source in (path, str(path), text, "\n  " + text, "\ufeff" + text):
             loaded = pinik.load(source)
-            assert loaded.name == "two_link"
-            assert loaded.model == two_link.model
-            assert loaded.joint_names == two_link.joint_names
+            assert loaded.name == "r"
+            assert loaded.joint_names == ("shoulder", "elbow")
+            assert loaded.placement("tip", loaded.neutral()).translation == pytest.approx([0.9, 0, 0])
 
-    def test_finds_a_file_in_the_working_directory(self, tmp_path, monkeypatch, two_link):
-        shutil.copy(two_link.description.path, tmp_path / "mine.urdf")
-        shutil.copy(two_link.description.path, tmp_path / "no_suffix")
+    def test_by_name_gives_the_file_of_the_catalogue(self, panda):
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", UrdfWarning)
+            by_path = pinik.load(panda.description.path)
+        assert by_path.model == panda.model
+        assert by_path.name == panda.name == "panda"
+
+    def test_finds_a_file_in_the_working_directory(self, tmp_path, monkeypatch):
+        for name in ("mine.urdf", "no_suffix"):
+            (tmp_path / name).write_text(two_hinges(0.5, 0.4))
         monkeypatch.chdir(tmp_path)
-        assert pinik.load("mine.urdf").model == two_link.model
-        assert pinik.load("no_suffix").model == two_link.model
+        assert pinik.load("mine.urdf").joint_names == pinik.load("no_suffix").joint_names
 
     def test_a_catalogue_name_means_the_robot_whatever_lies_in_the_working_directory(
         self, tmp_path, monkeypatch

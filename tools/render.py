@@ -1,7 +1,8 @@
 """Render robots to a PNG: `python tools/render.py ROBOT [--pose NAME | --angles JSON] [--out FILE.png]`.
 
-`python tools/render.py --hero` makes docs/images/robots.png. Shapes come from pinik.geometry, placements from Pinocchio,
-the picture from meshcat's three.js in Debian's chromium (about a second a megapixel per ten frames).
+Shapes come import pinik
+from pinik.geometry, placements from Pinocchio, the picture from meshcat's three.js in Debian's chromium.
+docs/images/robots.png is made by tools/hero.py.
 """
 
 from __future__ import annotations
@@ -10,26 +11,29 @@ import argparse
 import base64
 import json
 import tempfile
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
 import meshcat
 import numpy as np
-import pinocchio as pin
 import trimesh
 from numpy.typing import NDArray
 from playwright.sync_api import sync_playwright
 
+import pinik
 from pinik.geometry import Color, load_shapes
 
 HERE = Path(__file__).parent
-ROOT = HERE.parent
 CHROMIUM = "/usr/bin/chromium"
-FLAGS = (
-    "--no-sandbox --use-angle=swiftshader --enable-unsafe-swiftshader --disable-quic --no-first-run"
-    " --disable-background-networking"
-).split()
+FLAGS = [
+    "--no-sandbox",
+    "--use-angle=swiftshader",
+    "--enable-unsafe-swiftshader",
+    "--disable-quic",
+    "--no-first-run",
+    "--disable-background-networking",
+]
 BALL_COLOR: Color = (0.90, 0.16, 0.14, 1.0)
 
 Matrix = NDArray[np.float64]
@@ -42,19 +46,15 @@ class Scene:
 
     parts: list[tuple[trimesh.Trimesh, Matrix, Color, float]] = field(default_factory=list)
 
-    def add_robot(self, urdf: Path, angles: Mapping[str, float] | str = "", at: Matrix | None = None) -> None:
-        """A robot with these angles [rad, m], or in a named pose, its world placed at `at`."""
-        model = pin.buildModelFromUrdf(str(urdf))
-        data = model.createData()
-        q = configuration(model, urdf, angles)
-        pin.framesForwardKinematics(model, data, q)
-        shapes, warnings = load_shapes(urdf)
+    def add_robot(self, robot: pinik.Robot, q: Matrix, at: Matrix | None = None) -> None:
+        """A robot in configuration `q`, its world placed at `at`."""
+        shapes, warnings = load_shapes(robot.description.path, robot.package_dirs)
         for warning in warnings:
             print(warning)
+        world = np.eye(4) if at is None else at
         for shape in shapes:
-            link = data.oMf[model.getFrameId(shape.link, pin.FrameType.BODY)].homogeneous
-            world = (np.eye(4) if at is None else at) @ link @ shape.placement
-            self.parts.append((shape.mesh, world, shape.color, 0.55))
+            placement = world @ robot.placement(shape.link, q).homogeneous @ shape.placement
+            self.parts.append((shape.mesh, placement, shape.color, 0.55))
 
     def add_ball(self, position: Point, radius: float = 0.035, color: Color = BALL_COLOR) -> None:
         self.parts.append((trimesh.creation.icosphere(4, radius), translation(position), color, 0.35))
@@ -64,25 +64,6 @@ class Scene:
         corners = [trimesh.transform_points(mesh.bounding_box.vertices, at) for mesh, at, _, _ in self.parts]
         points = np.vstack(corners)
         return np.stack([points.min(axis=0), points.max(axis=0)])
-
-
-def find(robot: str) -> Path:
-    """The URDF of a catalogue name, or a path."""
-    path = ROOT / "urdf" / f"{robot}.urdf"
-    return path if path.exists() else Path(robot)
-
-
-def configuration(model: pin.Model, urdf: Path, angles: Mapping[str, float] | str) -> Matrix:
-    """q of these angles, or of the named pose in the SRDF beside the URDF; "" is neutral."""
-    q: Matrix = pin.neutral(model)
-    if isinstance(angles, str):
-        if not angles:
-            return q
-        pin.loadReferenceConfigurations(model, str(urdf.with_suffix(".srdf")), False)
-        return np.array(model.referenceConfigurations[angles])
-    for name, angle in angles.items():
-        q[model.joints[model.getJointId(name)].idx_q] = angle
-    return q
 
 
 def translation(position: Point) -> Matrix:
@@ -132,9 +113,7 @@ def render(
         with sync_playwright() as playwright:
             browser = playwright.chromium.launch(executable_path=CHROMIUM, args=FLAGS)
             width, height = size
-            page = browser.new_page(
-                viewport={"width": width, "height": height}, device_scale_factor=scale
-            )
+            page = browser.new_page(viewport={"width": width, "height": height}, device_scale_factor=scale)
             page.goto(html.as_uri(), timeout=600_000)
             page.wait_for_function("document.title != ''", timeout=600_000)
             if page.title() != "drawn":
@@ -161,7 +140,7 @@ def _meshes(scene: Scene) -> dict[str, object]:
 
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("robot", help="a name in urdf/, or a path")
+    parser.add_argument("robot", help="a name of the catalogue, or a path")
     parser.add_argument("--pose", default="", help="a named pose of the SRDF")
     parser.add_argument("--angles", type=json.loads, help='JSON, such as {"elbow": 30}')
     parser.add_argument("--deg", action="store_true", help="the angles are in degrees")
@@ -173,11 +152,14 @@ def main() -> None:
     parser.add_argument("--frames", type=int, default=48, help="more are smoother and slower")
     parser.add_argument("--scale", type=float, default=1.0, help="device pixels per pixel")
     arguments = parser.parse_args()
-    angles = arguments.angles or arguments.pose
-    if arguments.deg and arguments.angles:
-        angles = {name: np.deg2rad(angle) for name, angle in angles.items()}
+    robot = pinik.load(arguments.robot)
+    if arguments.angles:
+        unit = np.pi / 180 if arguments.deg else 1.0
+        q = robot.configuration({name: unit * angle for name, angle in arguments.angles.items()})
+    else:
+        q = robot.poses[arguments.pose] if arguments.pose else robot.neutral()
     scene = Scene()
-    scene.add_robot(find(arguments.robot), angles)
+    scene.add_robot(robot, q)
     for position in arguments.ball:
         scene.add_ball(position)
     render(

@@ -62,7 +62,8 @@ def as_unit_vector(value: ArrayLike, what: str) -> Array:
 def as_rotation(value: ArrayLike, what: str) -> Array:
     """`value` as a rotation matrix (3, 3); InputError unless it is orthonormal to 1e-6 and right-handed."""
     matrix = as_array(value, (3, 3), what, "a rotation matrix")
-    if np.abs(matrix @ matrix.T - np.eye(3)).max() > 1e-6 or np.linalg.det(matrix) < 0.0:
+    small = np.abs(matrix).max() < 2.0  # else the product could overflow
+    if not small or np.abs(matrix @ matrix.T - np.eye(3)).max() > 1e-6 or np.linalg.det(matrix) < 0.0:
         raise InputError(f"{what} is a rotation matrix (orthonormal, determinant +1); got {matrix.tolist()}")
     left, _, right = np.linalg.svd(matrix)
     return np.array(left @ right)

@@ -8,19 +8,19 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from xml.etree import ElementTree
 
 import numpy as np
+import pinocchio
 import trimesh
 from numpy.typing import NDArray
-from scipy.sparse import coo_matrix
-from scipy.sparse.csgraph import connected_components
 
 from .packages import resolve
+from .xml_reader import Element, parse
 
 __all__ = ["Color", "Shape", "load_shapes"]
 
 Color = tuple[float, float, float, float]
+Part = tuple[trimesh.Trimesh, Color | None]
 
 GREY: Color = (0.7, 0.7, 0.7, 1.0)
 CREASE = np.deg2rad(40.0)  # sharper edges stay edges when a mesh brings no normals
@@ -57,89 +57,95 @@ def load_shapes(
     Returns:
         The shapes, in the order of the file, and a sentence about each one that could not be read.
     """
-    text, path = _read(urdf_path_or_text)
-    robot = ElementTree.fromstring(text)
+    document, path = _document(urdf_path_or_text)
+    robot = parse(document)
     named = {
-        material.get("name", ""): color
-        for material in robot.iter("material")
-        if (color := _material_color(material)) is not None
+        material.attributes.get("name", ""): color
+        for material in robot.walk()
+        if material.tag == "material" and (color := _material_color(material)) is not None
     }
     shapes: list[Shape] = []
     warnings: list[str] = []
-    files: dict[str, list[tuple[trimesh.Trimesh, Color | None]]] = {}
-    for link in robot.findall("link"):
-        link_name = link.get("name", "")
-        for index, visual in enumerate(link.findall("visual")):
+    files: dict[str, list[Part]] = {}
+    for link in robot.named("link"):
+        link_name = link.attributes["name"]
+        for index, visual in enumerate(link.named("visual")):
             try:
+                placement, given = _origin(visual), _visual_color(visual, named)
                 parts = _parts(visual, path, package_dirs, files)
             except Exception as fault:  # a shape is never worth an error, whatever its file makes trimesh raise
                 warnings.append(f"link '{link_name}': a shape is left out: {fault}")
                 continue
-            given = _visual_color(visual, named)
             for part, (mesh, own) in enumerate(parts):
                 name = f"{link_name}/{index}" + (f"/{part}" if len(parts) > 1 else "")
-                shapes.append(Shape(link_name, name, _origin(visual), mesh, given or own or GREY))
+                shapes.append(Shape(link_name, name, placement, mesh, given or own or GREY))
     return shapes, warnings
 
 
-def _read(urdf_path_or_text: str | Path) -> tuple[str | bytes, Path | None]:
+def _document(urdf_path_or_text: str | Path) -> tuple[bytes, Path | None]:
     if isinstance(urdf_path_or_text, str) and urdf_path_or_text.lstrip().startswith("<"):
-        return urdf_path_or_text, None
+        return urdf_path_or_text.encode(), None
     path = Path(urdf_path_or_text)
     return path.read_bytes(), path
+
+
+def _child(element: Element, tag: str) -> Element | None:
+    return next(iter(element.named(tag)), None)
 
 
 def _numbers(text: str) -> NDArray[np.float64]:
     return np.array([float(word) for word in text.split()])
 
 
-def _origin(visual: ElementTree.Element) -> NDArray[np.float64]:
-    origin = visual.find("origin")
+def _origin(visual: Element) -> NDArray[np.float64]:
+    origin = _child(visual, "origin")
     if origin is None:
         return np.eye(4)
-    roll, pitch, yaw = _numbers(origin.get("rpy", "0 0 0"))
-    placement: NDArray[np.float64] = trimesh.transformations.euler_matrix(roll, pitch, yaw, "sxyz")
-    placement[:3, 3] = _numbers(origin.get("xyz", "0 0 0"))
+    placement = np.eye(4)
+    placement[:3, :3] = pinocchio.rpy.rpyToMatrix(_numbers(origin.attributes.get("rpy", "0 0 0")))
+    placement[:3, 3] = _numbers(origin.attributes.get("xyz", "0 0 0"))
     return placement
 
 
-def _material_color(material: ElementTree.Element) -> Color | None:
-    color = material.find("color")
-    if color is None or "rgba" not in color.attrib:
+def _material_color(material: Element) -> Color | None:
+    color = _child(material, "color")
+    if color is None or "rgba" not in color.attributes:
         return None
-    r, g, b, a = _numbers(color.attrib["rgba"])
+    r, g, b, a = _numbers(color.attributes["rgba"])
     return (float(r), float(g), float(b), float(a))
 
 
-def _visual_color(visual: ElementTree.Element, named: dict[str, Color]) -> Color | None:
-    material = visual.find("material")
+def _visual_color(visual: Element, named: dict[str, Color]) -> Color | None:
+    material = _child(visual, "material")
     if material is None:
         return None
-    return _material_color(material) or named.get(material.get("name", ""))
+    return _material_color(material) or named.get(material.attributes.get("name", ""))
 
 
 def _parts(
-    visual: ElementTree.Element,
+    visual: Element,
     urdf_path: Path | None,
     package_dirs: Sequence[str | Path],
-    files: dict[str, list[tuple[trimesh.Trimesh, Color | None]]],
-) -> list[tuple[trimesh.Trimesh, Color | None]]:
+    files: dict[str, list[Part]],
+) -> list[Part]:
     """The meshes of one visual element, each with its own colour if it has one."""
-    for element in visual.iterfind("geometry/*"):
+    geometry = _child(visual, "geometry")
+    for element in geometry.children if geometry else ():
+        given = element.attributes
         match element.tag:
             case "box":
-                return [(_creased(trimesh.creation.box(_numbers(element.attrib["size"]))), None)]
+                return [(_creased(trimesh.creation.box(_numbers(given["size"]))), None)]
             case "sphere":
-                return [(trimesh.creation.icosphere(3, float(element.attrib["radius"])), None)]
+                return [(trimesh.creation.icosphere(3, float(given["radius"])), None)]
             case "cylinder" | "capsule":
-                radius, length = float(element.attrib["radius"]), float(element.attrib["length"])
+                radius, length = float(given["radius"]), float(given["length"])
                 make = trimesh.creation.cylinder if element.tag == "cylinder" else _capsule
                 return [(_creased(make(radius, length)), None)]
             case "mesh":
-                address = element.attrib["filename"]
+                address = given["filename"]
                 if address not in files:
                     files[address] = _load_file(address, urdf_path, package_dirs)
-                scale = _numbers(element.get("scale", "1 1 1"))
+                scale = _numbers(given.get("scale", "1 1 1"))
                 return [(_scaled(mesh, scale), color) for mesh, color in files[address]]
     raise ValueError("it has no geometry that is known here (box, sphere, cylinder, capsule, mesh)")
 
@@ -157,20 +163,18 @@ def _scaled(mesh: trimesh.Trimesh, scale: NDArray[np.float64]) -> trimesh.Trimes
     return scaled
 
 
-def _load_file(
-    address: str, urdf_path: Path | None, package_dirs: Sequence[str | Path]
-) -> list[tuple[trimesh.Trimesh, Color | None]]:
+def _load_file(address: str, urdf_path: Path | None, package_dirs: Sequence[str | Path]) -> list[Part]:
     """A mesh file as one mesh for each colour in it, in its own frame [m]."""
     path = resolve(address, urdf_path=urdf_path, package_dirs=package_dirs)
     if path is None:
         raise FileNotFoundError(f"there is no mesh '{address}'")
     scene = trimesh.load_scene(path)
     units = scene.metadata.get("units", "meters")  # COLLADA names them; an STL or OBJ is taken as it is
-    if path.suffix.lower() == ".dae" and units != "meters":
-        scene.apply_scale(trimesh.units.unit_conversion(units, "meters"))
+    in_metres = trimesh.units.unit_conversion(units, "meters") if path.suffix.lower() == ".dae" else 1.0
     by_color: dict[Color | None, list[trimesh.Trimesh]] = {}
     for mesh in scene.dump():
         if isinstance(mesh, trimesh.Trimesh) and len(mesh.faces):
+            mesh.apply_transform(np.diag([in_metres, in_metres, in_metres, 1.0]))
             by_color.setdefault(_own_color(mesh), []).append(mesh)
     if not by_color:
         raise ValueError(f"'{address}' holds no triangles")
@@ -183,7 +187,7 @@ def _own_color(mesh: trimesh.Trimesh) -> Color | None:
     visual = mesh.visual
     if isinstance(visual, trimesh.visual.TextureVisuals) and visual.material is not None:
         rgba = np.asarray(visual.material.main_color, dtype=float) / 255.0
-    elif visual.defined:
+    elif isinstance(visual, trimesh.visual.ColorVisuals) and visual.defined:
         rgba = np.asarray(visual.main_color, dtype=float) / 255.0
     else:
         return None
@@ -197,24 +201,22 @@ def _brings_normals(path: Path) -> bool:
 
 
 def _joined(meshes: Iterable[trimesh.Trimesh], *, keep_normals: bool) -> trimesh.Trimesh:
-    bare = [
-        trimesh.Trimesh(
-            mesh.vertices,
-            mesh.faces,
-            vertex_normals=mesh.vertex_normals if keep_normals else None,
-            process=not keep_normals,
-        )
-        for mesh in meshes
-    ]
-    joined: trimesh.Trimesh = bare[0] if len(bare) == 1 else trimesh.util.concatenate(bare)
-    return joined if keep_normals else _creased(joined)
+    vertices, faces, normals, count = [], [], [], 0
+    for mesh in meshes:
+        vertices.append(mesh.vertices)
+        faces.append(mesh.faces + count)
+        normals.append(mesh.vertex_normals)
+        count += len(mesh.vertices)
+    if keep_normals:
+        return trimesh.Trimesh(np.vstack(vertices), np.vstack(faces), vertex_normals=np.vstack(normals), process=False)
+    return _creased(trimesh.Trimesh(np.vstack(vertices), np.vstack(faces)))
 
 
 def _creased(mesh: trimesh.Trimesh) -> trimesh.Trimesh:
     """The mesh with its vertices split along sharp edges, so that smooth normals leave these sharp."""
     smooth = mesh.face_adjacency[mesh.face_adjacency_angles < CREASE]
-    graph = coo_matrix((np.ones(len(smooth)), smooth.T), shape=(len(mesh.faces),) * 2)
-    patches, patch = connected_components(graph, directed=False)
+    patch = trimesh.graph.connected_component_labels(smooth, len(mesh.faces))  # type: ignore[no-untyped-call]
+    patches = int(patch.max()) + 1
     corners = mesh.faces.ravel() * patches + np.repeat(patch, 3)
     kept, faces = np.unique(corners, return_inverse=True)
     return trimesh.Trimesh(mesh.vertices[kept // patches], faces.reshape(-1, 3), process=False)

@@ -54,6 +54,7 @@ class Linearization(NamedTuple):
         e: Weighted residual (m,).
         J: Weighted Jacobian (m, nv), zero in the columns of locked joints.
         errors: Each target's error, unweighted.
+        residual: Norm of e, before anything shortens it.
         free: (nv,) whether the solver may move a tangent coordinate; J is zero in the columns of the others.
     """
 
@@ -61,6 +62,7 @@ class Linearization(NamedTuple):
     e: Array
     J: Array
     errors: list[TargetError]
+    residual: float
     free: NDArray[np.bool_]
 
 
@@ -161,7 +163,7 @@ class Kinematics:
             errors = [part[2] for part in parts]
         if self._columns_to_clear is not None:
             J[:, self._columns_to_clear] = 0.0
-        return Linearization(q, e, J, errors, self.free)
+        return Linearization(q, e, J, errors, math.sqrt(e.dot(e)), self.free)
 
     def shortened(self, e: Array, longest: float) -> Array:
         """The residual with each position part cut to `longest` [m], its direction kept: ClampMag of the thesis."""

@@ -30,8 +30,8 @@ Array = NDArray[np.float64]
 
 # Restarts that a target proved unreachable still gets: the nearest point has valleys too.
 _RESTARTS_WHEN_UNREACHABLE = 4
-# How patiently the best of several failed attempts is followed to its end.
-_POLISH = Patience(20, 1e-4)
+# How patiently a run is followed to its end when no other attempt waits.
+_TO_THE_END = Patience(50, 1e-4)
 
 
 def iterate(
@@ -69,7 +69,7 @@ def iterate(
     box = Limits.of(robot, limits)
     start = _start(robot, box, q0)
     most = made.max_iterations if max_iterations is None else _count(max_iterations, "max_iterations")
-    return _run(made, kinematics, box, start, most, Tolerance.of(tolerance), made.patience)
+    return _run(made, kinematics, box, start, most, Tolerance.of(tolerance), _TO_THE_END)
 
 
 def solve(
@@ -182,8 +182,7 @@ def _run(
     unlimited = judge_limits_at_end and limits.enabled and isinstance(solver, JacobianSolver)
     box = Limits.of(limits.robot, False) if unlimited else limits
     at = kinematics.linearize(start)
-    residual = math.sqrt(at.e.dot(at.e))
-    milestone, since = residual, 0
+    milestone, since = at.residual, 0
     iteration, updates = 0, 0
     while True:
         status = None
@@ -194,18 +193,17 @@ def _run(
                 q = limits.wrap(at.q)
                 box = limits
                 at = kinematics.linearize(limits.clip(q))
-                residual = math.sqrt(at.e.dot(at.e))
-                milestone, since = residual, 0
+                milestone, since = at.residual, 0
                 if all([error.within(tolerance) for error in at.errors]):
                     status = Status.CONVERGED
         if status is None:
-            if residual < milestone * (1.0 - patience.progress):
-                milestone, since = residual, 0
+            if at.residual < milestone * (1.0 - patience.progress):
+                milestone, since = at.residual, 0
             elif since >= patience.iterations:
                 status = Status.STALLED
             if status is None and iteration >= max_iterations:
                 status = Status.MAX_ITERATIONS
-        moved = yield State(at.q, iteration, updates, tuple(at.errors), residual, attempt, status)
+        moved = yield State(at.q, iteration, updates, tuple(at.errors), at.residual, attempt, status)
         if moved is not None:
             kinematics.retarget([moved] if isinstance(moved, Target) else moved)
             at = kinematics.linearize(at.q)
@@ -214,7 +212,6 @@ def _run(
             return
         q, updated = _advance(solver, kinematics, box, at, tolerance)
         at = kinematics.linearize(q)
-        residual = math.sqrt(at.e.dot(at.e))
         iteration, updates, since = iteration + 1, updates + updated, since + 1
 
 
@@ -298,15 +295,16 @@ class _Attempts:
             proof = None
         restarts = self.restarts if proof is None else min(self.restarts, _RESTARTS_WHEN_UNREACHABLE)
         restarts = restarts if self.kinematics.free.any() else 0
+        patience = self.solver.patience if restarts else _TO_THE_END
         status, attempt = Status.STALLED, 0
         for attempt in range(restarts + 1):
             start = self.start if attempt == 0 else self._drawn_start(attempt)
-            status = self._attempt(start, attempt, self.solver.patience, judge_limits_at_end=proof is None)
+            status = self._attempt(start, attempt, patience, judge_limits_at_end=proof is None)
             if status in (Status.CONVERGED, Status.TIME_LIMIT):
                 break
         assert self.best is not None
         if attempt > 0 and status not in (Status.CONVERGED, Status.TIME_LIMIT):
-            status = self._attempt(self.best.q, attempt, _POLISH, judge_limits_at_end=False)
+            status = self._attempt(self.best.q, attempt, _TO_THE_END, judge_limits_at_end=False)
         return self._judged(status, proof, attempt, began)
 
     def _drawn_start(self, attempt: int) -> Array:
@@ -348,9 +346,8 @@ class _Attempts:
     def _consider_inside(self, state: State) -> None:
         """Take a state outside the limits for what it is worth inside."""
         at = self.kinematics.linearize(self.limits.clip(self.limits.wrap(state.q)))
-        residual = math.sqrt(at.e.dot(at.e))
-        if self.best is None or residual < self.best.residual:
-            self.best = state._replace(q=at.q, errors=tuple(at.errors), residual=residual)
+        if self.best is None or at.residual < self.best.residual:
+            self.best = state._replace(q=at.q, errors=tuple(at.errors), residual=at.residual)
 
     def _judged(self, status: Status, proof: Shortfall | None, attempt: int, began: float) -> Solution:
         assert self.best is not None
@@ -365,7 +362,7 @@ class _Attempts:
             robot=robot,
             targets=targets,
             status=status,
-            message=explain(status, targets, errors, self.tolerance, active, proof, self.kinematics.free.any()),
+            message=explain(status, targets, errors, self.tolerance, active, proof, bool(self.kinematics.free.any())),
             q=q,
             errors=errors,
             iterations=self.iterations,

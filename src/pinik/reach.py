@@ -17,6 +17,8 @@ __all__ = ["Shortfall", "shortfall"]
 
 Array = NDArray[np.float64]
 
+_ROUNDING = 1e-12  # of the reach: what rounding in the placements of a chain may amount to
+
 
 class Shortfall(NamedTuple):
     """A proof that a target cannot be reached.
@@ -72,9 +74,10 @@ def _term_shortfall(index: int, term: TargetTerm, model: pinocchio.Model, limits
     if not math.isfinite(reach):
         return None
     hole = max(part.low - (reach - part.high) for part in parts)
-    if distance > reach:
+    slack = _ROUNDING * reach
+    if distance > reach + slack:
         return Shortfall(index, distance - reach, reach, False)
-    if distance < hole:
+    if distance < hole - slack:
         return Shortfall(index, hole - distance, hole, True)
     return None
 
@@ -122,16 +125,21 @@ def _straight(offset: pinocchio.SE3, joint: Joint | None, limits: Limits) -> _Ra
 def _bent(offset: pinocchio.SE3, joint: Joint, following: Array, limits: Limits) -> _Range:
     """Distance over a hinge: from the origin before it to the origin after it, which turns about its axis."""
     axis = np.array(joint.axis)
-    u = offset.rotation.T @ offset.translation
-    cosine = float(u @ following - (u @ axis) * (following @ axis))
-    sine = float(u @ np.cross(axis, following))
-    fixed = float(u @ u + following @ following + 2.0 * (u @ axis) * (following @ axis))
+    preceding = offset.rotation.T @ offset.translation
+    along = float((preceding + following) @ axis)
+    u, v = preceding - (preceding @ axis) * axis, following - (following @ axis) * axis
+    r, s = float(np.linalg.norm(u)), float(np.linalg.norm(v))
+    straight = math.atan2(float(u @ np.cross(axis, v)), float(u @ v))  # the angle at which the parts are in line
+
+    def distance(angle: float) -> float:
+        # r² + s² + 2rs·cos, written so that nothing cancels where the parts fold back onto each other
+        return math.hypot(along, r - s, 2.0 * math.sqrt(r * s) * math.cos(0.5 * (angle - straight)))
+
     low, high = _joint_range(joint, limits)
-    amplitude, phase = math.hypot(cosine, sine), math.atan2(sine, cosine)
-    ends = [amplitude * math.cos(angle - phase) for angle in (low, high) if math.isfinite(angle)]
-    largest = amplitude if _meets(phase, low, high) else max(ends)
-    least = -amplitude if _meets(phase + math.pi, low, high) else min(ends)
-    return _Range(math.sqrt(max(fixed + 2.0 * least, 0.0)), math.sqrt(max(fixed + 2.0 * largest, 0.0)))
+    ends = [distance(angle) for angle in (low, high) if math.isfinite(angle)]
+    least = distance(straight + math.pi) if _meets(straight + math.pi, low, high) else min(ends)
+    largest = distance(straight) if _meets(straight, low, high) else max(ends)
+    return _Range(least, largest)
 
 
 def _meets(angle: float, low: float, high: float) -> bool:

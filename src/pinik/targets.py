@@ -131,7 +131,9 @@ class Target:
             position, rotation = pose.translation, pose.rotation
         if position is None and not given:
             raise InputError(f"{what}nothing is asked for; give position=, an orientation, or placement=")
-        if weight is not None and as_finite_number(weight, f"{what}weight") <= 0.0:
+        if relative_to is not None and not isinstance(relative_to, str):
+            raise InputError(f"{what}relative_to is a frame's name; got {relative_to!r}")
+        if as_finite_number(weight, f"{what}weight") <= 0.0:
             raise InputError(
                 f"{what}weight is a positive number; got {weight!r}; leave the target out to switch it off"
             )
@@ -207,10 +209,11 @@ def _rotation(
         assert quat_wxyz is not None
         w, x, y, z = as_vector(quat_wxyz, 4, f"{what}quat_wxyz")
     quaternion = np.array([x, y, z, w])
-    length = np.linalg.norm(quaternion)
-    if length < 1e-9:
-        raise InputError(f"{what}a quaternion has a length; got all zeros")
-    return np.array(pinocchio.Quaternion(quaternion / length).toRotationMatrix())
+    largest = np.abs(quaternion).max()
+    if largest < 1e-9:
+        raise InputError(f"{what}a quaternion has a length; got {quaternion.tolist()} (x, y, z, w)")
+    quaternion = quaternion / largest  # first, so that no square overflows
+    return np.array(pinocchio.Quaternion(quaternion / np.linalg.norm(quaternion)).toRotationMatrix())
 
 
 def _axis(axis: str | ArrayLike, what: str) -> Array:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import inspect
 import json
 import re
 from collections.abc import Iterator
@@ -9,6 +10,8 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+
+import pinik
 
 DOCUMENT = Path(__file__).parents[2] / "docs" / "json.md"
 PLACEHOLDERS = {
@@ -37,8 +40,8 @@ RUNS = {
 
 
 def documented(command: str) -> set[str]:
-    """The fields that the document lists for a command."""
-    section = re.search(rf"^## `pinik {command}`$(.*?)(?=^## |\Z)", DOCUMENT.read_text(), re.MULTILINE | re.DOTALL)
+    """The fields that the document lists under a heading."""
+    section = re.search(rf"^## {command}$(.*?)(?=^## |\Z)", DOCUMENT.read_text(), re.MULTILINE | re.DOTALL)
     assert section
     return set(re.findall(r"^\| `([^`]+)` \|", section[1], re.MULTILINE))
 
@@ -63,4 +66,9 @@ def test_every_field_is_documented_and_every_documented_field_exists(run, comman
         answer = run(*arguments, stdin=json.dumps(TARGETS)).json
         assert answer["schema"] == 1
         found |= set(fields(answer))
-    assert found == documented(command)
+    assert found == documented(f"`pinik {command}`")
+
+
+def test_every_keyword_of_a_target_is_documented():
+    keywords = set(inspect.signature(pinik.Target).parameters)
+    assert documented("What goes in: `pinik solve --targets`") == keywords

@@ -79,14 +79,14 @@ def test_a_full_disk_is_said_in_words(environment):
 
 
 def test_an_interrupt_is_one_word_and_status_130(environment):
-    never = ("--position", "0.3", "0.1", "0.8", "--tolerance", "1e-300", "1e-300", "--restarts", "1000000000")
+    locked = [name for i in range(2, 7) for axis in "xz" for name in ("--lock", f"bone{i}_{axis}")]
+    endless = [*SOLVE, "0.8", *locked, "--restarts", "1000000000"]
+    script = f"import sys, pinik.cli\nprint('ready', flush=True)\nsys.exit(pinik.cli.main({endless!r}))"
     process = subprocess.Popen(
-        [sys.executable, "-m", "pinik", "solve", "arm", "--frame", "tip", *never, "--method", "jt"],
-        stdout=subprocess.PIPE,
-        stderr=subprocess.PIPE,
-        env=environment,
+        [sys.executable, "-c", script], stdout=subprocess.PIPE, stderr=subprocess.PIPE, env=environment
     )
-    time.sleep(2.5)
+    assert process.stdout.readline() == b"ready\n"
+    time.sleep(0.5)
     process.send_signal(signal.SIGINT)
     out, err = process.communicate(timeout=30)
     assert (process.returncode, out, err) == (130, b"", b"interrupted\n")

@@ -1,7 +1,7 @@
 """The thesis's robot arm: five segments, the gripper and the end effector; each of the first six swings about x and z.
 
-A bone lies along its own y, as in Blender; the base turns the bones' axes so that the arm stands up along the world's z:
-bone y is up, bone z forward (world x), bone x to the left (world y). `bone*_x` thus bends the arm forward.
+A bone lies along its own y, as in Blender; the base turns the bones' axes so that the arm stands up along the
+world's z: bone y is up, bone z forward (world x), bone x to the left (world y). `bone*_x` thus bends the arm forward.
 """
 
 from __future__ import annotations

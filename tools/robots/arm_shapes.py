@@ -1,4 +1,4 @@
-"""The arm's looks: cardan joints between lathed segments, a base and a gripper. Everything in the bones' axes, y along them."""
+"""The arm's looks: cardan joints between lathed segments, a base, a gripper; in the bones' axes."""
 
 from __future__ import annotations
 
@@ -53,7 +53,6 @@ def segment(length: float, radius: float, next_radius: float) -> Surfaces:
     """An arm's segment from its own joint's fork (about z) to the fork that holds the next (about x)."""
     start, end = FOOT * radius, length - FOOT * next_radius
     wide, narrow = FLANGE * radius, FLANGE * next_radius
-    middle = (start + end) / 2
     body = lathe([
         (0, start), (0.90 * wide, start), (0.90 * wide, start + 0.20 * radius), (0.97 * wide, start + 0.26 * radius),
         (0.97 * narrow, end - 0.26 * next_radius), (0.90 * narrow, end - 0.20 * next_radius), (0.90 * narrow, end),
@@ -76,7 +75,11 @@ def base(height: float, radius: float) -> Surfaces:
     """The foot on the ground (its middle at the origin, y up) and the first fork."""
     foot = lathe([(0, 0), (0.155, 0), (0.155, 0.012), (0.150, 0.017), (0, 0.017)], 36).facing("y")
     top = height - FOOT * radius
-    cone = lathe([(0, 0.014), (0.118, 0.014), (0.108, 0.021), (FLANGE * radius + 0.002, top), (FLANGE * radius - 0.002, top + 0.004), (0, top + 0.004)], 36)
+    rim = FLANGE * radius
+    cone = lathe(
+        [(0, 0.014), (0.118, 0.014), (0.108, 0.021), (rim + 0.002, top), (rim - 0.002, top + 0.004), (0, top + 0.004)],
+        36,
+    )
     bolts = [
         lathe([(0, 0.010), (0.010, 0.010), (0.010, 0.022), (0.008, 0.024), (0, 0.024)], 6).facing("y").moved(
             (0.134 * math.sin(turn), 0, 0.134 * math.cos(turn))
@@ -99,8 +102,8 @@ def gripper(length: float, radius: float) -> Surfaces:
     bottom, knee, top = root + 0.036, root + 0.066, length + 0.008
     outline = [(0.030, bottom), (0.054, bottom), (0.054, knee), (0.026, top), (0.014, top), (0.014, top - 0.030)]
     finger = plate(outline, -0.011, 0.011, 0.0025)
-    pad = plate([(0.010, top - 0.034), (0.016, top - 0.034), (0.016, top - 0.004), (0.010, top - 0.004)], -0.009, 0.009, 0.0015)
-    carriage = plate([(0.024, root + 0.038), (0.058, root + 0.038), (0.058, root + 0.052), (0.024, root + 0.052)], -0.016, 0.016, 0.003)
+    pad = plate(_rectangle((0.010, top - 0.034), (0.016, top - 0.004)), -0.009, 0.009, 0.0015)
+    carriage = plate(_rectangle((0.024, root + 0.038), (0.058, root + 0.052)), -0.016, 0.016, 0.003)
     return {
         "silver": joined([fork("z", 1, radius), wrist]),
         "blue": palm,
@@ -112,6 +115,10 @@ def gripper(length: float, radius: float) -> Surfaces:
 def _other_side(shape: Mesh) -> Mesh:
     """Mirrored in x."""
     return Mesh(shape.vertices * (-1.0, 1.0, 1.0), shape.faces[:, ::-1])
+
+
+def _rectangle(low: tuple[float, float], high: tuple[float, float]) -> list[tuple[float, float]]:
+    return [low, (high[0], low[1]), high, (low[0], high[1])]
 
 
 def _rounded(half_x: float, half_z: float, corner: float) -> list[tuple[float, float]]:

@@ -74,9 +74,7 @@ class Description:
         self.links[name] = list(visuals)
 
     def fixed(self, parent: str, child: str, xyz: Vector = ZERO, rpy: Vector = ZERO) -> None:
-        self.joints.append(
-            f'  <joint name="{child}_fixed" type="fixed">\n{_ends(parent, child, xyz, rpy)}  </joint>'
-        )
+        self.joints.append(f'  <joint name="{child}_fixed" type="fixed">\n{_ends(parent, child, xyz, rpy)}  </joint>')
 
     def revolute(
         self,
@@ -134,8 +132,7 @@ class Description:
         for name, angles in self.poses.items():
             lines.append(f'  <group_state name="{name}" group="all">')
             lines += [
-                f'    <joint name="{joint}" value="{number(round(angle, 6))}"/>'
-                for joint, angle in angles.items()
+                f'    <joint name="{joint}" value="{number(round(angle, 6))}"/>' for joint, angle in angles.items()
             ]
             lines.append("  </group_state>")
         return "\n".join([*lines, "</robot>"]) + "\n"

@@ -1,7 +1,7 @@
 """A lion: pelvis, spine, chest, neck, head and jaw, a tail of six segments, four legs of six hinges.
 
 With every angle at zero it stands, and every frame but the tail's is aligned with the world: x forward, y left, z up.
-A pitch swings about y, a yaw about z, a roll about x, on both sides alike; the limits of the right side mirror the left's.
+A pitch swings about y, a yaw about z, a roll about x, on both sides alike; the right side's limits mirror the left's.
 """
 
 from __future__ import annotations
@@ -102,9 +102,7 @@ def _leg(robot: Description, side: str, end: str) -> None:
     for point, link, hinges in segments:
         here = _mirror(points[point], side)
         joint = f"{side}_{end}_toes_pitch" if point == "toes" else f"{side}_{point}"
-        _articulate(
-            robot, parent, f"{side}_{link}", joint, hinges, _from(at, here), mirrored=side == "right"
-        )
+        _articulate(robot, parent, f"{side}_{link}", joint, hinges, _from(at, here), mirrored=side == "right")
         parent, at = f"{side}_{link}", here
     robot.link(f"{side}_{end}_paw")
     robot.fixed(parent, f"{side}_{end}_paw", xyz=_from(at, _mirror(points["paw"], side)))

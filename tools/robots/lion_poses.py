@@ -1,4 +1,4 @@
-"""The lion's named poses [deg]; joints left out are at zero. In `relaxed`, `reach` and `roar` the standing paws share one plane."""
+"""The lion's named poses [deg]; joints left out are at zero. The paws it stands on share one plane."""
 
 from __future__ import annotations
 

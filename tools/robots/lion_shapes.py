@@ -8,8 +8,26 @@ from collections.abc import Callable, Sequence
 import numpy as np
 
 from .lion_anatomy import CHEST, FORE_LEG, HEAD, HEAD_SIZE, HIND_LEG, NECK, SPINE, TAIL_SEGMENT
-from .sculpt import Field, Mesh, Point, Solid, ball, blend, carve, ellipsoid, half_space, joined, limb, lock, mesh
-from .sculpt import bar, outside, outward, split, surface_point
+from .sculpt import (
+    Field,
+    Mesh,
+    Point,
+    Solid,
+    ball,
+    bar,
+    blend,
+    carve,
+    ellipsoid,
+    half_space,
+    joined,
+    limb,
+    lock,
+    mesh,
+    outside,
+    outward,
+    split,
+    surface_point,
+)
 
 MATERIALS = {
     "tawny": (0.80, 0.56, 0.31),
@@ -136,10 +154,12 @@ def head() -> Surfaces:
 
 
 def _ear(s: float) -> Surfaces:
-    shell = ellipsoid((1.200, s * 0.118, 1.226), (0.027, 0.044, 0.050), (s * -28, -8, s * 20))
-    hollow = ellipsoid((1.229, s * 0.124, 1.229), (0.028, 0.030, 0.035), (s * -28, -8, s * 20))
+    turn = (s * -28, -8, s * 20)
+    shell = ellipsoid((1.200, s * 0.118, 1.226), (0.027, 0.044, 0.050), turn)
+    hollow = ellipsoid((1.229, s * 0.124, 1.229), (0.028, 0.030, 0.035), turn)
     shape = mesh(carve(shell, outside(hollow), width=0.008), 0.0105)
-    return painted(shape, "tawny", dark_mane=ellipsoid((1.227, s * 0.124, 1.229), (0.030, 0.029, 0.034), (s * -28, -8, s * 20)).field)
+    inside = ellipsoid((1.227, s * 0.124, 1.229), (0.030, 0.029, 0.034), turn)
+    return painted(shape, "tawny", dark_mane=inside.field)
 
 
 def _fang(root: Point, along: Point, radius: float) -> Mesh:
@@ -247,20 +267,20 @@ def _above_ground(solid: Solid) -> Solid:
 def _paw(at: Point, heel: Point, size: float) -> Surfaces:
     """A paw around its frame `at`, from the joint `heel`: a pad, four toes, their claws."""
     x, y, _ = at
+
+    def point(forward: float, left: float, up: float) -> Point:
+        return (x + forward * size, y + left * size, up * size)
+
     toes = [(0.052, -0.044), (0.072, -0.016), (0.072, 0.016), (0.052, 0.044)]
     pad = blend(
         0.014 * size,
         ball(heel, 0.041 * size),
         ellipsoid((x + 0.005, y, 0.036 * size), (0.068 * size, 0.058 * size, 0.040 * size)),
-        *(
-            ellipsoid((x + tx * size, y + ty * size, 0.027 * size), (0.040 * size, 0.0205 * size, 0.030 * size), (0, 14, 0))
-            for tx, ty in toes
-        ),
+        *(ellipsoid(point(tx, ty, 0.027), (0.040 * size, 0.0205 * size, 0.030 * size), (0, 14, 0)) for tx, ty in toes),
     )
     claws = [
         lock(
-            [(x + (tx + 0.030) * size, y + ty * size, 0.022 * size), (x + (tx + 0.045) * size, y + ty * size, 0.020 * size),
-             (x + (tx + 0.053) * size, y + ty * size, 0.008 * size)],
+            [point(tx + 0.030, ty, 0.022), point(tx + 0.045, ty, 0.020), point(tx + 0.053, ty, 0.008)],
             [0.007 * size, 0.006 * size, 0.001], (0, 1, 0), 0.7, 5)
         for tx, ty in toes
     ]  # fmt: skip

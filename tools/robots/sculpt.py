@@ -1,6 +1,6 @@
 """Shapes in clay: solids given by distance, blended smoothly and meshed by surface nets; and tubes, lathes, extrusions.
 
-Lengths are metres. Only +, -, *, /, sqrt, min, max and comparisons touch the arrays, so every machine makes the same mesh.
+Lengths are metres. Only +, -, *, /, sqrt, min, max and comparisons touch grids: every machine makes the same mesh.
 """
 
 from __future__ import annotations
@@ -264,9 +264,7 @@ def lock(path: Sequence[Point], widths: Sequence[float], flat: Point, thickness:
         thin = thin / math.sqrt(float((thin * thin).sum()))
         wide = np.cross(thin, forward)
         angles = [2 * math.pi * k / sides for k in range(sides)]
-        rings.append(
-            [point + wide * (width * math.cos(a)) + thin * (thickness * width * math.sin(a)) for a in angles]
-        )
+        rings.append([point + wide * (width * math.cos(a)) + thin * (thickness * width * math.sin(a)) for a in angles])
     return _skin(rings)
 
 

@@ -31,21 +31,28 @@ def _beam(length: float, radius: float, end_radius: float, bottom: float, top: f
 
 
 def _disc(radius: float, bottom: float, top: float, bevel: float = 0.004) -> Mesh:
+    inner = radius - bevel
     return lathe(
-        [(0, bottom), (radius - bevel, bottom), (radius, bottom + bevel), (radius, top - bevel), (radius - bevel, top), (0, top)]
+        [(0, bottom), (inner, bottom), (radius, bottom + bevel), (radius, top - bevel), (inner, top), (0, top)]
     )
 
 
 def _shapes() -> dict[str, dict[str, Mesh]]:
     """For each link its surfaces by material."""
-    foot = lathe([(0, 0), (0.115, 0), (0.115, 0.010), (0.110, 0.015), (0.070, 0.018), (0.052, 0.030), (0.050, LOW), (0, LOW)], 36)
+    foot = lathe(
+        [(0, 0), (0.115, 0), (0.115, 0.010), (0.110, 0.015), (0.070, 0.018), (0.052, 0.030), (0.050, LOW), (0, LOW)]
+    )
     pen = lathe([(0, 0), (0.0015, 0), (0.006, 0.020), (0.006, 0.026), (0, 0.026)], 20)
-    holder = lathe([(0, 0.024), (0.009, 0.024), (0.013, 0.034), (0.013, HIGH + 0.030), (0.010, HIGH + 0.034), (0, HIGH + 0.034)], 18)
+    top = HIGH + 0.030
+    holder = lathe(
+        [(0, 0.024), (0.009, 0.024), (0.013, 0.034), (0.013, top), (0.010, top + 0.004), (0, top + 0.004)], 18
+    )
+    spacer = _disc(0.042, MIDDLE - 0.004, MIDDLE + 0.004)
     return {
         "base": {"graphite": foot},
         "link1": {
             "teal": _beam(UPPER, SHOULDER, ELBOW, LOW + 0.002, MIDDLE),
-            "graphite": joined([_disc(0.040, MIDDLE - 0.002, MIDDLE + 0.010), _disc(0.042, MIDDLE - 0.004, MIDDLE + 0.004).moved((UPPER, 0, 0))]),
+            "graphite": joined([_disc(0.040, MIDDLE - 0.002, MIDDLE + 0.010), spacer.moved((UPPER, 0, 0))]),
             "orange": _disc(0.018, MIDDLE, MIDDLE + 0.014),
         },
         "link2": {

@@ -40,7 +40,7 @@ def check(
 
 def _emit(found: Inspection) -> None:
     verdict = "loads" if found.loads else "cannot be loaded"
-    output.emit(painted_line(found.loads, f"{found.file}: {verdict}"))
+    output.emit(output.painted(f"{found.file}: {verdict}", "green" if found.loads else "red"))
     for fault in found.faults:
         output.emit("fault: " + (f"{fault.element}: " if fault.element else "") + fault.message)
     for words in found.warnings:
@@ -51,8 +51,3 @@ def _emit(found: Inspection) -> None:
         output.emit(f"mesh: {words}")
     if found.loads:
         output.emit(f"{found.links} links, {found.joints} joints, {found.meshes} meshes, {found.shapes} shapes")
-
-
-def painted_line(good: bool, text: str) -> str:
-    """The verdict in its colour."""
-    return output.painted(text, "green" if good else "red")

@@ -73,7 +73,7 @@ def solve(
         str | None,
         typer.Option(
             metavar="FILE.json",
-            help="Several targets instead, from a JSON list of objects with these names; - is stdin.",
+            help="Several targets instead: a JSON list, in metres and radians (docs/json.md); - is stdin.",
             rich_help_panel=_TARGET,
         ),
     ] = None,

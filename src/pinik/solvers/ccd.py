@@ -233,7 +233,7 @@ class _Chaser:
         return M if mover.id in self.term.frame_support else M.T
 
     def carry(self, mover: Joint, origin: Array, R: Array | None, shift: Array) -> None:
-        """Turn by R (3, 3) about `origin`, or without R shift by (3,), what the mover moves: effector, goal, or both."""
+        """Turn by R (3, 3) about `origin`, or else by `shift` (3,), what the mover moves: effector, goal, or both."""
 
         def moved(point: Array) -> Array:
             return point + shift if R is None else origin + R.dot(point - origin)

@@ -4,11 +4,15 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import eigenpy
 import numpy as np
 
 from .base import Array, JacobianSolver, Patience, parameter
+
+if TYPE_CHECKING:
+    from ..kinematics import Kinematics, Linearization
 
 __all__ = ["DampedLeastSquares"]
 
@@ -45,9 +49,9 @@ class DampedLeastSquares(JacobianSolver):
     manipulability: float = parameter(0.05, "w₀ of the manipulability rule", low=1e-9)
     factorization: str = parameter("ldlt", "how the system is solved", choices=("ldlt", "svd"))
 
-    def direction(self, J: Array, e: Array) -> Array:
-        """Jᵀ(JJᵀ + λ²I)⁻¹e."""
-        damping_squared = self.damping_squared(J, e)
+    def direction(self, J: Array, e: Array, residual: float | None = None) -> Array:
+        """Jᵀ(JJᵀ + λ²I)⁻¹e; the rules go by `residual`, ‖e‖ before D_max cut it, where that is given."""
+        damping_squared = self.damping_squared(J, math.sqrt(e.dot(e)) if residual is None else residual)
         if self.factorization == "svd":
             left, sigma, right = np.linalg.svd(J, full_matrices=False)
             return np.array((sigma / (sigma * sigma + damping_squared) * left.T.dot(e)).dot(right))
@@ -55,14 +59,18 @@ class DampedLeastSquares(JacobianSolver):
         A.ravel()[:: len(e) + 1] += damping_squared
         return np.array(J.T.dot(eigenpy.LDLT(A).solve(e)))
 
-    def damping_squared(self, J: Array, e: Array) -> float:
-        """λ² by the rule."""
+    def damping_squared(self, J: Array, residual: float) -> float:
+        """λ² by the rule, at a Jacobian and a norm of the residual."""
         squared = self.damping * self.damping
         if self.rule == "residual":
-            squared *= float(e.dot(e))
+            squared *= residual * residual
         elif self.rule == "sugihara":
-            squared += 0.5 * float(e.dot(e))
+            squared += 0.5 * residual * residual
         elif self.rule == "manipulability":
             w = math.sqrt(max(float(np.linalg.det(J.dot(J.T))), 0.0))
             squared *= max(0.0, 1.0 - w / self.manipulability) ** 2
         return squared + _SMALLEST_DAMPING_SQUARED
+
+    def step(self, at: Linearization, kinematics: Kinematics) -> Array:
+        """`direction`, damped by the whole residual also where D_max shortens it."""
+        return self.direction(at.J, at.e, at.residual)
