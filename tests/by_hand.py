@@ -67,25 +67,31 @@ def two_hinges(l1: float, l2: float, low: float = -math.pi, high: float = math.p
 
 @st.composite
 def chains(draw: st.DrawFn, kinds: Sequence[str] = ("revolute", "continuous", "prismatic", "fixed")) -> str:
-    """URDF texts of one chain from "l0" to "tip" with random places, axes, limits and mimics."""
-    number = st.floats(-1.0, 1.0, allow_subnormal=False).map(lambda x: round(x, 3))
+    """URDF texts of one chain from "l0" to "tip" with random places, axes, limits and mimics.
+
+    A follower's limits cut its leader's, and leave it the middle of its range at least.
+    """
+    number = st.floats(-1.0, 1.0).map(lambda x: round(x, 3))
     vector = st.tuples(number, number, number)
     angles = st.tuples(*[st.floats(-math.pi, math.pi).map(lambda x: round(x, 3))] * 3)
     count = draw(st.integers(1, 6))
     parts = []
-    leaders: dict[str, str] = {}
+    leaders: dict[str, tuple[str, float]] = {}
     for i in range(count):
         name, kind = f"j{i}", draw(st.sampled_from(kinds))
-        middle, half = draw(number), draw(st.floats(0.0, 3.0))
-        words = [origin(draw(vector), draw(angles))]
-        if kind not in ("fixed", "floating", "planar"):
+        words, bounds = [origin(draw(vector), draw(angles))], ""
+        if kind in ("revolute", "continuous", "prismatic"):
+            middle, half = draw(number), draw(st.floats(0.0, 3.0))
             words.append(axis(*draw(vector.filter(any))))
-            fit = [leader for leader, of in leaders.items() if (of, kind) != ("continuous", "prismatic")]
+            fit = [n for n, (leader, _) in leaders.items() if (leader, kind) != ("continuous", "prismatic")]
             if fit and draw(st.booleans()):
-                words.append(mimic(draw(st.sampled_from(fit)), 2.0 * draw(number), draw(number)))
+                leader, multiplier, offset = draw(st.sampled_from(fit)), 2.0 * draw(number), draw(number)
+                words.append(mimic(leader, multiplier, offset))
+                middle = multiplier * leaders[leader][1] + offset
             else:
-                leaders[name] = kind
-        bounds = limit(middle - half, middle + half) if kind in ("revolute", "prismatic") else ""
+                leaders[name] = (kind, 0.0 if kind == "continuous" else middle)
+            if kind != "continuous":
+                bounds = limit(middle - half - 1e-6, middle + half)
         parts.append(joint(name, f"l{i}", f"l{i + 1}", *words, kind=kind, limit=bounds))
     end = joint("end", f"l{count}", "tip", origin(draw(vector)), kind="fixed", limit="")
     return robot(*(link(f"l{i}") for i in range(count + 1)), link("tip"), *parts, end)

@@ -13,10 +13,10 @@ import pinik
 
 OUT = Path(__file__).parents[1] / "docs" / "images" / "robots.png"
 PANDA = {
-    "panda_joint1": 0.35,
-    "panda_joint2": 0.55,
-    "panda_joint4": -1.75,
-    "panda_joint6": 2.35,
+    "panda_joint1": -0.25,
+    "panda_joint2": 0.25,
+    "panda_joint4": -1.55,
+    "panda_joint6": 2.75,
     "panda_joint7": 0.6,
     "panda_finger_joint1": 0.034,
 }
@@ -34,24 +34,26 @@ def main() -> None:
     scene = Scene()
     arm, lion, panda = (pinik.load(name) for name in ("arm", "lion", "panda"))
 
-    at = turned((-1.62, -1.0, 0.0), -20)
+    at = turned((-1.30, -1.25, 0.0), -8)
     scene.add_robot(arm, arm.poses["reach"], at)
     ball_at(scene, arm, arm.poses["reach"], "tip", [0, 0, 0.045], 0.045, at)
 
     reach = lion.poses["reach"]
-    ground = min(lion.placement(f"{paw}_paw", reach).translation[2] for paw in ("right_fore", "left_hind", "right_hind"))
-    at = turned((0.85, 0.75, -ground), 216)
+    ground = min(
+        lion.placement(f"{paw}_paw", reach).translation[2] for paw in ("right_fore", "left_hind", "right_hind")
+    )
+    at = turned((0.62, 0.75, -ground), 214)
     scene.add_robot(lion, reach, at)
-    ball_at(scene, lion, reach, "pelvis", [1.42, 0.36, 0.13], 0.06, at)
+    ball_at(scene, lion, reach, "pelvis", [1.36, 0.34, -0.08], 0.06, at)
 
     q = panda.configuration(PANDA)
-    at = turned((1.62, -1.0, 0.0), -165)
+    at = turned((1.42, -1.25, 0.0), -172)
     scene.add_robot(panda, q, at)
     ball_at(scene, panda, q, "panda_hand_tcp", [0, 0, 0], 0.032, at)
 
     render(
-        scene, OUT, size=(1600, 800), scale=2.0, frames=int(sys.argv[1]) if len(sys.argv) > 1 else 96, fov=20,
-        camera=(0.3, -8.2, 1.9), look_at=(0.03, 0.0, 0.56), ground=0.0, light=(-0.45, -0.75, 1.25),
+        scene, OUT, size=(1600, 800), scale=2.0, frames=int(sys.argv[1]) if len(sys.argv) > 1 else 96, fov=17.5,
+        camera=(0.3, -8.2, 1.9), look_at=(0.06, 0.0, 0.56), ground=0.0, light=(-0.45, -0.75, 1.25),
     )  # fmt: skip
     Image.open(OUT).convert("RGB").resize((1600, 800), Image.Resampling.LANCZOS).save(OUT, optimize=True)
 

@@ -10,7 +10,9 @@ from numpy.typing import ArrayLike, NDArray
 
 from .errors import InputError
 
-__all__ = ["as_finite_number", "as_rotation", "as_se3", "as_unit_vector", "as_vector"]
+__all__ = ["as_finite_number", "as_point", "as_rotation", "as_se3", "as_unit_vector", "as_vector"]
+
+_FARTHEST = 1e9  # [m]: beyond, squares of distances lose all meaning
 
 Array = NDArray[np.float64]
 
@@ -49,6 +51,14 @@ def as_vector(value: ArrayLike, size: int, what: str, of: str = "") -> Array:
     return as_array(value, (size,), what, of)
 
 
+def as_point(value: ArrayLike, what: str) -> Array:
+    """`value` as a point (3,) [m]; InputError also for one farther than a million kilometres off."""
+    point = as_vector(value, 3, what)
+    if np.abs(point).max() > _FARTHEST:
+        raise InputError(f"{what} is a point in metres, at most {_FARTHEST:g} away; got {point.tolist()}")
+    return point
+
+
 def as_unit_vector(value: ArrayLike, what: str) -> Array:
     """`value` (3,) scaled to unit length; InputError for a zero vector."""
     vector = as_vector(value, 3, what)
@@ -75,4 +85,4 @@ def as_se3(value: pinocchio.SE3 | ArrayLike, what: str) -> pinocchio.SE3:
     array = as_array(matrix, (4, 4), what, "an SE3 or a homogeneous matrix")
     if np.abs(array[3] - (0.0, 0.0, 0.0, 1.0)).max() > 1e-9:
         raise InputError(f"{what}: the last row of a homogeneous matrix is 0 0 0 1; got {array[3].tolist()}")
-    return pinocchio.SE3(as_rotation(array[:3, :3], what), array[:3, 3])
+    return pinocchio.SE3(as_rotation(array[:3, :3], what), as_point(array[:3, 3], what))

@@ -29,7 +29,7 @@ __all__ = ["iterate", "solve"]
 Array = NDArray[np.float64]
 
 # Restarts that a target proved unreachable still gets: the nearest point has valleys too.
-_RESTARTS_WHEN_UNREACHABLE = 4
+_RESTARTS_WHEN_UNREACHABLE = 8
 # How patiently a run is followed to its end when no other attempt waits.
 _TO_THE_END = Patience(50, 1e-4)
 
@@ -172,18 +172,20 @@ def _run(
     patience: Patience,
     *,
     judge_limits_at_end: bool = False,
+    downhill: bool = False,
     attempt: int = 0,
 ) -> Generator[State, Sequence[Target] | None, None]:
     """States of one attempt.
 
     With `judge_limits_at_end` a Jacobian method steps freely until it has converged; what then lies outside the
-    limits is turned by whole turns, and where that is not enough put inside and led on inside.
+    limits is turned by whole turns, and where that is not enough put inside and led on inside. With `downhill` a
+    Jacobian method's step is cut until the residual falls, so that it comes to rest where it would swing about.
     """
     unlimited = judge_limits_at_end and limits.enabled and isinstance(solver, JacobianSolver)
     box = Limits.of(limits.robot, False) if unlimited else limits
     at = kinematics.linearize(start)
     milestone, since = at.residual, 0
-    iteration, updates = 0, 0
+    iteration, updates, scale = 0, 0, 1.0
     while True:
         status = None
         if all([error.within(tolerance) for error in at.errors]):
@@ -210,30 +212,36 @@ def _run(
             milestone, since = math.inf, 0
         elif status is not None:
             return
-        q, updated = _advance(solver, kinematics, box, at, tolerance)
-        at = kinematics.linearize(q)
+        q, updated = _advance(solver, kinematics, box, at, tolerance, scale)
+        there = kinematics.linearize(q)
+        if not downhill or isinstance(solver, SweepingSolver):
+            at = there
+        elif there.residual < at.residual:
+            at, scale = there, min(2.0 * scale, 1.0)
+        else:
+            scale /= 4.0
         iteration, updates, since = iteration + 1, updates + updated, since + 1
 
 
 def _advance(
-    solver: Solver, kinematics: Kinematics, limits: Limits, at: Linearization, tolerance: Tolerance
+    solver: Solver, kinematics: Kinematics, limits: Limits, at: Linearization, tolerance: Tolerance, scale: float = 1.0
 ) -> tuple[Array, int]:
-    """(the next configuration, joints updated one by one)."""
+    """(the next configuration, joints updated one by one); `scale` shortens the step of a Jacobian method."""
     if isinstance(solver, SweepingSolver):
         return solver.sweep(at.q, kinematics, limits, tolerance)
     assert isinstance(solver, JacobianSolver)
     if solver.max_residual < math.inf:
         at = at._replace(e=kinematics.shortened(at.e, solver.max_residual))
-    q = _stepped(solver.step(at, kinematics), solver, kinematics, at.q)
+    q = _stepped(solver.step(at, kinematics), solver, kinematics, at.q, scale)
     if not limits.enabled:
         return q, 0
     inside = limits.clip(q)
     if (inside == q).all():
         return q, 0
-    return _step_along_limits(q, solver, kinematics, limits, at), 0
+    return _step_along_limits(q, solver, kinematics, limits, at, scale), 0
 
 
-def _stepped(dq: Array, solver: JacobianSolver, kinematics: Kinematics, q: Array) -> Array:
+def _stepped(dq: Array, solver: JacobianSolver, kinematics: Kinematics, q: Array, scale: float) -> Array:
     """The configuration after the step, clamped and scaled."""
     length = math.sqrt(dq.dot(dq))
     if not math.isfinite(length):
@@ -242,13 +250,15 @@ def _stepped(dq: Array, solver: JacobianSolver, kinematics: Kinematics, q: Array
         largest = float(np.abs(dq).max())
         if largest > solver.max_step:
             dq = dq * (solver.max_step / largest)
-    if solver.step_size is not None and solver.step_size != 1.0:
-        dq = dq * solver.step_size
+    if solver.step_size is not None:
+        scale *= solver.step_size
+    if scale != 1.0:
+        dq = dq * scale
     return np.array(pinocchio.integrate(kinematics.model, q, dq))
 
 
 def _step_along_limits(
-    q: Array, solver: JacobianSolver, kinematics: Kinematics, limits: Limits, at: Linearization
+    q: Array, solver: JacobianSolver, kinematics: Kinematics, limits: Limits, at: Linearization, scale: float
 ) -> Array:
     """The step again, after the first try `q` left the limits.
 
@@ -266,7 +276,7 @@ def _step_along_limits(
         J[:, held] = 0.0
         dq = solver.step(at._replace(J=J, free=at.free & ~held), kinematics)
         dq[held] = 0.0
-        q = _stepped(dq, solver, kinematics, at.q)
+        q = _stepped(dq, solver, kinematics, at.q, scale)
 
 
 @dataclasses.dataclass
@@ -299,12 +309,15 @@ class _Attempts:
         status, attempt = Status.STALLED, 0
         for attempt in range(restarts + 1):
             start = self.start if attempt == 0 else self._drawn_start(attempt)
-            status = self._attempt(start, attempt, patience, judge_limits_at_end=proof is None)
+            if proof is None:
+                status = self._attempt(start, attempt, patience, judge_limits_at_end=True)
+            else:
+                status = self._attempt(start, attempt, patience, downhill=True)
             if status in (Status.CONVERGED, Status.TIME_LIMIT):
                 break
         assert self.best is not None
-        if attempt > 0 and status not in (Status.CONVERGED, Status.TIME_LIMIT):
-            status = self._attempt(self.best.q, attempt, _TO_THE_END, judge_limits_at_end=False)
+        if status not in (Status.CONVERGED, Status.TIME_LIMIT) and self.restarts:
+            status = self._attempt(self.best.q, attempt, _TO_THE_END, downhill=True)
         return self._judged(status, proof, attempt, began)
 
     def _drawn_start(self, attempt: int) -> Array:
@@ -312,7 +325,15 @@ class _Attempts:
             self.kinematics, self.limits, self.start, seed=self.seed, target=self.target, attempt=attempt
         )
 
-    def _attempt(self, start: Array, attempt: int, patience: Patience, *, judge_limits_at_end: bool) -> Status:
+    def _attempt(
+        self,
+        start: Array,
+        attempt: int,
+        patience: Patience,
+        *,
+        judge_limits_at_end: bool = False,
+        downhill: bool = False,
+    ) -> Status:
         run = _run(
             self.solver,
             self.kinematics,
@@ -322,6 +343,7 @@ class _Attempts:
             self.tolerance,
             patience,
             judge_limits_at_end=judge_limits_at_end,
+            downhill=downhill,
             attempt=attempt,
         )
         state = None

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import threading
 from collections.abc import Callable, Collection, Mapping
-from concurrent.futures import ThreadPoolExecutor
 from xml.etree import ElementTree
 
 import pinocchio
@@ -167,6 +166,8 @@ def _depth(description: Description) -> int:
 
 def _on_deep_stack(build: Callable[[], pinocchio.Model]) -> pinocchio.Model:
     """Run `build` in a thread of its own, whose stack is large enough for the deepest tree admitted."""
+    from concurrent.futures import ThreadPoolExecutor  # slow to import, seldom needed
+
     with _stack_size_lock, ThreadPoolExecutor(max_workers=1) as pool:
         usual = threading.stack_size(DEEP_STACK_BYTES)
         try:

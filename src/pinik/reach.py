@@ -37,18 +37,29 @@ class Shortfall(NamedTuple):
 
 
 class _Range(NamedTuple):
-    """The least and the largest distance between two points of a chain [m]."""
+    """The least and the largest distance between two points [m]."""
 
     low: float
     high: float
 
 
+class _Span(NamedTuple):
+    """A part of a chain, from one of its points to another, and the distances between these.
+
+    The points are the base (0), the joints' origins (1, 2, …) and the frame.
+    """
+
+    start: int
+    end: int
+    distance: _Range
+
+
 def shortfall(kinematics: Kinematics, limits: Limits) -> Shortfall | None:
     """The target that lies furthest outside its chain's reach, if one does.
 
-    The bound holds for any values of the joints: the distances between the origins of neighbouring joints, or of
-    every second one as the joint between them turns through its limits, add up to the reach at most; what is left
-    of the longest when all others fold back is the least.
+    The bounds hold for any values of the joints. A chain is cut into spans: from one joint's origin to the next, or
+    to the one after it as the joint between them turns through its limits. The longest these get add up to the
+    reach at most; what is left of the shortest that one of them gets, when all others fold back, is the least.
     """
     worst = None
     for index, term in enumerate(kinematics.terms):
@@ -69,11 +80,9 @@ def _term_shortfall(index: int, term: TargetTerm, model: pinocchio.Model, limits
     if term.reference_placement is not None:
         base = term.reference_placement.actInv(base)
     distance = float(np.linalg.norm(position - base))
-    parts = _parts(term, model, limits)
-    reach = sum(part.high for part in parts)
+    reach, hole = _bounds(_spans(term, model, limits), len(term.movers) + 1)
     if not math.isfinite(reach):
         return None
-    hole = max(part.low - (reach - part.high) for part in parts)
     slack = _ROUNDING * reach
     if distance > reach + slack:
         return Shortfall(index, distance - reach, reach, False)
@@ -82,25 +91,31 @@ def _term_shortfall(index: int, term: TargetTerm, model: pinocchio.Model, limits
     return None
 
 
-def _parts(term: TargetTerm, model: pinocchio.Model, limits: Limits) -> list[_Range]:
-    """Ranges of consecutive parts of the chain, chosen so that their largest distances add up to the least."""
+def _bounds(spans: list[_Span], end: int) -> tuple[float, float]:
+    """The largest and the least distance between the points 0 and `end`, over all ways to cut the chain."""
+    before = [0.0] + [math.inf] * end  # the reach from 0 to each point
+    for span in spans:
+        before[span.end] = min(before[span.end], before[span.start] + span.distance.high)
+    after = [math.inf] * end + [0.0]  # and from each point to the end
+    for span in reversed(spans):
+        after[span.start] = min(after[span.start], span.distance.high + after[span.end])
+    return before[end], max(span.distance.low - before[span.start] - after[span.end] for span in spans)
+
+
+def _spans(term: TargetTerm, model: pinocchio.Model, limits: Limits) -> list[_Span]:
+    """The spans of a term's chain, in the order of their ends."""
     joints = term.movers
-    frame_placement = term.frame_placement
     placements = [pinocchio.SE3(model.jointPlacements[joints[0].id].rotation, np.zeros(3))]
     placements += [model.jointPlacements[joint.id] for joint in joints[1:]]
-    best: list[tuple[float, list[_Range]]] = [(0.0, [])]
+    spans = []
     for k in range(len(joints) + 1):
-        tip = k == len(joints)
-        offset = frame_placement if tip else placements[k]
-        alone = _straight(offset, None if tip else joints[k], limits)
-        total, parts = best[k]
-        choices = [(total + alone.high, [*parts, alone])]
-        if k >= 1 and _turns(joints[k - 1]) and (tip or _turns(joints[k])):
+        joint = joints[k] if k < len(joints) else None
+        offset = term.frame_placement if joint is None else placements[k]
+        spans.append(_Span(k, k + 1, _straight(offset, joint, limits)))
+        if k >= 1 and _turns(joints[k - 1]) and (joint is None or _turns(joint)):
             bent = _bent(placements[k - 1], joints[k - 1], offset.translation, limits)
-            total, parts = best[k - 1]
-            choices.append((total + bent.high, [*parts, bent]))
-        best.append(min(choices, key=lambda choice: choice[0]))
-    return best[-1][1]
+            spans.append(_Span(k - 1, k + 1, bent))
+    return spans
 
 
 def _turns(joint: Joint) -> bool:

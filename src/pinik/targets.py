@@ -10,7 +10,7 @@ import numpy as np
 import pinocchio
 from numpy.typing import ArrayLike, NDArray
 
-from .checks import as_finite_number, as_rotation, as_se3, as_unit_vector, as_vector
+from .checks import as_finite_number, as_point, as_rotation, as_se3, as_unit_vector, as_vector
 from .errors import InputError, UnknownNameError
 
 __all__ = ["Target", "Tolerance"]
@@ -112,6 +112,8 @@ class Target:
         """
         if not isinstance(frame, str):
             raise InputError(f"a target's frame is a name; got {frame!r}")
+        if not isinstance(relative_to, (str, type(None))):
+            raise InputError(f"target {frame!r}: relative_to is the name of a frame; got {relative_to!r}")
         orientations = {
             "rotation": rotation, "rpy": rpy, "quat_xyzw": quat_xyzw, "quat_wxyz": quat_wxyz,
             "placement": placement, "axis": axis,
@@ -142,11 +144,11 @@ class Target:
             object.__setattr__(self, name, value)
 
         keep("frame", frame)
-        keep("position", None if position is None else as_vector(position, 3, f"{what}position"))
+        keep("position", None if position is None else as_point(position, f"{what}position"))
         keep("rotation", _rotation(what, rotation, rpy, quat_xyzw, quat_wxyz))
         keep("axis", None if axis is None else _axis(axis, f"{what}axis"))
         keep("direction", None if direction is None else as_unit_vector(direction, f"{what}direction"))
-        keep("at", None if at is None else as_vector(at, 3, f"{what}at"))
+        keep("at", None if at is None else as_point(at, f"{what}at"))
         keep("tool", None if tool is None else _tool(tool, f"{what}tool"))
         keep("relative_to", relative_to)
         keep("weight", float(weight))
@@ -226,5 +228,5 @@ def _axis(axis: str | ArrayLike, what: str) -> Array:
 
 def _tool(tool: pinocchio.SE3 | ArrayLike, what: str) -> pinocchio.SE3:
     if isinstance(tool, (list, tuple, np.ndarray)) and len(tool) == 3:
-        return pinocchio.SE3(np.eye(3), as_vector(tool, 3, what))
+        return pinocchio.SE3(np.eye(3), as_point(tool, what))
     return as_se3(tool, what)

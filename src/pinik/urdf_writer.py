@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from xml.sax.saxutils import quoteattr
 
 from .urdf_joints import JointTag
 from .urdf_links import INERTIA_ATTRIBUTES, Inertial, LinkTag
@@ -13,11 +12,20 @@ __all__ = ["UNLIMITED", "written"]
 
 # Stands for efforts and velocities that the file leaves open: the number Pinocchio takes for its root joints.
 UNLIMITED = 1.7976931348623157e308
+_ENTITIES = {
+    "&": "&amp;",  # first: the others bring ampersands of their own
+    "<": "&lt;",
+    ">": "&gt;",
+    '"': "&quot;",
+    "\n": "&#10;",
+    "\r": "&#13;",
+    "\t": "&#9;",
+}
 
 
 def written(name: str, links: Iterable[LinkTag], joints: Iterable[JointTag]) -> str:
     """The URDF text of a robot; every number survives exactly."""
-    lines = [f"<robot name={quoteattr(name)}>"]
+    lines = [f"<robot name={_quoted(name)}>"]
     lines.extend(_link(link) for link in links)
     lines.extend(_joint(joint) for joint in joints)
     lines.append("</robot>")
@@ -25,7 +33,7 @@ def written(name: str, links: Iterable[LinkTag], joints: Iterable[JointTag]) -> 
 
 
 def _link(link: LinkTag) -> str:
-    start = f"<link name={quoteattr(link.name)}"
+    start = f"<link name={_quoted(link.name)}"
     return f"{start}/>" if link.inertial is None else f"{start}>{_inertial(link.inertial)}</link>"
 
 
@@ -38,14 +46,14 @@ def _inertial(inertial: Inertial) -> str:
 
 def _joint(joint: JointTag) -> str:
     parts = [
-        f'<joint name={quoteattr(joint.name)} type="{joint.kind}">',
+        f'<joint name={_quoted(joint.name)} type="{joint.kind}">',
         _origin(joint.xyz, joint.rpy),
-        f"<parent link={quoteattr(joint.parent)}/><child link={quoteattr(joint.child)}/>",
+        f"<parent link={_quoted(joint.parent)}/><child link={_quoted(joint.child)}/>",
         f'<axis xyz="{_numbers(joint.axis)}"/>',
         _limit(joint),
     ]
     if joint.mimic is not None:
-        leader = quoteattr(joint.mimic.leader)
+        leader = _quoted(joint.mimic.leader)
         scale = f'multiplier="{joint.mimic.multiplier!r}" offset="{joint.mimic.offset!r}"'
         parts.append(f"<mimic joint={leader} {scale}/>")
     if joint.damping is not None or joint.friction is not None:
@@ -70,3 +78,10 @@ def _origin(xyz: Vector, rpy: Vector) -> str:
 
 def _numbers(vector: Vector) -> str:
     return " ".join(repr(value) for value in vector)
+
+
+def _quoted(text: str) -> str:
+    """`text` as an XML attribute's value, quotes included; xml.sax.saxutils has the same but imports urllib."""
+    for character, entity in _ENTITIES.items():
+        text = text.replace(character, entity)
+    return f'"{text}"'

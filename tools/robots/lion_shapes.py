@@ -134,11 +134,11 @@ def head() -> Surfaces:
     length = math.sqrt(sum(c * c for c in gaze))
 
     def on_eye(s: float, radius: float, towards_gaze: float) -> Mesh:
-        at = [e - 0.0160 * n + (0.006 + towards_gaze) * g / length for e, n, g in zip(eye, normal, gaze, strict=True)]
+        at = [e - 0.0165 * n + (0.0035 + towards_gaze) * g / length for e, n, g in zip(eye, normal, gaze, strict=True)]
         return mesh(ball((at[0], s * at[1], at[2]), radius), radius / 2.6)
 
-    surfaces["amber"] = joined(on_eye(s, 0.0235, 0.0) for s in (1, -1))
-    surfaces["black"] = joined([surfaces["black"], *(on_eye(s, 0.0105, 0.0148) for s in (1, -1))])
+    surfaces["amber"] = joined(on_eye(s, 0.0212, 0.0) for s in (1, -1))
+    surfaces["black"] = joined([surfaces["black"], *(on_eye(s, 0.0100, 0.0126) for s in (1, -1))])
     tip = blend(
         0.014,
         ellipsoid((1.500, 0, 1.098), (0.024, 0.041, 0.019), (0, 12, 0)),
@@ -242,7 +242,7 @@ def mane() -> dict[str, Surfaces]:
         "neck": {
             "dark_mane": joined([
                 mesh(scruff, 0.065),
-                _ruff((1.06, 0, 1.03), (0.155, 0.165), 28, (0.16, 0.23, 0.32), 0.85, 0.08, 0.042, first=6),
+                _ruff((1.06, 0, 1.03), (0.155, 0.165), 28, (0.16, 0.23, 0.34), 0.72, 0.08, 0.044, first=6),
                 _ruff((0.98, 0, 0.97), (0.160, 0.190), 28, (0.15, 0.22, 0.33), 0.95, 0.08, 0.044),
             ]),
         },

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import dataclasses
 import math
 from abc import ABC, abstractmethod
@@ -160,13 +161,22 @@ def _checked(method: str, field: dataclasses.Field[Any], value: Any) -> Any:
         if not isinstance(value, Mapping):
             raise InputError(f"{what} maps joint names to numbers; got {value!r}")
         return {str(name): _number(f"{what}[{name!r}]", number, about) for name, number in value.items()}
-    return _number(what, value, about)
+    return _number(what, value, about, may_be_infinite=default == math.inf)
 
 
-def _number(what: str, value: Any, about: Mapping[str, Any]) -> float:
+def _number(what: str, value: Any, about: Mapping[str, Any], *, may_be_infinite: bool = False) -> float:
     low = -math.inf if about["low"] is None else about["low"]
     high = math.inf if about["high"] is None else about["high"]
-    if isinstance(value, (bool, str)) or not isinstance(value, (int, float, np.number)) or not low <= value <= high:
-        bounds = f"a number from {low:g} to {high:g}" + (f" [{about['unit']}]" if about["unit"] else "")
-        raise InputError(f"{what} is {bounds}{' or None' if about['optional'] else ''}; got {value!r}")
-    return float(value)
+    number = math.nan
+    if isinstance(value, (int, float, np.number)) and not isinstance(value, bool):
+        with contextlib.suppress(OverflowError):
+            number = float(value)
+    if not low <= number <= high or not (may_be_infinite or math.isfinite(number)):
+        bounds = "a number" if may_be_infinite else "a finite number"
+        if math.isfinite(high):
+            bounds += f" from {low:g} to {high:g}"
+        elif math.isfinite(low):
+            bounds += f" of at least {low:g}"
+        unit = f" [{about['unit']}]" if about["unit"] else ""
+        raise InputError(f"{what} is {bounds}{unit}{' or None' if about['optional'] else ''}; got {value!r}")
+    return number

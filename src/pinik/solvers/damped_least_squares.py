@@ -36,7 +36,7 @@ class DampedLeastSquares(JacobianSolver):
     """
 
     name = "dls"
-    max_iterations = 60
+    max_iterations = 200
     restarts = 60
     patience = Patience(3, 0.05)
 

@@ -29,7 +29,7 @@ class PseudoInverse(JacobianSolver):
     """
 
     name = "pinv"
-    max_iterations = 60
+    max_iterations = 200
     restarts = 60
     patience = Patience(6, 0.05)
 

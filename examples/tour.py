@@ -1,0 +1,150 @@
+"""A short tour: real targets on three robots, each by all four methods, with what every one of them says."""
+
+from __future__ import annotations
+
+import itertools
+import math
+import sys
+import time
+from dataclasses import dataclass
+
+import numpy as np
+import pinocchio
+from rich.box import SIMPLE_HEAD
+from rich.console import Console
+from rich.padding import Padding
+from rich.table import Table
+from rich.text import Text
+
+import pinik
+
+POSITION, ORIENTATION = 1e-4, 1e-3  # [m], [rad]: pinik's own default tolerance
+COLUMNS = ("method", "verdict", "position left", "angle left", "iterations", "restarts", "time")
+
+
+@dataclass(frozen=True)
+class Question:
+    """What a robot is asked, in words and as targets."""
+
+    words: str
+    robot: pinik.Robot
+    targets: list[pinik.Target]
+    start: np.ndarray
+
+
+def questions() -> list[Question]:
+    """The four questions of the tour."""
+    arm = pinik.load("arm")
+    lion = pinik.load("lion", root="free_flyer")
+    panda = pinik.load("panda")
+
+    relaxed = lion.poses["relaxed"]
+    ball = [1.2, 0.3, -0.4]
+    standing = [
+        pinik.Target(paw, lion.placement(paw, relaxed).translation)
+        for paw in ("right_fore_paw", "left_hind_paw", "right_hind_paw")
+    ]
+    reaching = [pinik.Target("left_fore_paw", ball), pinik.Target("nose", axis="x", at=ball), *standing]
+
+    return [
+        Question("the tip to (0.6, 0.3, 0.7)", arm, [pinik.Target("tip", [0.6, 0.3, 0.7])], arm.poses["relaxed"]),
+        Question(
+            "its left fore paw on a ball, its nose towards it, three paws where they stand", lion, reaching, relaxed
+        ),
+        Question(
+            "the hand to (0.4, -0.3, 0.35), pointing straight down, turned by 34°",
+            panda,
+            [pinik.Target("panda_hand_tcp", [0.4, -0.3, 0.35], rpy=[math.pi, 0.0, 0.6])],
+            panda.poses["default"],
+        ),
+        Question(
+            "the tip to (0.9, 0.9, 0.9), which no arm of its length can reach",
+            arm,
+            [pinik.Target("tip", [0.9, 0.9, 0.9])],
+            arm.poses["relaxed"],
+        ),
+    ]
+
+
+def answers(question: Question) -> list[pinik.Solution]:
+    """The question by every method."""
+    return [question.robot.solve(question.targets, method=name, q0=question.start) for name in pinik.SOLVERS]
+
+
+def check(solution: pinik.Solution) -> None:
+    """Hold a claimed success against Pinocchio's forward kinematics, without pinik.
+
+    Raises:
+        RuntimeError: It is untrue.
+    """
+    model = solution.robot.model
+    data = model.createData()
+    pinocchio.framesForwardKinematics(model, data, solution.q)
+    for target in solution.targets:
+        placement = data.oMf[model.getFrameId(target.frame, pinocchio.FrameType.BODY)]
+        off, angle = 0.0, 0.0
+        if target.position is not None:
+            off = np.linalg.norm(placement.translation - target.position)
+        if target.rotation is not None:
+            angle = np.linalg.norm(pinocchio.log3(placement.rotation.T @ target.rotation))
+        if target.at is not None:
+            line = target.at - placement.translation
+            facing = placement.rotation @ target.axis
+            angle = math.atan2(np.linalg.norm(np.cross(facing, line)), facing @ line)
+        if solution.success and (off > POSITION or angle > ORIENTATION):
+            raise RuntimeError(f"{solution.method} says that it reached {target.frame}; it is {off:.2g} m off")
+
+
+def show(question: Question, solutions: list[pinik.Solution], console: Console) -> None:
+    """Print a question and its answers."""
+    fancy = console.is_terminal
+    console.print(Text.assemble((question.robot.name, "bold cyan"), ": ", question.words))
+    table = Table(box=SIMPLE_HEAD if fancy else None, pad_edge=False, header_style="bold", padding=(0, 2, 0, 0))
+    for column, width in zip(COLUMNS, (6, 17, 13, 10, 10, 8, 8), strict=True):
+        table.add_column(column, justify="left" if column in ("method", "verdict") else "right", min_width=width)
+    for solution in solutions:
+        verdict = Text(solution.status.name.lower().replace("_", " "), style="green" if solution else "yellow")
+        table.add_row(
+            solution.method,
+            verdict,
+            "" if solution.position_error is None else f"{1e3 * solution.position_error:.3f} mm",
+            "" if solution.orientation_error is None else f"{math.degrees(solution.orientation_error):.3f}°",
+            str(solution.iterations),
+            str(solution.restarts),
+            f"{1e3 * solution.time:.1f} ms",
+        )
+    console.print(Padding(table, (0, 0, 0, 2)))
+    missed = [solution for solution in solutions if not solution]
+    for message, same in itertools.groupby(missed, key=lambda solution: solution.message):
+        names = ", ".join(solution.method for solution in same)
+        console.print(Padding(Text.assemble((f"{names}: ", "yellow"), message), (0, 0, 0, 2)))
+    console.print()
+
+
+def main() -> int:
+    """Run the tour.
+
+    Returns:
+        The exit status: 0 when every claim held.
+    """
+    sys.stdout.reconfigure(errors="replace")
+    console = Console(highlight=False)
+    if not console.is_terminal:
+        console.width = 240  # a line stays a line for the program that reads it
+    began = time.perf_counter()
+    console.print(f"pinik {pinik.__version__} on Pinocchio {pinocchio.__version__}\n")
+    asked = questions()
+    for question in asked:
+        solutions = answers(question)
+        for solution in solutions:
+            check(solution)
+        show(question, solutions, console)
+    console.print(
+        f"{len(asked)} questions, {len(pinik.SOLVERS)} methods, {time.perf_counter() - began:.1f} s with loading; "
+        "Pinocchio's forward kinematics agrees with every success."
+    )
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
