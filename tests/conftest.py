@@ -1,32 +1,17 @@
-"""Robots that many tests share, each loaded once; oracles that read URDFs without pinik."""
+"""Robots that many tests share, as fixtures, and the settings of the property tests."""
 
 from __future__ import annotations
-
-import functools
-import warnings
-from typing import Any
 
 import pytest
 from hypothesis import HealthCheck, settings
 
 import pinik
+from robots import load_quietly
 
 settings.register_profile(
     "pinik", deadline=None, derandomize=True, suppress_health_check=[HealthCheck.too_slow], print_blob=True
 )
 settings.load_profile("pinik")
-
-
-@functools.cache
-def _loaded(source: str, options: tuple[tuple[str, Any], ...]) -> pinik.Robot:
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", pinik.UrdfWarning)
-        return pinik.load(source, **dict(options))
-
-
-def load_quietly(source: str, **options: Any) -> pinik.Robot:
-    """`pinik.load` without its `UrdfWarning`s, once per source and options in a session; do not modify the robot."""
-    return _loaded(source, tuple(sorted(options.items())))
 
 
 @pytest.fixture(scope="session")

@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 
 import pinik
 from by_hand import ZOO, chains
-from conftest import load_quietly
+from robots import load_quietly
 from urdf_texts import link, pair, robot
 
 ROBOTS = [name for name in pinik.catalog() if name != "ur3_empty"]
@@ -27,9 +27,7 @@ def moderate_configuration(robot: pinik.Robot, seed: int) -> np.ndarray:
     return q
 
 
-def differences(
-    robot: pinik.Robot, frame: str, q: np.ndarray, axes: str, relative_to: str | None = None
-) -> np.ndarray:
+def differences(robot: pinik.Robot, frame: str, q: np.ndarray, axes: str, relative_to: str | None = None) -> np.ndarray:
     """The Jacobian (6, nv) by central differences of `placement` on the manifold."""
     at = robot.placement(frame, q, relative_to)
     p, R = at.translation, at.rotation

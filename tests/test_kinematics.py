@@ -10,8 +10,8 @@ import pytest
 
 import pinik
 from by_hand import ZOO, axis, limit, link_placements, mimic, origin, random_placement, random_rotation
-from conftest import load_quietly
 from pinik import InputError, Kinematics, Target, Tolerance, UnknownNameError
+from robots import load_quietly
 from urdf_texts import joint, link, pair, robot
 
 STEP = 1e-5
@@ -91,9 +91,7 @@ def differences(scene: Scene, target: Target, q: np.ndarray) -> np.ndarray:
     return np.array(columns).T
 
 
-def reached_target(
-    scene: Scene, q: np.ndarray, orientation: str, rng: np.random.Generator, **options: Any
-) -> Target:
+def reached_target(scene: Scene, q: np.ndarray, orientation: str, rng: np.random.Generator, **options: Any) -> Target:
     """A target with this kind of orientation, and a position, that `q` reaches."""
     probe = Target(scene.frame, (0, 0, 0), relative_to=scene.relative_to, **options)
     frame, reference = placements(scene, probe, q)
@@ -140,9 +138,7 @@ def test_position_rows_of_the_jacobian_are_exact_everywhere(scene, tooled):
     rng = np.random.default_rng(2)
     tool = random_placement(rng) if tooled else None
     for fields in ORIENTATIONS.values():
-        target = Target(
-            scene.frame, rng.normal(size=3), relative_to=scene.relative_to, tool=tool, **fields(rng)
-        )
+        target = Target(scene.frame, rng.normal(size=3), relative_to=scene.relative_to, tool=tool, **fields(rng))
         q = scene.robot.random(rng)
         at = Kinematics(scene.robot, [target]).linearize(q)
         alone = Target(scene.frame, target.position, relative_to=scene.relative_to, tool=tool)
@@ -222,9 +218,7 @@ def test_the_target_jacobian_at_a_reached_target_is_the_usual_one():
     for scene in SCENES.values():
         q = scene.robot.random(rng)
         target = reached_target(scene, q, "rotation", rng)
-        J = [
-            Kinematics(scene.robot, [target], target_jacobian=where).linearize(q).J for where in (False, True)
-        ]
+        J = [Kinematics(scene.robot, [target], target_jacobian=where).linearize(q).J for where in (False, True)]
         np.testing.assert_allclose(J[0], J[1], atol=1e-9)
 
 
@@ -244,9 +238,7 @@ def test_several_targets_are_stacked_in_order_and_weights_scale_their_rows(lion)
     for i, (field, weight) in enumerate(zip(fields, weights, strict=True)):
         alone = Kinematics(lion, [Target(**field)]).linearize(q)
         np.testing.assert_allclose(at.e[rows[i]], weight * alone.e, atol=1e-12)
-        np.testing.assert_allclose(
-            at.J[rows[i]][:, alone.free], weight * alone.J[:, alone.free], atol=1e-12
-        )
+        np.testing.assert_allclose(at.J[rows[i]][:, alone.free], weight * alone.J[:, alone.free], atol=1e-12)
         assert at.errors[i] == pytest.approx(alone.errors[0])  # a weight changes the step, never the verdict
 
 
@@ -411,7 +403,7 @@ class TestShortened:
             Target("nose", (9, 0, 0), rotation=np.eye(3), weight=0.5),
             Target("head", axis="x", direction=(0, 0, 1)),
             Target("tail_tip", (-9, 1, 0), weight=3.0),
-            Target("left_fore_paw", lion.placement("left_fore_paw", lion.neutral()).translation + [0, 0, 0.01]),
+            Target("left_fore_paw", lion.placement("left_fore_paw", lion.neutral()).translation + 0.01),
         ]
         kinematics = Kinematics(lion, targets)
         e = kinematics.linearize(lion.neutral()).e

@@ -10,10 +10,10 @@ from hypothesis import strategies as st
 
 import pinik
 from by_hand import axis, chains, limit, mimic, origin, two_hinges
-from conftest import load_quietly
 from pinik import Kinematics, Target
 from pinik.limits import Limits
 from pinik.reach import Shortfall, shortfall
+from robots import load_quietly
 from urdf_texts import joint, link, robot
 
 L1, L2 = 0.5, 0.4
@@ -36,9 +36,7 @@ def corner(robot: pinik.Robot, rng: np.random.Generator) -> np.ndarray:
     return robot.configuration(angles)
 
 
-def climbed(
-    robot: pinik.Robot, frame: str, away_from: np.ndarray, sign: float, rng: np.random.Generator
-) -> np.ndarray:
+def climbed(robot: pinik.Robot, frame: str, away_from: np.ndarray, sign: float, rng: np.random.Generator) -> np.ndarray:
     """A configuration inside the limits that puts the frame far from a point, or (sign −1) near it."""
 
     def height(q: np.ndarray) -> float:
@@ -169,7 +167,9 @@ class TestProof:
     def test_counts_the_limits_of_the_elbow(self, low_high):
         # the law of cosines over a grid of the elbow's angles, its ends among them
         arm = load_quietly(two_hinges(L1, L2, *low_high))
-        angles = np.append(np.linspace(*low_high, 200_001), [x for x in (0, math.pi, -2 * math.pi) if low_high[0] <= x <= low_high[1]])
+        low, high = low_high
+        lines = [angle for angle in (0.0, math.pi, -2 * math.pi) if low <= angle <= high]
+        angles = np.append(np.linspace(low, high, 200_001), lines)
         distances = np.sqrt(L1**2 + L2**2 + 2 * L1 * L2 * np.cos(angles))
         far = proof(arm, Target("tip", (0, distances.max() + 1e-3, 0)))
         near = proof(arm, Target("tip", (0, distances.min() - 1e-3, 0)))

@@ -31,8 +31,8 @@ from by_hand import (
     rotation_from_rpy,
     two_hinges,
 )
-from conftest import load_quietly
 from pinik import InputError, RobotLoadError, UnknownNameError, UrdfWarning
+from robots import load_quietly
 from urdf_texts import joint, link, robot
 
 CATALOG = [name for name in pinik.catalog() if name != "ur3_empty"]
@@ -103,9 +103,7 @@ class TestPlacementsOfTheCatalogue:
         assert {"panda_finger_joint1", "panda_finger_joint2"} <= set(robot.joint_names)
         angles = {"panda_finger_joint1": 0.01, "panda_finger_joint2": 0.03, "panda_joint4": -1.0}
         q = robot.configuration(angles)
-        for frame, placement in yourdfpy_links(
-            robot.description.path, {"panda_finger_joint2"}, angles
-        ).items():
+        for frame, placement in yourdfpy_links(robot.description.path, {"panda_finger_joint2"}, angles).items():
             np.testing.assert_allclose(robot.placement(frame, q).homogeneous, placement, atol=1e-9)
 
     @pytest.mark.parametrize("root", ["free_flyer", "planar"])
@@ -117,9 +115,7 @@ class TestPlacementsOfTheCatalogue:
         where = random_placement(rng, "floating" if root == "free_flyer" else "planar")
         q = robot.configuration(angles, {"root_joint": where})
         for frame, placement in yourdfpy_links(robot.description.path, set(), angles).items():
-            np.testing.assert_allclose(
-                robot.placement(frame, q).homogeneous, where @ placement, atol=1e-9, rtol=0
-            )
+            np.testing.assert_allclose(robot.placement(frame, q).homogeneous, where @ placement, atol=1e-9, rtol=0)
 
 
 class TestPlacementsByHand:
@@ -139,9 +135,7 @@ class TestPlacementsByHand:
             given_places = places | ({} if root == "fixed" else {"root_joint": base})
             q = robot.configuration(angles, given_places)
             for frame, placement in link_placements(ZOO, angles, places, base).items():
-                np.testing.assert_allclose(
-                    robot.placement(frame, q).homogeneous, placement, atol=1e-12, rtol=0
-                )
+                np.testing.assert_allclose(robot.placement(frame, q).homogeneous, placement, atol=1e-12, rtol=0)
 
     @given(text=chains(("revolute", "continuous", "prismatic", "fixed", "floating", "planar")), seed=st.integers(0, 9))
     @settings(max_examples=60)
@@ -168,9 +162,7 @@ class TestPlacementsByHand:
         angles = {"j1": 0.6}
         q = loaded.configuration(angles)
         assert loaded.angles(q) == pytest.approx({"j1": 0.6, "j2": -0.95, "j3": -1.475})
-        np.testing.assert_allclose(
-            loaded.placement("d", q).homogeneous, link_placements(text, angles)["d"], atol=1e-12
-        )
+        np.testing.assert_allclose(loaded.placement("d", q).homogeneous, link_placements(text, angles)["d"], atol=1e-12)
 
     @pytest.mark.parametrize("reference", ["tip", "hand", "body", "base"])
     def test_relative_to_another_frame_is_the_one_seen_from_the_other(self, reference):
@@ -200,9 +192,7 @@ class TestPlacementsByHand:
         alone = [lion.placement("nose", q, "tail_tip").homogeneous for q in configurations]
         columns = [lion.jacobian("nose", q) for q in configurations]
         with ThreadPoolExecutor(8) as pool:
-            together = list(
-                pool.map(lambda q: lion.placement("nose", q, "tail_tip").homogeneous, configurations)
-            )
+            together = list(pool.map(lambda q: lion.placement("nose", q, "tail_tip").homogeneous, configurations))
             together_columns = list(pool.map(lambda q: lion.jacobian("nose", q), configurations))
         np.testing.assert_array_equal(together, alone)
         np.testing.assert_array_equal(together_columns, columns)
@@ -248,9 +238,9 @@ class TestAngles:
         first = kinova.joint("j2s6s200_joint_1")
         assert (first.kind, first.nq, first.nv) == ("continuous", 2, 1)
         assert q[first.idx_q : first.idx_q + 2] == pytest.approx([math.cos(2.0), math.sin(2.0)])
-        assert kinova.angles(kinova.configuration({"j2s6s200_joint_1": math.pi}))[
-            "j2s6s200_joint_1"
-        ] == pytest.approx(math.pi)
+        assert kinova.angles(kinova.configuration({"j2s6s200_joint_1": math.pi}))["j2s6s200_joint_1"] == pytest.approx(
+            math.pi
+        )
 
     def test_the_rest_is_neutral(self, panda):
         q = panda.configuration({"panda_joint2": 0.5})
@@ -267,7 +257,7 @@ class TestAngles:
             panda.configuration({"panda_finger_joint2": 0.01})
 
     def test_an_unknown_joint_is_refused_with_near_names(self, panda):
-        with pytest.raises(UnknownNameError, match="no joint 'panda_jont4'; near: .*'panda_joint4'") as caught:
+        with pytest.raises(UnknownNameError, match=r"no joint 'panda_jont4'; near: .*'panda_joint4'") as caught:
             panda.configuration({"panda_jont4": 0.0})
         assert (caught.value.kind, caught.value.name) == ("joint", "panda_jont4")
         assert "panda_joint4" in caught.value.valid
@@ -310,9 +300,7 @@ class TestJointPlacements:
     def test_are_xyz_and_quaternion_xyzw_in_q(self):
         robot = load_quietly("arm", root="free_flyer")
         half = math.sqrt(0.5)
-        q = robot.configuration(
-            {}, {"root_joint": homogeneous(rotation_from_rpy(0, 0, math.pi / 2), (1, 2, 3))}
-        )
+        q = robot.configuration({}, {"root_joint": homogeneous(rotation_from_rpy(0, 0, math.pi / 2), (1, 2, 3))})
         assert q[:7] == pytest.approx([1, 2, 3, 0, 0, half, half])
 
     def test_of_a_fixed_robot_are_none(self, arm):
@@ -499,9 +487,7 @@ class TestRandom:
     def test_orientations_are_uniform(self):
         robot = load_quietly("two_link", root="free_flyer")
         rng = np.random.default_rng(12)
-        rotations = np.array(
-            [robot.joint_placements(robot.random(rng))["root_joint"].rotation for _ in range(2000)]
-        )
+        rotations = np.array([robot.joint_placements(robot.random(rng))["root_joint"].rotation for _ in range(2000)])
         np.testing.assert_allclose(rotations.mean(axis=0), 0.0, atol=0.05)
         # of a uniform rotation by θ: the mean of cos θ is −1/2
         assert ((np.trace(rotations, axis1=1, axis2=2) - 1) / 2).mean() == pytest.approx(-0.5, abs=0.05)
@@ -509,7 +495,7 @@ class TestRandom:
 
 class TestNames:
     def test_of_an_unknown_frame_brings_near_ones(self, lion):
-        with pytest.raises(UnknownNameError, match="no frame 'left_paw'; near: .*'left_fore_paw'") as caught:
+        with pytest.raises(UnknownNameError, match=r"no frame 'left_paw'; near: .*'left_fore_paw'") as caught:
             lion.placement("left_paw", lion.neutral())
         assert caught.value.kind == "frame"
         assert isinstance(caught.value, KeyError)
@@ -535,9 +521,7 @@ class TestNames:
         links = yourdfpy_links(robot.description.path, set(), angles)
         for frame in shared:
             assert robot.model.frames[robot.frame_id(frame)].type == pinocchio.BODY
-            np.testing.assert_allclose(
-                robot.placement(frame, q).homogeneous, links[frame], atol=1e-9
-            )
+            np.testing.assert_allclose(robot.placement(frame, q).homogeneous, links[frame], atol=1e-9)
             assert np.isfinite(robot.jacobian(frame, q)).all()
 
     def test_a_link_wins_over_a_joint_elsewhere_of_the_same_name(self):
@@ -642,9 +626,7 @@ class TestLoad:
         monkeypatch.chdir(tmp_path)
         assert pinik.load("mine.urdf").joint_names == pinik.load("no_suffix").joint_names
 
-    def test_a_catalogue_name_means_the_robot_whatever_lies_in_the_working_directory(
-        self, tmp_path, monkeypatch
-    ):
+    def test_a_catalogue_name_means_the_robot_whatever_lies_in_the_working_directory(self, tmp_path, monkeypatch):
         (tmp_path / "two_link").mkdir()
         (tmp_path / "arm").write_text("not a robot")
         monkeypatch.chdir(tmp_path)

@@ -158,7 +158,7 @@ class TestContradictions:
             ({"position": (1, 2, 3), "weight": math.nan}, "weight is a finite number"),
             ({"position": (1, 2, 3), "weight": "2"}, "weight is a finite number"),
             ({"position": (1, 2, 3), "weight": None}, "weight is a finite number"),
-            ({"position": (1, 2, 3), "relative_to": 3}, "relative_to is a frame's name; got 3"),
+            ({"position": (1, 2, 3), "relative_to": 3}, "relative_to is the name of a frame; got 3"),
         ],
     )
     def test_are_refused_in_words_that_name_the_target(self, fields, words):

@@ -232,7 +232,7 @@ def _advance(
     assert isinstance(solver, JacobianSolver)
     if solver.max_residual < math.inf:
         at = at._replace(e=kinematics.shortened(at.e, solver.max_residual))
-    q = _stepped(solver.step(at, kinematics), solver, kinematics, at.q, scale)
+    q = _stepped(solver.step(at, kinematics), solver, kinematics, at, scale)
     if not limits.enabled:
         return q, 0
     inside = limits.clip(q)
@@ -241,11 +241,12 @@ def _advance(
     return _step_along_limits(q, solver, kinematics, limits, at, scale), 0
 
 
-def _stepped(dq: Array, solver: JacobianSolver, kinematics: Kinematics, q: Array, scale: float) -> Array:
-    """The configuration after the step, clamped and scaled."""
+def _stepped(dq: Array, solver: JacobianSolver, kinematics: Kinematics, at: Linearization, scale: float) -> Array:
+    """The configuration after the step, clamped and scaled; joints that are not free stay to the last bit."""
+    dq = dq * at.free
     length = math.sqrt(dq.dot(dq))
     if not math.isfinite(length):
-        return q  # no step: the loop will say that it stalled
+        return at.q  # no step: the loop will say that it stalled
     if length > solver.max_step:
         largest = float(np.abs(dq).max())
         if largest > solver.max_step:
@@ -254,7 +255,7 @@ def _stepped(dq: Array, solver: JacobianSolver, kinematics: Kinematics, q: Array
         scale *= solver.step_size
     if scale != 1.0:
         dq = dq * scale
-    return np.array(pinocchio.integrate(kinematics.model, q, dq))
+    return np.array(pinocchio.integrate(kinematics.model, at.q, dq))
 
 
 def _step_along_limits(
@@ -274,9 +275,8 @@ def _step_along_limits(
         held |= pushing
         J = at.J.copy()
         J[:, held] = 0.0
-        dq = solver.step(at._replace(J=J, free=at.free & ~held), kinematics)
-        dq[held] = 0.0
-        q = _stepped(dq, solver, kinematics, at.q, scale)
+        free = at._replace(J=J, free=at.free & ~held)
+        q = _stepped(solver.step(free, kinematics), solver, kinematics, free, scale)
 
 
 @dataclasses.dataclass

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
 import pinocchio
-from numpy.typing import NDArray
 
 from .kinematics import Kinematics, TargetTerm
 from .limits import Limits
@@ -15,7 +15,7 @@ from .robot import Joint
 
 __all__ = ["Shortfall", "shortfall"]
 
-Array = NDArray[np.float64]
+Vector = Sequence[float]  # three plain numbers: every solve asks, and numpy is slow with so few
 
 _ROUNDING = 1e-12  # of the reach: what rounding in the placements of a chain may amount to
 
@@ -105,16 +105,22 @@ def _bounds(spans: list[_Span], end: int) -> tuple[float, float]:
 def _spans(term: TargetTerm, model: pinocchio.Model, limits: Limits) -> list[_Span]:
     """The spans of a term's chain, in the order of their ends."""
     joints = term.movers
-    placements = [pinocchio.SE3(model.jointPlacements[joints[0].id].rotation, np.zeros(3))]
-    placements += [model.jointPlacements[joint.id] for joint in joints[1:]]
+    placements = [model.jointPlacements[joint.id] for joint in joints]
+    translations: list[Vector] = [placement.translation.tolist() for placement in placements]
+    translations[0] = [0.0, 0.0, 0.0]  # the chain begins where its first joint sits
+    translations.append(term.frame_placement.translation.tolist())
     spans = []
-    for k in range(len(joints) + 1):
+    for k, offset in enumerate(translations):
         joint = joints[k] if k < len(joints) else None
-        offset = term.frame_placement if joint is None else placements[k]
-        spans.append(_Span(k, k + 1, _straight(offset, joint, limits)))
+        if joint is None or _turns(joint):
+            length = math.hypot(*offset)
+            distance = _Range(length, length)
+        else:
+            distance = _over_slide(placements[k].rotation.T.dot(offset).tolist(), joint, limits)
+        spans.append(_Span(k, k + 1, distance))
         if k >= 1 and _turns(joints[k - 1]) and (joint is None or _turns(joint)):
-            bent = _bent(placements[k - 1], joints[k - 1], offset.translation, limits)
-            spans.append(_Span(k - 1, k + 1, bent))
+            before = placements[k - 1].rotation.T.dot(translations[k - 1]).tolist()
+            spans.append(_Span(k - 1, k + 1, _over_hinge(before, joints[k - 1], offset, limits)))
     return spans
 
 
@@ -122,39 +128,44 @@ def _turns(joint: Joint) -> bool:
     return joint.kind != "prismatic"
 
 
-def _straight(offset: pinocchio.SE3, joint: Joint | None, limits: Limits) -> _Range:
-    """Distance from one joint's origin to the next one's, which may slide."""
-    t = offset.translation
-    length = float(np.linalg.norm(t))
-    if joint is None or _turns(joint):
-        return _Range(length, length)
+def _over_slide(before: Vector, joint: Joint, limits: Limits) -> _Range:
+    """Distance from the origin before a slide, `before` away from it at 0 and in its axes, to its own."""
     low, high = _joint_range(joint, limits)
-    axis = offset.rotation @ np.array(joint.axis)
     if not (math.isfinite(low) and math.isfinite(high)):
         return _Range(0.0, math.inf)
-    ends = [float(np.linalg.norm(t + axis * slide)) for slide in (low, high)]
-    nearest = min(max(-float(axis @ t), low), high)
-    return _Range(float(np.linalg.norm(t + axis * nearest)), max(ends))
+    along = _dot(before, joint.axis)
+    across = math.hypot(*_across(before, joint.axis, along))
+    nearest = min(max(-along, low), high)
+    return _Range(math.hypot(across, along + nearest), math.hypot(across, max(abs(along + low), abs(along + high))))
 
 
-def _bent(offset: pinocchio.SE3, joint: Joint, following: Array, limits: Limits) -> _Range:
-    """Distance over a hinge: from the origin before it to the origin after it, which turns about its axis."""
-    axis = np.array(joint.axis)
-    preceding = offset.rotation.T @ offset.translation
-    along = float((preceding + following) @ axis)
-    u, v = preceding - (preceding @ axis) * axis, following - (following @ axis) * axis
-    r, s = float(np.linalg.norm(u)), float(np.linalg.norm(v))
-    straight = math.atan2(float(u @ np.cross(axis, v)), float(u @ v))  # the angle at which the parts are in line
+def _over_hinge(before: Vector, joint: Joint, after: Vector, limits: Limits) -> _Range:
+    """Distance over a hinge: from the origin before it to the origin after it, both parts as seen at its angle 0."""
+    axis = joint.axis
+    rise_before, rise_after = _dot(before, axis), _dot(after, axis)
+    u, v = _across(before, axis, rise_before), _across(after, axis, rise_after)
+    rise, r, s = rise_before + rise_after, math.hypot(*u), math.hypot(*v)
+    turned = (axis[1] * v[2] - axis[2] * v[1], axis[2] * v[0] - axis[0] * v[2], axis[0] * v[1] - axis[1] * v[0])
+    straight = math.atan2(_dot(u, turned), _dot(u, v))  # the angle at which the parts are in line
 
     def distance(angle: float) -> float:
         # r² + s² + 2rs·cos, written so that nothing cancels where the parts fold back onto each other
-        return math.hypot(along, r - s, 2.0 * math.sqrt(r * s) * math.cos(0.5 * (angle - straight)))
+        return math.hypot(rise, r - s, 2.0 * math.sqrt(r * s) * math.cos(0.5 * (angle - straight)))
 
     low, high = _joint_range(joint, limits)
     ends = [distance(angle) for angle in (low, high) if math.isfinite(angle)]
     least = distance(straight + math.pi) if _meets(straight + math.pi, low, high) else min(ends)
     largest = distance(straight) if _meets(straight, low, high) else max(ends)
     return _Range(least, largest)
+
+
+def _dot(a: Vector, b: Vector) -> float:
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+
+
+def _across(vector: Vector, axis: Vector, along: float) -> tuple[float, float, float]:
+    """What is left of a vector without its part along an axis."""
+    return vector[0] - along * axis[0], vector[1] - along * axis[1], vector[2] - along * axis[2]
 
 
 def _meets(angle: float, low: float, high: float) -> bool:

@@ -205,7 +205,7 @@ class Robot:
             reach = 1.0 if joint.kind == "prismatic" else math.pi
             low = lower if np.isfinite(lower) else (upper - 2 * reach if np.isfinite(upper) else -reach)
             high = upper if np.isfinite(upper) else low + 2 * reach
-            self.set_angle(q, joint, rng.uniform(low, high))
+            self.set_angle(q, joint, min(rng.uniform(low, high), high))  # which numpy may round past the end
         for joint in self.joints:
             if joint.kind == "floating":
                 quaternion = rng.normal(size=4)

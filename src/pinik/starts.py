@@ -50,7 +50,7 @@ def random_start(kinematics: Kinematics, limits: Limits, q0: Array, *, seed: int
             low = high - 2.0 * half
         elif not math.isfinite(high):
             high = low + 2.0 * half
-        robot.set_angle(q, joint, low + u * (high - low))
+        robot.set_angle(q, joint, min(low + u * (high - low), high))  # the sum may be rounded past the end
     return q
 
 

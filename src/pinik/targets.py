@@ -133,8 +133,6 @@ class Target:
             position, rotation = pose.translation, pose.rotation
         if position is None and not given:
             raise InputError(f"{what}nothing is asked for; give position=, an orientation, or placement=")
-        if relative_to is not None and not isinstance(relative_to, str):
-            raise InputError(f"{what}relative_to is a frame's name; got {relative_to!r}")
         if as_finite_number(weight, f"{what}weight") <= 0.0:
             raise InputError(
                 f"{what}weight is a positive number; got {weight!r}; leave the target out to switch it off"

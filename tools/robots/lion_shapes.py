@@ -121,7 +121,7 @@ def head() -> Surfaces:
     eye = surface_point(solid, (1.27, 0.038, 1.128), (0.975, 0.22, 0.0))
     liner = blend(
         1e-3,
-        *both(lambda s: ellipsoid((eye[0], s * eye[1], eye[2]), (0.05, 0.030, 0.0175), (s * 16, 0, s * 24))),
+        *both(lambda s: ellipsoid((eye[0], s * eye[1], eye[2]), (0.05, 0.027, 0.0165), (s * 16, 0, s * 24))),
         *both(lambda s: limb((eye[0] + 0.02, s * (eye[1] - 0.026), eye[2] - 0.008),
                              (eye[0] + 0.06, s * (eye[1] - 0.036), eye[2] - 0.032), 0.007, 0.003)),
     )  # fmt: skip
@@ -134,11 +134,11 @@ def head() -> Surfaces:
     length = math.sqrt(sum(c * c for c in gaze))
 
     def on_eye(s: float, radius: float, towards_gaze: float) -> Mesh:
-        at = [e - 0.0165 * n + (0.0035 + towards_gaze) * g / length for e, n, g in zip(eye, normal, gaze, strict=True)]
+        at = [e - 0.0185 * n + (0.0030 + towards_gaze) * g / length for e, n, g in zip(eye, normal, gaze, strict=True)]
         return mesh(ball((at[0], s * at[1], at[2]), radius), radius / 2.6)
 
-    surfaces["amber"] = joined(on_eye(s, 0.0212, 0.0) for s in (1, -1))
-    surfaces["black"] = joined([surfaces["black"], *(on_eye(s, 0.0100, 0.0126) for s in (1, -1))])
+    surfaces["amber"] = joined(on_eye(s, 0.0240, 0.0) for s in (1, -1))
+    surfaces["black"] = joined([surfaces["black"], *(on_eye(s, 0.0110, 0.0146) for s in (1, -1))])
     tip = blend(
         0.014,
         ellipsoid((1.500, 0, 1.098), (0.024, 0.041, 0.019), (0, 12, 0)),
@@ -157,7 +157,7 @@ def _ear(s: float) -> Surfaces:
     turn = (s * -28, -8, s * 20)
     shell = ellipsoid((1.200, s * 0.118, 1.226), (0.027, 0.044, 0.050), turn)
     hollow = ellipsoid((1.229, s * 0.124, 1.229), (0.028, 0.030, 0.035), turn)
-    shape = mesh(carve(shell, outside(hollow), width=0.008), 0.0105)
+    shape = mesh(carve(shell, outside(hollow), width=0.008), 0.0085)
     inside = ellipsoid((1.227, s * 0.124, 1.229), (0.030, 0.029, 0.034), turn)
     return painted(shape, "tawny", dark_mane=inside.field)
 

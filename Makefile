@@ -1,0 +1,53 @@
+# One environment, .venv, for everything. `make` alone says what there is.
+
+VENV := .venv
+python := $(VENV)/bin/python
+pip := $(python) -m pip --quiet --no-input --disable-pip-version-check
+linted := src tests examples benchmarks tools
+
+# A sourced ROS workspace puts another Pinocchio, built for another Python, in front of ours.
+unexport PYTHONPATH
+
+.PHONY: help run test lint bench clean
+
+help:
+	@echo "make run     install what is missing into $(VENV) and show a tour of pinik"
+	@echo "make test    everything that is checked: style, types, tests"
+	@echo "make lint    style and types only"
+	@echo "make bench   how fast the solvers are"
+	@echo "make clean   remove $(VENV) and everything else that was made here"
+	@echo
+	@echo "make PYTHON=/path/to/python3 … takes that Python for $(VENV)."
+
+run: $(VENV)/installed
+	@$(python) examples/tour.py
+
+test: lint
+	@$(python) -m pytest --numprocesses=auto --dist=worksteal
+
+lint: $(VENV)/installed-dev
+	@$(python) -m ruff check $(linted)
+	@$(python) -m ruff format --check $(linted)
+	@$(python) -m mypy
+
+bench: $(VENV)/installed-dev
+	@$(python) -m pytest benchmarks --benchmark-enable --benchmark-only
+
+clean:
+	@rm -rf $(VENV) build dist .mypy_cache .pytest_cache .ruff_cache .hypothesis .benchmarks
+	@find . -name __pycache__ -type d -prune -exec rm -rf {} +
+
+$(python):
+	@found=$$(PYTHON='$(PYTHON)' tools/find-python) && \
+		echo "Making $(VENV) with $$found ($$("$$found" --version))" && \
+		"$$found" -m venv --clear $(VENV) || { rm -rf $(VENV); exit 1; }
+
+$(VENV)/installed: pyproject.toml $(python)
+	@echo "Installing pinik into $(VENV) (a minute or two the first time)"
+	@$(pip) install --editable .
+	@touch $@
+
+$(VENV)/installed-dev: pyproject.toml $(python)
+	@echo "Installing pinik and its tools into $(VENV) (a minute or two the first time)"
+	@$(pip) install --editable '.[dev]'
+	@touch $(VENV)/installed $@

@@ -1,0 +1,254 @@
+"""Cyclic coordinate descent against brute force and Welman's own statements."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pinocchio
+import pytest
+from conftest import load_quietly
+from urdf_texts import joint, link
+from urdf_texts import robot as robot_text
+
+import pinik
+from pinik import CCD, Kinematics, Target, Tolerance
+from pinik.limits import Limits
+
+NEVER = Tolerance(1e-30, 1e-30)
+
+
+def limited(lower, upper):
+    return f'<limit lower="{lower}" upper="{upper}" effort="1" velocity="1"/>'
+
+
+def objective(robot, target, q, w_p, w_o=1.0):
+    """w_p ‖P_d − P_c‖² + w_o Σ ‖u_jd − u_jc‖², from plain placements."""
+    M = robot.placement(target.frame, q, target.relative_to)
+    value = 0.0
+    if target.position is not None:
+        value += w_p * float(np.sum((target.position - M.translation) ** 2))
+    if target.rotation is not None:
+        value += w_o * float(np.sum((target.rotation - M.rotation) ** 2))
+    elif target.direction is not None:
+        value += w_o * float(np.sum((target.direction - M.rotation @ target.axis) ** 2))
+    return value
+
+
+def weight_at(robot, solver, kinematics, target, coordinate, q):
+    """w_p = α(1 + ρ) with α = k/W², seen from the coordinate's joint; 1 where only a position counts."""
+    if target.rotation is None and target.axis is None:
+        return 1.0
+    pinocchio.forwardKinematics(robot.model, robot.data, q)
+    origin = robot.data.oMi[coordinate.movers[0][0].id].translation
+    c = np.linalg.norm(robot.placement(target.frame, q).translation - origin)
+    d = np.linalg.norm(target.position - origin) if target.position is not None else c
+    return solver.position_weight / kinematics.terms[0].chain_length ** 2 * (1.0 + min(c, d) / max(c, d))
+
+
+def single_updates(robot, target, solver, q, limits):
+    """(coordinate, q before, q after, kinematics) for each joint update of one sweep."""
+    kinematics = Kinematics(robot, [target])
+    coordinates = kinematics.coordinates
+    for coordinate in coordinates:
+        kinematics.coordinates = (coordinate,)
+        after, count = solver.sweep(q, kinematics, limits, NEVER)
+        assert count == 1
+        yield coordinate, q, after, kinematics
+        q = after
+
+
+CASES = [("panda", "panda_hand_tcp"), ("kinova", "j2s6s200_end_effector"), ("tiago", "hand_grasping_frame"), ("arm", "tip")]
+
+
+@pytest.mark.parametrize(("name", "frame"), CASES)
+@pytest.mark.parametrize("kind", ["position", "pose", "direction"])
+@pytest.mark.parametrize("with_limits", [True, False])
+@pytest.mark.parametrize("options", [{}, {"relaxation": 1.95}, {"relaxation": 0.5}, {"max_step": 0.1}], ids=str)
+def test_the_objective_never_increases_in_a_joint_update(name, frame, kind, with_limits, options):
+    robot = load_quietly(name)
+    rng = np.random.default_rng(7)
+    limits = Limits.of(robot, with_limits)
+    solver = CCD(**options)
+    changed = 0
+    for _ in range(3):
+        wanted = robot.placement(frame, robot.random(rng))
+        target = {
+            "position": Target(frame, wanted.translation),
+            "pose": Target(frame, placement=wanted),
+            "direction": Target(frame, axis="z", direction=wanted.rotation[:, 2]),
+        }[kind]
+        for coordinate, before, after, kinematics in single_updates(robot, target, solver, robot.random(rng), limits):
+            w_p = weight_at(robot, solver, kinematics, target, coordinate, before)
+            was, is_ = objective(robot, target, before, w_p), objective(robot, target, after, w_p)
+            assert is_ <= was + 1e-12 * max(1.0, was)
+            changed += is_ < was
+            assert limits.contains(after)
+    assert changed > 5
+
+
+@pytest.mark.parametrize(("name", "frame"), CASES)
+@pytest.mark.parametrize("kind", ["position", "pose"])
+def test_each_joint_update_is_the_best_of_all_angles_in_its_limits(name, frame, kind):
+    """Brute force: no angle of a fine grid over the joint's range does better than the closed form."""
+    robot = load_quietly(name)
+    rng = np.random.default_rng(8)
+    limits = Limits.of(robot, True)
+    solver = CCD(relaxation=1.0)
+    wanted = robot.placement(frame, robot.random(rng))
+    target = Target(frame, placement=wanted) if kind == "pose" else Target(frame, wanted.translation)
+    for coordinate, before, after, kinematics in single_updates(robot, target, solver, robot.random(rng), limits):
+        w_p = weight_at(robot, solver, kinematics, target, coordinate, before)
+        low, high = coordinate.room(before, limits)
+        found = objective(robot, target, after, w_p)
+        for change in np.linspace(max(low, -4.0), min(high, 4.0), 300):
+            tried = before.copy()
+            coordinate.advance(tried, change, robot.model, limits)
+            assert objective(robot, target, tried, w_p) >= found - 1e-12
+
+
+HINGE = robot_text(
+    link("base"),
+    link("hand"),
+    link("tip"),
+    joint("turn", "base", "hand", '<axis xyz="0 0 1"/>', limit=limited(-3.0, 3.0)),
+    joint("end", "hand", "tip", '<origin xyz="1 0 0"/>', kind="fixed", limit=""),
+)
+
+
+def one_update(text, start, position, **options):
+    robot = load_quietly(text)
+    solver = CCD(**options)
+    kinematics = Kinematics(robot, [Target("tip", position)])
+    q, _ = solver.sweep(robot.configuration(start), kinematics, Limits.of(robot, True), NEVER)
+    return robot.angles(q)
+
+
+def test_a_blocked_joint_goes_the_other_way_round():
+    wanted = 3.4 - 2.0 * math.pi  # 0.5 ahead of 2.9, but the limit at 3.0 is between
+    turned = one_update(HINGE, {"turn": 2.9}, [math.cos(wanted), math.sin(wanted), 0.0])
+    assert turned["turn"] == pytest.approx(wanted, abs=1e-12)
+
+
+def test_where_both_ways_are_blocked_the_better_limit_is_taken():
+    turned = one_update(HINGE, {"turn": 0.0}, [math.cos(3.05), math.sin(3.05), 0.0])
+    assert turned["turn"] == 3.0
+    turned = one_update(HINGE, {"turn": 2.0}, [math.cos(3.2), math.sin(3.2), 0.0])
+    assert turned["turn"] == -3.0
+
+
+def test_stiffness_makes_a_joint_move_its_part_of_the_way():
+    target = [math.cos(1.2), math.sin(1.2), 0.0]
+    assert one_update(HINGE, {"turn": 0.2}, target)["turn"] == pytest.approx(1.2, abs=1e-12)
+    assert one_update(HINGE, {"turn": 0.2}, target, stiffness={"turn": 0.25})["turn"] == pytest.approx(0.45, abs=1e-12)
+    assert one_update(HINGE, {"turn": 0.2}, target, stiffness={"turn": 0.0})["turn"] == 0.2
+
+
+def test_stiffness_counters_the_preference_for_distal_joints(arm):
+    """Welman §4.3: CCD moves distal joints more readily; w_i below 1 there spreads the motion."""
+    target = Target("tip", [0.35, 0.1, 0.95])
+
+    def share_of_last_joints(**options):
+        s = arm.solve(target, method="ccd", restarts=0, **options)
+        assert s.success
+        return sum(abs(s.q[-4:])) / sum(abs(s.q))
+
+    plain = share_of_last_joints()
+    soft = share_of_last_joints(stiffness={f"bone{i}_{a}": 0.05 for i in (4, 5, 6) for a in "xz"})
+    assert soft < 0.6 * plain
+
+
+SLIDE = robot_text(
+    link("base"),
+    link("hand"),
+    link("tip"),
+    joint("slide", "base", "hand", '<axis xyz="0 0.6 0.8"/>', kind="prismatic", limit=limited(-0.5, 0.5)),
+    joint("end", "hand", "tip", '<origin xyz="1 0 0"/>', kind="fixed", limit=""),
+)
+
+
+def test_a_slide_goes_to_the_point_nearest_the_target():
+    moved = one_update(SLIDE, {"slide": 0.1}, [3.0, 0.3, 0.1])
+    assert moved["slide"] == pytest.approx(0.6 * 0.3 + 0.8 * 0.1, abs=1e-12)
+    assert one_update(SLIDE, {"slide": 0.1}, [3.0, 3.0, 1.0])["slide"] == 0.5
+
+
+def test_a_moving_reference_is_chased_from_both_sides():
+    """The reference hangs on a hinge of its own: turning it the other way brings the goal to the effector."""
+    text = robot_text(
+        *(link(name) for name in ("base", "left", "right", "tip")),
+        joint("a", "base", "left", '<axis xyz="0 0 1"/>', limit=limited(-2.0, 2.0)),
+        joint("b", "base", "right", '<axis xyz="0 0 1"/>', limit=limited(-2.0, 2.0)),
+        joint("end", "right", "tip", '<origin xyz="1 0 0"/>', kind="fixed", limit=""),
+    )
+    robot = load_quietly(text)
+    angle = 0.7
+    target = Target("tip", [math.cos(angle), math.sin(angle), 0.0], relative_to="left")
+    for locked in (["a"], ["b"]):
+        s = robot.solve(target, method="ccd", locked=locked, restarts=0)
+        assert s.success
+        assert s.angles["b"] - s.angles["a"] == pytest.approx(angle, abs=1e-3)
+        assert s.iterations == 1
+
+
+def test_a_leader_whose_followers_move_the_target_too_goes_downhill():
+    text = robot_text(
+        *(link(name) for name in ("base", "upper", "lower", "tip")),
+        joint("lead", "base", "upper", '<axis xyz="0 0 1"/>', limit=limited(-1.5, 1.5)),
+        joint("z_follow", "upper", "lower", '<origin xyz="0.5 0 0"/><axis xyz="0 0 1"/>',
+              '<mimic joint="lead" multiplier="0.5"/>', limit=limited(-1.5, 1.5)),
+        joint("z_end", "lower", "tip", '<origin xyz="0.5 0 0"/>', kind="fixed", limit=""),
+    )  # fmt: skip
+    robot = load_quietly(text)
+    assert robot.mimics == {"z_follow": ("lead", 0.5, 0.0)}
+    wanted = robot.placement("tip", robot.configuration({"lead": 1.1})).translation
+    s = robot.solve("tip", position=wanted, method="ccd", restarts=0, trace=True)
+    assert s.success, s.message
+    assert s.angles["lead"] == pytest.approx(1.1, abs=1e-3)
+    errors = [state.position_error for state in s.trace]
+    assert errors == sorted(errors, reverse=True)
+
+
+def test_k_over_w_squared_makes_the_steps_independent_of_scale_and_the_printed_form_does_not():
+    def angles(scale, scaling):
+        text = robot_text(
+            *(link(name) for name in ("base", "a", "b", "c")),
+            joint("j1", "base", "a", f'<origin xyz="0 0 {0.2 * scale}"/><axis xyz="0 1 0"/>', limit=limited(-3, 3)),
+            joint("j2", "a", "b", f'<origin xyz="{0.5 * scale} 0 0"/><axis xyz="0 0 1"/>', limit=limited(-3, 3)),
+            joint("j3", "b", "c", f'<origin xyz="{0.4 * scale} 0 0"/><axis xyz="0 1 0"/>', limit=limited(-3, 3)),
+        )
+        robot = load_quietly(text)
+        target = Target("c", np.array([0.3, 0.4, 0.5]) * scale, rpy=[0.3, -0.8, 1.0])
+        states = list(pinik.iterate(robot, target, CCD(scaling=scaling), max_iterations=5, tolerance=NEVER))
+        return states[5].q
+
+    assert np.allclose(angles(1.0, "area"), angles(30.0, "area"), atol=1e-9)
+    assert not np.allclose(angles(1.0, "printed"), angles(30.0, "printed"), atol=1e-3)
+
+
+def test_a_sweep_ends_at_the_joint_that_reaches_the_target(arm):
+    """Only the last joint has to move: one joint update, and the others are not touched."""
+    q0 = arm.neutral()
+    goal = arm.configuration({"bone6_z": 0.3})
+    s = arm.solve("tip", position=arm.placement("tip", goal).translation, method="ccd", q0=q0)
+    assert s.success
+    assert (s.iterations, s.joint_updates) == (1, 1)
+    assert s.angles["bone6_z"] == pytest.approx(0.3, abs=1e-3)
+
+
+def test_the_axis_of_a_frame_is_turned_towards_a_point_it_moves_around():
+    """L(1 − cos θ) never grows: L the distance to the point, θ the angle between axis and line of sight."""
+    robot = load_quietly("panda")
+    rng = np.random.default_rng(3)
+    limits = Limits.of(robot, True)
+    for _ in range(10):
+        at = rng.uniform(-1, 1, 3)
+        target = Target("panda_hand", axis="z", at=at)
+
+        def badness(q, target=target, at=at):
+            M = robot.placement("panda_hand", q)
+            line = at - M.translation
+            return float(np.linalg.norm(line) - line @ M.rotation @ target.axis)
+
+        for _, before, after, _ in single_updates(robot, target, CCD(relaxation=1.0), robot.random(rng), limits):
+            assert badness(after) <= badness(before) + 1e-12

@@ -1,0 +1,192 @@
+"""The properties of transpose, pseudo-inverse and damped least squares, on Jacobians of any shape and rank."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+import pinik
+from pinik import DampedLeastSquares, JacobianTranspose, PseudoInverse
+
+
+@st.composite
+def linear_problems(draw, *, full_rank=False):
+    """(J, e) with rows of metres and radians; often with columns of zeros or of low rank."""
+    rng = np.random.default_rng(draw(st.integers(0, 2**32 - 1)))
+    m, n = draw(st.sampled_from([(3, 2), (3, 7), (6, 6), (6, 7), (6, 12), (12, 9)]))
+    J = rng.normal(size=(m, n))
+    if not full_rank:
+        rank = draw(st.integers(0, min(m, n)))
+        left, sigma, right = np.linalg.svd(J, full_matrices=False)
+        sigma[rank:] = 0.0
+        J = (left * sigma) @ right
+    return J, rng.normal(size=m) * draw(st.sampled_from([1e-6, 1.0, 30.0]))
+
+
+@given(linear_problems())
+def test_the_transpose_with_its_alpha_never_increases_the_linearised_error(problem):
+    J, e = problem
+    dq = JacobianTranspose().direction(J, e)
+    before, after = np.linalg.norm(e), np.linalg.norm(e - J @ dq)
+    assert after <= before * (1 + 1e-12)
+    for factor in (0.9, 1.1):  # no other length does better along that line
+        assert after <= np.linalg.norm(e - factor * (J @ dq)) + 1e-12 * before
+
+
+def test_the_transpose_with_a_fixed_alpha_is_that_multiple_of_the_gradient(arm):
+    """One step of the loop at α = 0.01, by hand."""
+    q0 = arm.random(1)
+    target = pinik.Target("tip", [0.5, 0.1, 0.7])
+    states = list(pinik.iterate(arm, target, JacobianTranspose(step_size=0.01), q0, limits=False, max_iterations=1))
+    J = arm.jacobian("tip", q0)[:3]
+    e = target.position - arm.placement("tip", q0).translation
+    assert np.allclose(states[1].q - q0, 0.01 * J.T @ e, atol=1e-14)
+
+
+@given(linear_problems())
+def test_the_pseudo_inverse_is_the_minimum_norm_least_squares_step(problem):
+    J, e = problem
+    dq = PseudoInverse(cutoff=1e-9).direction(J, e)
+    expected, *_ = np.linalg.lstsq(J, e, rcond=1e-9)  # LAPACK's gelsd: another algorithm
+    assert np.allclose(dq, expected, atol=1e-9 * max(1.0, np.linalg.norm(expected)))
+
+
+@given(linear_problems(), st.integers(0, 2**32 - 1))
+def test_the_null_space_term_does_not_move_the_effector(problem, seed):
+    J, e = problem
+    pull = np.random.default_rng(seed).normal(size=J.shape[1])
+    solver = PseudoInverse(cutoff=1e-9)
+    moved = solver.direction(J, e, pull) - solver.direction(J, e)
+    assert np.abs(J @ moved).max() <= 1e-9 * max(1.0, np.abs(J).max())
+    assert moved @ pull >= -1e-12  # and it goes towards the rest posture, or nowhere
+
+
+def test_small_singular_values_are_dropped():
+    J = np.diag([1.0, 0.5, 1e-5])
+    e = np.array([1.0, 1.0, 1.0])
+    assert np.allclose(PseudoInverse(cutoff=1e-3).direction(J, e), [1.0, 2.0, 0.0])
+    assert np.allclose(PseudoInverse(cutoff=1e-6).direction(J, e), [1.0, 2.0, 1e5])
+
+
+@given(linear_problems(full_rank=True))
+def test_damped_least_squares_tends_to_the_pseudo_inverse(problem):
+    J, e = problem
+    exact = np.linalg.pinv(J) @ e
+    condition = np.linalg.cond(J)
+    gaps = []
+    for damping in (1e-1, 1e-2, 1e-3):
+        dq = DampedLeastSquares(rule="constant", damping=damping, factorization="svd").direction(J, e)
+        gaps.append(np.linalg.norm(dq - exact))
+    smallest = np.linalg.svd(J, compute_uv=False)[-1]
+    bound = (1e-3 / smallest) ** 2 * np.linalg.norm(exact)
+    assert gaps[2] <= bound + 1e-9 * condition * np.linalg.norm(exact)
+    assert gaps[2] <= gaps[1] + 1e-12 <= gaps[0] + 2e-12
+
+
+@given(linear_problems(), st.sampled_from([1e-2, 0.3, 1.1]))
+def test_damped_least_squares_minimises_its_objective(problem, damping):
+    """‖J dq − e‖² + λ²‖dq‖², as one least-squares problem (thesis, eq. 3.3.2)."""
+    J, e = problem
+    n = J.shape[1]
+    stacked = np.vstack([J, damping * np.eye(n)])
+    expected, *_ = np.linalg.lstsq(stacked, np.concatenate([e, np.zeros(n)]), rcond=None)
+    dq = DampedLeastSquares(rule="constant", damping=damping).direction(J, e)
+    assert np.allclose(dq, expected, atol=1e-6 * max(1.0, np.linalg.norm(expected)))
+
+
+@given(
+    linear_problems(),
+    st.sampled_from(["constant", "residual", "sugihara", "manipulability"]),
+    st.sampled_from([0.05, 0.2236, 1.1]),
+)
+def test_ldlt_and_svd_give_the_same_step(problem, rule, damping):
+    J, e = problem
+    ldlt = DampedLeastSquares(rule=rule, damping=damping, factorization="ldlt")
+    svd = DampedLeastSquares(rule=rule, damping=damping, factorization="svd")
+    lambda_squared = svd.damping_squared(J, float(np.linalg.norm(e)))
+    condition = (np.linalg.norm(J) ** 2 + lambda_squared) / lambda_squared
+    a, b = ldlt.direction(J, e), svd.direction(J, e)
+    assert np.linalg.norm(a - b) <= 1e-14 * condition * max(np.linalg.norm(b), np.linalg.norm(e))
+
+
+def test_the_damping_rules_are_their_formulas():
+    J = np.array([[1.0, 0.2, 0.0], [0.0, 0.1, 0.3]])
+    residual = 0.7
+    w = math.sqrt(np.linalg.det(J @ J.T))
+    expected = {
+        "constant": 0.4**2,
+        "residual": 0.4**2 * residual**2,
+        "sugihara": 0.5 * residual**2 + 0.4**2,
+        "manipulability": 0.4**2 * (1 - w / 0.5) ** 2,
+    }
+    assert 0.0 < w < 0.5
+    for rule, value in expected.items():
+        solver = DampedLeastSquares(rule=rule, damping=0.4, manipulability=0.5)
+        assert solver.damping_squared(J, residual) == pytest.approx(value, abs=1e-11)
+    regular = DampedLeastSquares(rule="manipulability", damping=0.4, manipulability=0.9 * w)
+    assert regular.damping_squared(J, residual) == pytest.approx(0.0, abs=1e-11)
+
+
+@pytest.mark.parametrize("rule", ["constant", "residual", "sugihara", "manipulability"])
+@pytest.mark.parametrize("factorization", ["ldlt", "svd"])
+def test_every_damping_solves(rule, factorization, panda):
+    wanted = panda.placement("panda_hand_tcp", panda.random(4))
+    damping = {"constant": 0.05, "residual": 0.2, "sugihara": 0.03, "manipulability": 0.1}[rule]
+    s = panda.solve("panda_hand_tcp", placement=wanted, rule=rule, factorization=factorization, damping=damping)
+    assert s.success, s.message
+
+
+def test_the_rest_posture_is_tended_to_while_the_effector_does_not_notice(panda):
+    """Long after the target is reached, the null space brings the elbow nearer to rest than it was without."""
+    rest = {name: angle for name, angle in panda.angles(panda.poses["default"]).items() if name not in panda.mimics}
+    target = pinik.Target("panda_hand_tcp", [0.4, 0.2, 0.5])
+    q = panda.configuration({"panda_joint1": 1.0, "panda_joint3": -1.0, "panda_joint4": -1.5, "panda_joint6": 1.0})
+    q = panda.solve(target, method="pinv", q0=q).q
+    distance = {}
+    for gain in (0.0, 0.2):
+        solver = PseudoInverse(rest_posture=rest, rest_gain=gain)
+        now = q
+        for _ in range(60):
+            # a tolerance that is never met: the chase goes on at the target
+            *_, last = pinik.iterate(panda, target, solver, now, max_iterations=1, tolerance=(1e-30, 1e-30))
+            now = last.q
+        assert last.position_error < 2e-3
+        angles = panda.angles(now)
+        distance[gain] = math.hypot(*(angles[name] - rest[name] for name in rest))
+    assert distance[0.2] < 0.7 * distance[0.0]
+
+
+@pytest.mark.parametrize("method", [JacobianTranspose, PseudoInverse, DampedLeastSquares], ids=lambda m: m.name)
+def test_no_joint_moves_further_than_max_step(method, panda):
+    target = pinik.Target("panda_hand_tcp", [0.4, -0.3, 0.4], rpy=[3.0, 0.1, 0.5])
+    solver = method(max_step=0.05)
+    states = list(pinik.iterate(panda, target, solver, panda.random(11), max_iterations=40, limits=False))
+    steps = np.abs(np.diff([state.q for state in states], axis=0))
+    assert steps.max() <= 0.05 + 1e-12
+    assert steps.max() > 0.049  # the clamp was at work
+
+
+@pytest.mark.parametrize("method", [JacobianTranspose, PseudoInverse, DampedLeastSquares], ids=lambda m: m.name)
+def test_d_max_shortens_the_pull_and_keeps_its_direction(method, arm):
+    """A target 100 D_max off pulls as one D_max off on the same line does, but for the damping that sees it all."""
+    q0 = arm.random(2)
+    p = arm.placement("tip", q0).translation
+    line = np.array([0.6, 0.0, 0.8])
+    rule = {"rule": "constant", "damping": 0.1} if method is DampedLeastSquares else {}
+    steps = []
+    for far, d_max in ((0.02, math.inf), (2.0, 0.02)):
+        solver = method(max_residual=d_max, **rule)
+        *_, last = pinik.iterate(arm, pinik.Target("tip", p + far * line), solver, q0, limits=False, max_iterations=1)
+        steps.append(last.q - q0)
+    assert np.linalg.norm(steps[0]) > 1e-4
+    assert np.allclose(*steps, atol=1e-10)
+
+
+@pytest.mark.parametrize("method", [JacobianTranspose, PseudoInverse, DampedLeastSquares], ids=lambda m: m.name)
+def test_the_target_jacobian_reaches_targets_as_well(method, arm):
+    s = arm.solve("tip", position=[0.3, 0.2, 0.8], method=method, target_jacobian=True)
+    assert s.success, s.message

@@ -1,0 +1,64 @@
+from __future__ import annotations
+
+import math
+import pickle
+
+import pytest
+
+import pinik
+from pinik.solvers import make_solver
+
+
+@pytest.mark.parametrize("name", ["ccd", "jt", "pinv", "dls"])
+def test_a_name_a_class_and_an_instance_mean_the_same(name):
+    solver_class = pinik.SOLVERS[name]
+    assert make_solver(name) == make_solver(solver_class) == make_solver(solver_class()) == solver_class()
+    assert make_solver(name, max_step=0.25).max_step == 0.25
+    assert make_solver(solver_class(max_step=0.5), max_residual=0.1).parameters | {} == (
+        solver_class(max_step=0.5, max_residual=0.1).parameters
+    )
+
+
+def test_a_class_is_found_by_module_and_name():
+    assert type(make_solver("pinik.solvers.ccd:CCD")) is pinik.CCD
+    with pytest.raises(pinik.UnknownNameError, match="could not import it"):
+        make_solver("no_such_module:Solver")
+
+
+def test_wrong_names_list_the_right_ones():
+    with pytest.raises(pinik.UnknownNameError, match="'dls'"):
+        make_solver("dlss")
+    with pytest.raises(pinik.UnknownNameError, match="'damping'"):
+        make_solver("dls", dampin=1.0)
+    with pytest.raises(pinik.InputError, match="Solver class or an instance"):
+        make_solver(3)
+
+
+@pytest.mark.parametrize("name", ["ccd", "jt", "pinv", "dls"])
+def test_solvers_are_immutable_and_travel_to_other_processes(name):
+    solver = make_solver(name, max_step=0.3)
+    with pytest.raises(AttributeError):
+        solver.max_step = 1.0
+    assert pickle.loads(pickle.dumps(solver)) == solver
+
+
+@pytest.mark.parametrize("name", ["ccd", "jt", "pinv", "dls"])
+def test_every_parameter_says_what_it_is(name):
+    import dataclasses
+
+    for field in dataclasses.fields(pinik.SOLVERS[name]):
+        assert field.metadata["help"], field.name
+        assert {"unit", "low", "high", "choices", "optional"} <= set(field.metadata)
+
+
+@pytest.mark.parametrize("value", [math.inf, 10**400, "1", None, True, [1.0]])
+def test_a_damping_that_is_no_finite_number_is_refused(value):
+    with pytest.raises(pinik.InputError, match="dls: damping is a finite number from"):
+        pinik.DampedLeastSquares(damping=value)
+
+
+def test_a_stiffness_outside_zero_to_one_or_of_an_unknown_joint_is_refused(arm):
+    with pytest.raises(pinik.InputError, match=r"stiffness\['bone1_x'\]"):
+        pinik.CCD(stiffness={"bone1_x": 1.5})
+    with pytest.raises(pinik.UnknownNameError, match="bone1_x"):
+        arm.solve("tip", position=[0, 0, 1], method="ccd", stiffness={"bone1_q": 0.5})

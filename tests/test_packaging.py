@@ -1,0 +1,158 @@
+"""The package as others get it: built, installed elsewhere, and used there; and what pyproject.toml promises."""
+
+from __future__ import annotations
+
+import importlib.metadata
+import json
+import os
+import re
+import subprocess
+import sys
+import tomllib
+from pathlib import Path
+from typing import Any
+
+import pytest
+from packaging.markers import default_environment
+from packaging.requirements import Requirement
+from packaging.utils import canonicalize_name
+
+import pinik
+
+ROOT = Path(__file__).parents[1]
+PROJECT: dict[str, Any] = tomllib.loads((ROOT / "pyproject.toml").read_text("utf-8"))["project"]
+REQUIREMENTS = {canonicalize_name(r.name): r for r in map(Requirement, PROJECT["dependencies"])}
+
+USE_IT = """
+import json, pathlib, sys
+import pinik
+answers = {"package": pinik.__file__, "version": pinik.__version__}
+for name, frame in [("arm", "tip"), ("lion", "left_fore_paw")]:
+    robot = pinik.load(name)
+    target = robot.placement(frame, robot.random(1)).translation
+    solution = robot.solve(frame, position=target)
+    answers[name] = {
+        "source": robot.description.source,
+        "poses": sorted(robot.poses),
+        "success": solution.success,
+        "meshes": sorted(str(path) for path in pathlib.Path(robot.description.source).parent.rglob("*.obj")),
+    }
+print(json.dumps(answers))
+"""
+
+
+def run(*command: object, cwd: Path, **environment: str) -> str:
+    """Run a command; its words are the failure's message."""
+    arguments = [str(part) for part in command]
+    done = subprocess.run(
+        arguments, cwd=cwd, env={**os.environ, **environment}, capture_output=True, text=True, check=False
+    )
+    assert done.returncode == 0, f"{' '.join(arguments)}\n{done.stdout}{done.stderr}"
+    return done.stdout
+
+
+@pytest.fixture(scope="module")
+def installed(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A folder into which pinik's wheel was installed, far from the checkout."""
+    folder = tmp_path_factory.mktemp("installed")
+    pip = (sys.executable, "-m", "pip", "--quiet", "--disable-pip-version-check")
+    run(*pip, "wheel", "--no-deps", "--no-build-isolation", "--wheel-dir", folder / "wheels", ROOT, cwd=folder)
+    (wheel,) = (folder / "wheels").glob("*.whl")
+    run(*pip, "install", "--no-deps", "--no-index", "--target", folder / "site", wheel, cwd=folder)
+    return folder / "site"
+
+
+def test_an_installed_pinik_loads_and_solves_its_own_robots_outside_the_checkout(installed, tmp_path):
+    answers = json.loads(run(sys.executable, "-c", USE_IT, cwd=tmp_path, PYTHONPATH=str(installed)))
+    assert answers["version"] == pinik.__version__
+    assert Path(answers["package"]).is_relative_to(installed)
+    for name in ("arm", "lion"):
+        assert answers[name]["success"]
+        assert answers[name]["poses"]
+        assert Path(answers[name]["source"]) == installed / "pinik" / "urdf" / f"{name}.urdf"
+        assert any(f"/meshes/{name}/" in mesh for mesh in answers[name]["meshes"])
+
+
+def test_the_installed_package_holds_every_file_of_urdf_and_of_the_source(installed):
+    pairs = [(ROOT / "urdf", installed / "pinik" / "urdf"), (ROOT / "src" / "pinik", installed / "pinik")]
+    for here, there in pairs:
+        files = {p.relative_to(here) for p in here.rglob("*") if p.is_file() and "__pycache__" not in p.parts}
+        assert [str(file) for file in sorted(files) if not (there / file).is_file()] == []
+
+
+def test_the_installed_command_answers(installed, tmp_path):
+    command = installed / "bin" / "pinik"
+    assert run(sys.executable, command, "--version", cwd=tmp_path, PYTHONPATH=str(installed)).split() == [
+        "pinik",
+        pinik.__version__,
+    ]
+
+
+def test_version_and_python_are_said_once_and_the_same():
+    assert pinik.__version__ == PROJECT["version"] == importlib.metadata.version("pinik")
+    assert sys.version_info >= (3, 11)
+
+
+def needed_by(name: str, found: dict[str, list[Requirement]]) -> dict[str, list[Requirement]]:
+    """Package → every requirement on it, for all that `name` pulls in, at any depth."""
+    for line in importlib.metadata.requires(name) or []:
+        requirement = Requirement(line)
+        if requirement.marker and not requirement.marker.evaluate({**default_environment(), "extra": ""}):
+            continue
+        known = canonicalize_name(requirement.name)
+        seen = known in found
+        found.setdefault(known, []).append(requirement)
+        if not seen:
+            needed_by(known, found)
+    return found
+
+
+def is_capped(requirement: Requirement) -> bool:
+    return any(part.operator in ("<", "<=", "==", "~=") for part in requirement.specifier)
+
+
+def is_pinned(requirement: Requirement) -> bool:
+    return any(part.operator == "==" and "*" not in part.version for part in requirement.specifier)
+
+
+def test_a_new_release_of_a_compiled_package_cannot_break_a_fresh_install():
+    assert str(REQUIREMENTS["pin"].specifier) == "==4.1.0"
+    needed = needed_by("pin", {})
+    compiled = {n for n in needed if n.startswith(("cmeel", "coal", "libcoal", "eigenpy", "libpinocchio"))}
+    assert {"cmeel", "cmeel-boost", "coal", "libcoal", "eigenpy", "libpinocchio"} <= compiled
+    own = {name for name in compiled if name in REQUIREMENTS and is_capped(REQUIREMENTS[name])}
+    pinned_by_pin = {name for name in compiled if any(is_pinned(requirement) for requirement in needed[name])}
+    assert sorted(compiled - own - pinned_by_pin) == []
+
+
+def test_every_requirement_has_an_upper_end_and_admits_what_is_installed():
+    assert [name for name, requirement in REQUIREMENTS.items() if not is_capped(requirement)] == []
+    wrong = [n for n, r in REQUIREMENTS.items() if not r.specifier.contains(importlib.metadata.version(n))]
+    assert wrong == []
+
+
+def tracked_files() -> list[Path]:
+    """The files of the repository; of a copy without git, everything that has a plain name."""
+    listed = subprocess.run(
+        ["git", "ls-files", "-z", "--cached", "--others", "--exclude-standard"],
+        cwd=ROOT,
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    if listed.returncode == 0:
+        paths = [ROOT / name for name in listed.stdout.split("\0") if name]
+    else:
+        made = {".venv", "build", "dist", "__pycache__"}
+        paths = [p for p in ROOT.rglob("*") if not made & set(p.parts) and not p.name.endswith("_cache")]
+    return [path for path in paths if path.is_file()]
+
+
+def test_no_lock_file_and_no_download_address_is_kept():
+    address = re.compile(rb"https?://\S+\.(whl|tar\.gz|zip)\b|--(extra-)?index-url|[/.]pypi\.org/simple")
+    named = re.compile(r".*\.lock|.*-lock\.(json|ya?ml)|requirements.*\.txt|constraints.*\.txt")
+    files = tracked_files()
+    assert ROOT / "pyproject.toml" in files
+    assert [path.name for path in files if named.fullmatch(path.name)] == []
+    texts = [path for path in files if path.suffix not in (".png", ".obj") and path != Path(__file__)]
+    assert [str(path.relative_to(ROOT)) for path in texts if address.search(path.read_bytes())] == []
