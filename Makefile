@@ -2,7 +2,7 @@
 
 VENV := .venv
 python := $(VENV)/bin/python
-pip := $(python) -m pip --quiet --no-input --disable-pip-version-check
+pip := $(python) -m pip --quiet --quiet --no-input --disable-pip-version-check
 linted := src tests examples benchmarks tools
 
 # A sourced ROS workspace puts another Pinocchio, built for another Python, in front of ours.

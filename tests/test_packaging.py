@@ -88,9 +88,10 @@ def test_the_installed_command_answers(installed, tmp_path):
     ]
 
 
-def test_version_and_python_are_said_once_and_the_same():
-    assert pinik.__version__ == PROJECT["version"] == importlib.metadata.version("pinik")
-    assert sys.version_info >= (3, 11)
+def test_the_version_is_the_same_everywhere(installed):
+    (metadata,) = installed.glob("pinik-*.dist-info")
+    assert importlib.metadata.PathDistribution(metadata).version == pinik.__version__ == PROJECT["version"]
+    assert f"## [{pinik.__version__}]" in (ROOT / "CHANGELOG.md").read_text("utf-8")
 
 
 def needed_by(name: str, found: dict[str, list[Requirement]]) -> dict[str, list[Requirement]]:
@@ -143,8 +144,8 @@ def tracked_files() -> list[Path]:
     if listed.returncode == 0:
         paths = [ROOT / name for name in listed.stdout.split("\0") if name]
     else:
-        made = {".venv", "build", "dist", "__pycache__"}
-        paths = [p for p in ROOT.rglob("*") if not made & set(p.parts) and not p.name.endswith("_cache")]
+        made = {".venv", "build", "dist", "__pycache__", ".mypy_cache", ".pytest_cache", ".ruff_cache", ".hypothesis"}
+        paths = [p for p in ROOT.rglob("*") if not made & set(p.relative_to(ROOT).parts)]
     return [path for path in paths if path.is_file()]
 
 

@@ -1,4 +1,4 @@
-"""Make docs/images/robots.png: the arm, the lion and the Panda reach for a ball each. `python tools/hero.py [FRAMES]`."""
+"""Make docs/images/robots.png: the arm, the lion and the Panda reach for a ball each. `python tools/hero.py`"""
 
 from __future__ import annotations
 
@@ -14,9 +14,9 @@ import pinik
 OUT = Path(__file__).parents[1] / "docs" / "images" / "robots.png"
 PANDA = {
     "panda_joint1": -0.25,
-    "panda_joint2": 0.25,
-    "panda_joint4": -1.55,
-    "panda_joint6": 2.75,
+    "panda_joint2": -0.10,
+    "panda_joint4": -1.95,
+    "panda_joint6": 2.65,
     "panda_joint7": 0.6,
     "panda_finger_joint1": 0.034,
 }
@@ -34,7 +34,7 @@ def main() -> None:
     scene = Scene()
     arm, lion, panda = (pinik.load(name) for name in ("arm", "lion", "panda"))
 
-    at = turned((-2.10, -0.55, 0.0), -14)
+    at = turned((-1.72, -0.60, 0.0), -12)
     scene.add_robot(arm, arm.poses["reach"], at)
     ball_at(scene, arm, arm.poses["reach"], "tip", [0, 0, 0.045], 0.045, at)
 
@@ -42,18 +42,18 @@ def main() -> None:
     ground = min(
         lion.placement(f"{paw}_paw", reach).translation[2] for paw in ("right_fore", "left_hind", "right_hind")
     )
-    at = turned((0.95, 0.35, -ground), 200)
+    at = turned((0.84, 0.35, -ground), 200)
     scene.add_robot(lion, reach, at)
     ball_at(scene, lion, reach, "pelvis", [1.47, 0.27, -0.10], 0.06, at)
 
     q = panda.configuration(PANDA)
-    at = turned((2.22, -0.75, 0.0), -150)
+    at = turned((1.90, -0.95, 0.0), -122)
     scene.add_robot(panda, q, at)
     ball_at(scene, panda, q, "panda_hand_tcp", [0, 0, 0], 0.032, at)
 
     render(
-        scene, OUT, size=(1600, 800), scale=2.0, frames=int(sys.argv[1]) if len(sys.argv) > 1 else 96, fov=17.5,
-        camera=(0.05, -8.4, 1.55), look_at=(0.05, 0.0, 0.60), ground=0.0, light=(-0.45, -0.75, 1.25),
+        scene, OUT, size=(1600, 800), scale=2.0, frames=int(sys.argv[1]) if len(sys.argv) > 1 else 96, fov=15.6,
+        camera=(0.05, -8.4, 1.55), look_at=(0.08, 0.0, 0.58), ground=0.0, light=(-0.45, -0.75, 1.25),
     )  # fmt: skip
     Image.open(OUT).convert("RGB").resize((1600, 800), Image.Resampling.LANCZOS).save(OUT, optimize=True)
 

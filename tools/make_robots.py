@@ -5,7 +5,7 @@ from __future__ import annotations
 import sys
 from pathlib import Path
 
-from robots import arm, lion, two_link
+from makers import arm, lion, two_link
 
 
 def files() -> dict[str, bytes]:

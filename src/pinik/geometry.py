@@ -169,11 +169,11 @@ def _load_file(address: str, urdf_path: Path | None, package_dirs: Sequence[str 
     if path is None:
         raise FileNotFoundError(f"there is no mesh '{address}'")
     scene = trimesh.load_scene(path)
-    units = scene.metadata.get("units", "meters")  # COLLADA names them; an STL or OBJ is taken as it is
-    in_metres = trimesh.units.unit_conversion(units, "meters") if path.suffix.lower() == ".dae" else 1.0
     by_color: dict[Color | None, list[trimesh.Trimesh]] = {}
     for mesh in scene.dump():
         if isinstance(mesh, trimesh.Trimesh) and len(mesh.faces):
+            # COLLADA names its unit; an STL or OBJ is taken as it is.
+            in_metres = trimesh.units.unit_conversion(mesh.units or "meters", "meters")
             mesh.apply_transform(np.diag([in_metres, in_metres, in_metres, 1.0]))
             by_color.setdefault(_own_color(mesh), []).append(mesh)
     if not by_color:

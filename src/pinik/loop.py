@@ -251,8 +251,7 @@ def _stepped(dq: Array, solver: JacobianSolver, kinematics: Kinematics, at: Line
         largest = float(np.abs(dq).max())
         if largest > solver.max_step:
             dq = dq * (solver.max_step / largest)
-    if solver.step_size is not None:
-        scale *= solver.step_size
+    scale *= solver.step_size
     if scale != 1.0:
         dq = dq * scale
     return np.array(pinocchio.integrate(kinematics.model, at.q, dq))

@@ -7,13 +7,13 @@ import math
 import numpy as np
 import pinocchio
 import pytest
-from conftest import load_quietly
-from urdf_texts import joint, link
-from urdf_texts import robot as robot_text
 
 import pinik
+from conftest import load_quietly
 from pinik import CCD, Kinematics, Target, Tolerance
 from pinik.limits import Limits
+from urdf_texts import joint, link
+from urdf_texts import robot as robot_text
 
 NEVER = Tolerance(1e-30, 1e-30)
 
@@ -58,7 +58,12 @@ def single_updates(robot, target, solver, q, limits):
         q = after
 
 
-CASES = [("panda", "panda_hand_tcp"), ("kinova", "j2s6s200_end_effector"), ("tiago", "hand_grasping_frame"), ("arm", "tip")]
+CASES = [
+    ("panda", "panda_hand_tcp"),
+    ("kinova", "j2s6s200_end_effector"),
+    ("tiago", "hand_grasping_frame"),
+    ("arm", "tip"),
+]
 
 
 @pytest.mark.parametrize(("name", "frame"), CASES)

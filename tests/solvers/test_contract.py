@@ -110,11 +110,15 @@ def test_counters_count(method, arm):
 
         limits = False  # with limits, a step along them asks for the direction twice
 
-    s = arm.solve("tip", position=[0.9, 0.0, 0.1], method=Counting, restarts=2, max_iterations=7, limits=limits, trace=True)
+    s = arm.solve(
+        "tip", position=[0.9, 0.0, 0.1], method=Counting, restarts=2, max_iterations=7, limits=limits, trace=True
+    )
     assert s.iterations == len(calls)
     assert s.joint_updates == sum(calls)
     assert s.restarts == max(state.attempt for state in s.trace)
-    lasts = [now for now, after in zip(s.trace, [*s.trace[1:], None], strict=True) if after is None or after.iteration == 0]
+    lasts = [
+        now for now, after in zip(s.trace, [*s.trace[1:], None], strict=True) if after is None or after.iteration == 0
+    ]
     assert s.iterations == sum(state.iteration for state in lasts)
     assert s.joint_updates == sum(state.joint_updates for state in lasts)
 
@@ -189,7 +193,10 @@ def test_several_effectors_are_served_at_once(method, lion):
     rng = np.random.default_rng(9)
     middle = 0.5 * (lion.lower + lion.upper)
     goal = lion.configuration(
-        {name: m + 0.5 * rng.uniform(-1, 1) * (h - m) for name, m, h in zip(lion.joint_names, middle, lion.upper, strict=True)}
+        {
+            name: m + 0.5 * rng.uniform(-1, 1) * (h - m)
+            for name, m, h in zip(lion.joint_names, middle, lion.upper, strict=True)
+        }
     )
     frames = ["left_fore_paw", "right_fore_paw", "nose", "tail_tip"]
     targets = [Target(frame, lion.placement(frame, goal).translation) for frame in frames]
@@ -232,7 +239,13 @@ def test_every_kind_of_target_is_reached(method, keywords, panda):
 
 @every_method
 def test_mimicking_joints_move_with_their_leaders(method, panda):
-    s = panda.solve("panda_leftfinger", position=[0.03, 0.0, 0.0], relative_to="panda_rightfinger", method=method, max_iterations=1500)
+    s = panda.solve(
+        "panda_leftfinger",
+        position=[0.03, 0.0, 0.0],
+        relative_to="panda_rightfinger",
+        method=method,
+        max_iterations=1500,
+    )
     missed = abs(s.position_error)
     opening = s.angles["panda_finger_joint1"]
     assert s.angles["panda_finger_joint2"] == opening

@@ -41,7 +41,7 @@ def test_the_transpose_with_a_fixed_alpha_is_that_multiple_of_the_gradient(arm):
     """One step of the loop at α = 0.01, by hand."""
     q0 = arm.random(1)
     target = pinik.Target("tip", [0.5, 0.1, 0.7])
-    states = list(pinik.iterate(arm, target, JacobianTranspose(step_size=0.01), q0, limits=False, max_iterations=1))
+    states = list(pinik.iterate(arm, target, JacobianTranspose(alpha=0.01), q0, limits=False, max_iterations=1))
     J = arm.jacobian("tip", q0)[:3]
     e = target.position - arm.placement("tip", q0).translation
     assert np.allclose(states[1].q - q0, 0.01 * J.T @ e, atol=1e-14)

@@ -51,6 +51,11 @@ def test_every_parameter_says_what_it_is(name):
         assert {"unit", "low", "high", "choices", "optional"} <= set(field.metadata)
 
 
+def test_none_stands_for_no_bound_where_json_has_no_infinity():
+    assert pinik.PseudoInverse(max_step=None).max_step == math.inf
+    assert pinik.CCD(max_residual=None) == pinik.CCD()
+
+
 @pytest.mark.parametrize("value", [math.inf, 10**400, "1", None, True, [1.0]])
 def test_a_damping_that_is_no_finite_number_is_refused(value):
     with pytest.raises(pinik.InputError, match="dls: damping is a finite number from"):

@@ -34,6 +34,7 @@ def parameter(
     high: float | None = None,
     choices: tuple[str, ...] = (),
     optional: bool = False,
+    unbounded: bool = False,
 ) -> Any:
     """A dataclass field that knows its range, unit and meaning; help texts and sliders are made from it.
 
@@ -43,7 +44,8 @@ def parameter(
         unit: Such as "rad".
         low, high: The range, ends included.
         choices: The words allowed, for a choice.
-        optional: Whether None is allowed.
+        optional: Whether None is allowed and means something of its own.
+        unbounded: Whether infinity is allowed; None stands for it, as JSON has none.
     """
     metadata = {
         "help": help,
@@ -52,6 +54,7 @@ def parameter(
         "high": high,
         "choices": choices,
         "optional": optional,
+        "unbounded": unbounded,
     }
     if isinstance(default, dict):
         return dataclasses.field(default_factory=dict, metadata=metadata)
@@ -82,8 +85,12 @@ class Solver:
     patience: ClassVar[Patience] = Patience(5, 0.05)
     """When an attempt counts as stalled."""
 
-    max_step: float = parameter(math.inf, "largest change of one joint in one step", unit="rad or m", low=1e-6)
-    max_residual: float = parameter(math.inf, "D_max: the part of a position residual used", unit="m", low=1e-6)
+    max_step: float = parameter(
+        math.inf, "largest change of one joint in one step", unit="rad or m", low=1e-6, unbounded=True
+    )
+    max_residual: float = parameter(
+        math.inf, "D_max: the part of a position residual used", unit="m", low=1e-6, unbounded=True
+    )
 
     def __post_init__(self) -> None:
         """Check every parameter against its field's range.
@@ -118,7 +125,7 @@ class Solver:
 class JacobianSolver(Solver, ABC):
     """A method whose step is a function of Jacobian and residual; subclasses write `direction` and are complete."""
 
-    step_size: float | None = parameter(1.0, "α: factor on the step, after its clamp", low=1e-6, high=2.0)
+    step_size: float = parameter(1.0, "factor on the step, after its clamp (the thesis's α)", low=1e-6, high=2.0)
     target_jacobian: bool = parameter(False, "take the Jacobian at the target instead of the effector (eq. 3.9)")
 
     @abstractmethod
@@ -149,6 +156,8 @@ def _checked(method: str, field: dataclasses.Field[Any], value: Any) -> Any:
     default = field.default if field.default is not dataclasses.MISSING else {}
     if value is None and about["optional"]:
         return None
+    if value is None and about["unbounded"]:
+        return math.inf
     if about["choices"]:
         if value not in about["choices"]:
             raise InputError(f"{what} is one of {', '.join(map(repr, about['choices']))}; got {value!r}")
@@ -161,18 +170,18 @@ def _checked(method: str, field: dataclasses.Field[Any], value: Any) -> Any:
         if not isinstance(value, Mapping):
             raise InputError(f"{what} maps joint names to numbers; got {value!r}")
         return {str(name): _number(f"{what}[{name!r}]", number, about) for name, number in value.items()}
-    return _number(what, value, about, may_be_infinite=default == math.inf)
+    return _number(what, value, about)
 
 
-def _number(what: str, value: Any, about: Mapping[str, Any], *, may_be_infinite: bool = False) -> float:
+def _number(what: str, value: Any, about: Mapping[str, Any]) -> float:
     low = -math.inf if about["low"] is None else about["low"]
     high = math.inf if about["high"] is None else about["high"]
     number = math.nan
     if isinstance(value, (int, float, np.number)) and not isinstance(value, bool):
         with contextlib.suppress(OverflowError):
             number = float(value)
-    if not low <= number <= high or not (may_be_infinite or math.isfinite(number)):
-        bounds = "a number" if may_be_infinite else "a finite number"
+    if not low <= number <= high or not (about["unbounded"] or math.isfinite(number)):
+        bounds = "a number" if about["unbounded"] else "a finite number"
         if math.isfinite(high):
             bounds += f" from {low:g} to {high:g}"
         elif math.isfinite(low):

@@ -33,7 +33,9 @@ class PseudoInverse(JacobianSolver):
     restarts = 60
     patience = Patience(6, 0.05)
 
-    max_step: float = parameter(0.5, "largest change of one joint in one step", unit="rad or m", low=1e-6)
+    max_step: float = parameter(
+        0.5, "largest change of one joint in one step", unit="rad or m", low=1e-6, unbounded=True
+    )
     cutoff: float = parameter(1e-3, "singular values below this part of the largest are dropped", low=0.0, high=1.0)
     rest_posture: Mapping[str, float] = parameter({}, "joint angles to tend to in the null space", unit="rad or m")
     rest_gain: float = parameter(0.1, "part of the way to the rest posture taken in one step", low=0.0, high=1.0)

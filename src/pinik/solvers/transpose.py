@@ -26,13 +26,18 @@ class JacobianTranspose(JacobianSolver):
     restarts = 20
     patience = Patience(50, 0.02)
 
-    step_size: float | None = parameter(None, "α; None takes the optimal one in every step", low=1e-6, optional=True)
+    max_step: float = parameter(
+        0.5, "largest change of one joint in one step", unit="rad or m", low=1e-6, unbounded=True
+    )
+    alpha: float | None = parameter(
+        None, "α; None takes the optimal one in every step", low=1e-6, high=1e3, optional=True
+    )
 
     def direction(self, J: Array, e: Array) -> Array:
-        """α Jᵀe, or Jᵀe where `step_size` fixes α."""
+        """α Jᵀe."""
         dq: Array = J.T.dot(e)
-        if self.step_size is not None:
-            return dq
+        if self.alpha is not None:
+            return self.alpha * dq
         JJte = J.dot(dq)
         squared = float(JJte.dot(JJte))
         return dq * (float(e.dot(JJte)) / squared) if squared > 0.0 else np.zeros_like(dq)

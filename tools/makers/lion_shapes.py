@@ -79,8 +79,8 @@ OVERLAP = 0.03
 def trunk() -> dict[str, Surfaces]:
     """One skin, cut at the spine's joints; balls in the joints close the cuts when it bends."""
     skin = mesh(TRUNK, TRUNK_CELL)
-    waist = mesh(ellipsoid(SPINE, (0.15, 0.155, 0.18)), 0.045)
-    ribs = mesh(ellipsoid(CHEST, (0.18, 0.185, 0.225)), 0.05)
+    waist = mesh(ellipsoid(SPINE, (0.14, 0.146, 0.170)), 0.045)
+    ribs = mesh(ellipsoid(CHEST, (0.17, 0.175, 0.213)), 0.05)
 
     def piece(start: float, end: float, *joints: Mesh) -> Surfaces:
         part, _ = split(skin, half_space((1, 0, 0), end + OVERLAP))
@@ -237,21 +237,21 @@ def mane() -> dict[str, Surfaces]:
                 mesh(cap, 0.05),
                 _ruff((1.210, 0, 1.085), (0.138, 0.133), 30, (0.15, 0.20, 0.21), 0.62, 0.035, 0.032, first=6),
             ]),
-            "dark_mane": _ruff((1.145, 0, 1.080), (0.150, 0.160), 30, (0.17, 0.24, 0.28), 0.70, 0.055, 0.038),
+            "dark_mane": _ruff((1.145, 0, 1.080), (0.150, 0.160), 30, (0.22, 0.24, 0.28), 0.75, 0.055, 0.038),
         },
         "neck": {
             "dark_mane": joined([
                 mesh(scruff, 0.065),
-                _ruff((1.06, 0, 1.03), (0.155, 0.165), 28, (0.16, 0.23, 0.34), 0.72, 0.08, 0.044, first=6),
-                _ruff((0.98, 0, 0.97), (0.160, 0.190), 28, (0.15, 0.22, 0.33), 0.95, 0.08, 0.044),
+                _ruff((1.06, 0, 1.03), (0.155, 0.165), 28, (0.24, 0.24, 0.34), 0.75, 0.08, 0.044, first=6),
+                _ruff((0.98, 0, 0.97), (0.160, 0.190), 28, (0.26, 0.24, 0.33), 0.95, 0.08, 0.044),
             ]),
         },
         "chest": {
             "dark_mane": joined([
                 mesh(ellipsoid((0.89, 0, 0.90), (0.14, 0.165, 0.22)), 0.065),
-                _ruff((0.90, 0, 0.90), (0.12, 0.17), 20, (0.14, 0.13, 0.22), 0.8, 0.07, 0.046, first=9),
-                _ruff((0.97, 0, 0.88), (0.10, 0.12), 11, (0.10, 0.15, 0.19), 0.25, 0.10, 0.042, first=95, span=170),
-                _ruff((0.99, 0, 0.80), (0.08, 0.08), 9, (0.10, 0.12, 0.17), 0.30, 0.09, 0.036, first=100, span=160),
+                _ruff((0.90, 0, 0.90), (0.12, 0.17), 15, (0.26, 0.16, 0.20), 1.0, 0.08, 0.048, first=-118, span=236),
+                _ruff((0.97, 0, 0.88), (0.10, 0.12), 11, (0.10, 0.15, 0.19), 0.25, 0.10, 0.042, first=112, span=136),
+                _ruff((0.99, 0, 0.80), (0.08, 0.08), 9, (0.10, 0.12, 0.17), 0.30, 0.09, 0.036, first=105, span=150),
             ]),
         },
     }  # fmt: skip
@@ -349,12 +349,12 @@ def tail(number: int, count: int) -> Surfaces:
 def _tuft(k: int) -> Mesh:
     turn = 2 * math.pi * k / 10
     y, z = (0.0, 0.0) if k == 10 else (math.cos(turn), math.sin(turn))
-    end = TAIL_SEGMENT + 0.10 - (0.045 if k % 2 else 0.0)
+    end = TAIL_SEGMENT + 0.15 - (0.055 if k % 2 else 0.0)
     path: Sequence[Point] = [
         (-0.030, 0.012 * y, 0.012 * z),
-        (-0.08, 0.040 * y, 0.040 * z),
-        (-0.14, 0.050 * y, 0.050 * z),
-        (-end + 0.025, 0.026 * y, 0.026 * z),
+        (-0.09, 0.032 * y, 0.032 * z),
+        (-0.16, 0.040 * y, 0.040 * z),
+        (-end + 0.05, 0.024 * y, 0.024 * z),
         (-end, 0.010 * y, 0.010 * z),
     ]
-    return lock(path, [0.016, 0.030, 0.032, 0.016, 0.001], (0, y, z) if k < 10 else (0, 0, 1), 0.75, 6)
+    return lock(path, [0.014, 0.024, 0.027, 0.017, 0.001], (0, y, z) if k < 10 else (0, 0, 1), 0.75, 6)
