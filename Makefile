@@ -3,7 +3,6 @@
 VENV := .venv
 python := $(VENV)/bin/python
 pip := $(python) -m pip --quiet --quiet --no-input --disable-pip-version-check
-linted := src tests examples benchmarks tools
 
 # A sourced ROS workspace puts another Pinocchio, built for another Python, in front of ours.
 unexport PYTHONPATH
@@ -26,8 +25,8 @@ test: lint
 	@$(python) -m pytest --numprocesses=auto --dist=worksteal
 
 lint: $(VENV)/installed-dev
-	@$(python) -m ruff check $(linted)
-	@$(python) -m ruff format --check $(linted)
+	@$(python) -m ruff check .
+	@$(python) -m ruff format --check .
 	@$(python) -m mypy
 
 bench: $(VENV)/installed-dev

@@ -133,6 +133,13 @@ def test_links_inside_the_repository_lead_somewhere(page):
             assert anchor in anchors(target), f"{page_id(page)} links to {link}"
 
 
+def test_the_files_that_pages_name_exist():
+    folders = "src|tests|tools|docs|urdf|benchmarks|examples"
+    for page in PAGES:
+        for name in re.findall(rf"`((?:{folders})/[\w./-]*)`", page.read_text("utf-8")):
+            assert (ROOT / name.replace("NAME", "arm")).exists(), f"{page_id(page)} names {name}"
+
+
 def test_the_make_targets_that_pages_name_exist():
     targets = set(re.findall(r"^(\w+):", (ROOT / "Makefile").read_text("utf-8"), re.MULTILINE))
     named = {name for page in PAGES for name in re.findall(r"(?:`|^)make (\w+)", page.read_text("utf-8"), re.MULTILINE)}

@@ -90,3 +90,11 @@ def test_the_trace_is_kept_only_when_asked(arm):
     s = arm.solve("tip", position=[0.3, 0.1, 0.8], trace=True)
     assert s.trace[-1].status is Status.CONVERGED
     assert len(s.trace) == s.iterations + s.restarts + 1
+
+
+def test_a_solution_travels_to_other_processes_with_its_robot(panda):
+    s = panda.solve("panda_hand_tcp", position=[0.4, 0.1, 0.5], trace=True)
+    copy = pickle.loads(pickle.dumps(s))
+    assert copy.to_dict() == s.to_dict()
+    again = copy.robot.placement("panda_hand_tcp", copy.q)
+    assert np.array_equal(again.homogeneous, panda.placement("panda_hand_tcp", s.q).homogeneous)

@@ -8,7 +8,7 @@ import threading
 import warnings
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -30,7 +30,7 @@ __all__ = ["Joint", "Robot", "load"]
 
 Array = NDArray[np.float64]
 
-_ROOT_JOINT = "root_joint"
+_WIDEST_RANGE = 100.0  # [rad or m]: wider limits, such as the ±1e16 of some files, are none
 _AXES = {
     "local_world_aligned": pinocchio.LOCAL_WORLD_ALIGNED,
     "local": pinocchio.LOCAL,
@@ -68,6 +68,22 @@ class Joint:
     def has_one_axis(self) -> bool:
         """Whether one scalar (rad, or m for prismatic) describes the joint."""
         return self.kind in ("revolute", "continuous", "prismatic")
+
+    def range_to_draw_from(self, lower: float, upper: float, slide_about: float = 0.0) -> tuple[float, float]:
+        """The limits [rad or m] made finite, for drawing angles at random.
+
+        Without limits, or with limits so wide that they are none, ±π for a turning joint and ±1 m about `slide_about`
+        for a sliding one; with one limit, as much from there on.
+        """
+        half = 1.0 if self.kind == "prismatic" else math.pi
+        if upper - lower <= _WIDEST_RANGE:
+            return lower, upper
+        if abs(lower) <= _WIDEST_RANGE:
+            return lower, lower + 2.0 * half
+        if abs(upper) <= _WIDEST_RANGE:
+            return upper - 2.0 * half, upper
+        middle = slide_about if self.kind == "prismatic" else 0.0
+        return middle - half, middle + half
 
 
 class Robot:
@@ -107,6 +123,7 @@ class Robot:
         self.package_dirs = tuple(Path(folder) for folder in package_dirs)
         self.model, model_warnings = build_model(description, root=root, mimic=mimic)
         self.warnings = (*description.warnings, *model_warnings)
+        self._mimic = mimic
         self._srdf = srdf
         self._local = threading.local()
         self._frames = _frames_by_name(self.model)
@@ -123,6 +140,11 @@ class Robot:
         return (
             f"<Robot {self.name!r}: {len(self.joint_names)} joints, {len(self.frame_names)} frames, {self.root} root>"
         )
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        # Built anew: a serialized Pinocchio 4.1.0 model with mimic joints crashes when it is used.
+        build = partial(Robot, name=self.name, root=self.root, package_dirs=self.package_dirs)
+        return partial(build, mimic=self._mimic, srdf=self._srdf), (self.description,)
 
     @property
     def data(self) -> Any:
@@ -193,8 +215,8 @@ class Robot:
     def random(self, rng: np.random.Generator | int | None = None) -> Array:
         """A random configuration (nq,).
 
-        Angles are uniform inside the limits, in ±π where a turning joint has none and in ±1 m where a sliding one
-        has none; free joint placements are uniform in orientation and in a cube of ±1 m.
+        Angles are uniform inside the limits; where there are none, in ±π for a turning joint and ±1 m for a sliding
+        one (see `Joint.range_to_draw_from`); free joint placements are uniform in orientation and in a cube of ±1 m.
 
         Args:
             rng: A `numpy.random.Generator`, or a seed for one.
@@ -202,9 +224,7 @@ class Robot:
         rng = np.random.default_rng(rng)
         q = self.neutral()
         for joint, lower, upper in zip(self._settable, self.lower, self.upper, strict=True):
-            reach = 1.0 if joint.kind == "prismatic" else math.pi
-            low = lower if np.isfinite(lower) else (upper - 2 * reach if np.isfinite(upper) else -reach)
-            high = upper if np.isfinite(upper) else low + 2 * reach
+            low, high = joint.range_to_draw_from(lower, upper)
             self.set_angle(q, joint, min(rng.uniform(low, high), high))  # which numpy may round past the end
         for joint in self.joints:
             if joint.kind == "floating":

@@ -68,7 +68,7 @@ class State(NamedTuple):
         return _largest(error.orientation for error in self.errors)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Solution:
     """The answer of a solve, checked by plain Pinocchio.
 

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import math
-
 import numpy as np
 from numpy.typing import NDArray
 
@@ -16,8 +14,6 @@ Array = NDArray[np.float64]
 
 _MASK = (1 << 64) - 1
 _GOLDEN = 0x9E3779B97F4A7C15
-_HALF_TURN = math.pi
-_HALF_SLIDE = 1.0  # [m] for a slide without limits
 
 
 def uniform(seed: int, target: int, attempt: int, index: int) -> float:
@@ -31,7 +27,7 @@ def uniform(seed: int, target: int, attempt: int, index: int) -> float:
 def random_start(kinematics: Kinematics, limits: Limits, q0: Array, *, seed: int, target: int, attempt: int) -> Array:
     """A configuration with every free one-axis joint drawn anew, and all others as in `q0`.
 
-    Angles are uniform inside the limits; in ±π about zero for a hinge without, ±1 m about `q0` for a slide without.
+    Angles are uniform in `Joint.range_to_draw_from`, slides without limits about `q0`.
     """
     q = q0.copy()
     robot = kinematics.robot
@@ -39,17 +35,8 @@ def random_start(kinematics: Kinematics, limits: Limits, q0: Array, *, seed: int
         if not (joint.has_one_axis and joint.nv and kinematics.free[joint.idx_v]):
             continue
         u = uniform(seed, target, attempt, joint.idx_v)
-        low, high = float(limits.lower[joint.idx_q]), float(limits.upper[joint.idx_q])
-        if joint.kind == "prismatic":
-            centre, half = float(q0[joint.idx_q]), _HALF_SLIDE
-        else:
-            centre, half = 0.0, _HALF_TURN
-        if joint.nq == 2 or (not math.isfinite(low) and not math.isfinite(high)):
-            low, high = centre - half, centre + half
-        elif not math.isfinite(low):
-            low = high - 2.0 * half
-        elif not math.isfinite(high):
-            high = low + 2.0 * half
+        entry = joint.idx_q
+        low, high = joint.range_to_draw_from(float(limits.lower[entry]), float(limits.upper[entry]), float(q0[entry]))
         robot.set_angle(q, joint, min(low + u * (high - low), high))  # the sum may be rounded past the end
     return q
 

@@ -9,7 +9,7 @@ import pinocchio
 import pytest
 
 import pinik
-from conftest import load_quietly
+from robots import load_quietly
 from pinik import CCD, Kinematics, Target, Tolerance
 from pinik.limits import Limits
 from urdf_texts import joint, link
