@@ -49,7 +49,7 @@ class CCD(SweepingSolver):
     """
 
     name = "ccd"
-    max_iterations = 500
+    max_iterations = 2000
     restarts = 30
     patience = Patience(30, 0.05)
 
