@@ -13,7 +13,7 @@ import pytest
 import pinik
 from pinik.kinematics import Kinematics
 from pinik.limits import Limits
-from pinik.loop import _advance
+from pinik.stepping import advance
 
 NEVER = pinik.Tolerance(1e-30, 1e-30)
 FRAME = "panda_hand_tcp"
@@ -38,7 +38,7 @@ def test_an_iteration_on_a_panda_pose(benchmark, panda, target, method):
     q = panda.random(2)
 
     def iteration():
-        return _advance(solver, kinematics, limits, kinematics.linearize(q), NEVER)
+        return advance(solver, kinematics, limits, kinematics.linearize(q), NEVER)
 
     benchmark(iteration)
 

@@ -52,6 +52,7 @@ class TestWrap:
             (-1.0, 1.0, 1.2 + TURN, 1.2),
             (-1.0, 1.0, TURN - 1.2, -1.2),
             (-0.1, 7.0, -0.2, TURN - 0.2),
+            (-1.0, 8.0, 3.0 - TURN, 3.0),
         ],
     )
     def test_of_chosen_angles(self, low, high, angle, expected):
@@ -145,6 +146,17 @@ class TestBlocked:
             blocked = limits.blocked(q, wanted, limits.clip(wanted))
             assert blocked[slide.idx_v] == expected
             assert blocked.sum() == expected
+
+    def test_are_never_coordinates_without_limits(self):
+        loaded = load_quietly("lion", root="free_flyer")  # whose last entry of q is a bounded one
+        limits = Limits.of(loaded)
+        q = loaded.neutral()
+        q[7:] = loaded.upper
+        wanted = q.copy()
+        wanted[7:] += 1.0
+        blocked = limits.blocked(q, wanted, limits.clip(wanted))
+        assert not blocked[:6].any()
+        assert blocked[6:].all()
 
     def test_are_one_each_for_the_tangent_coordinates(self, lion):
         limits = Limits.of(lion)

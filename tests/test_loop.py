@@ -10,8 +10,8 @@ import pytest
 
 import pinik
 from by_hand import axis, limit, origin
-from conftest import load_quietly
 from pinik import Status, Target
+from robots import load_quietly
 from urdf_texts import joint, link
 from urdf_texts import robot as robot_text
 

@@ -22,9 +22,7 @@ ONE_AXIS = ("revolute", "continuous", "prismatic")
 TILTED = '<origin xyz="0.1 -0.2 0.3" rpy="0.4 0.5 -0.6"/><axis xyz="0.48 -0.6 0.64"/>'
 
 
-def oracle(
-    text: str | bytes, angles: Mapping[str, float], links: tuple[str, ...], root: str
-) -> NDArray[np.float64]:
+def oracle(text: str | bytes, angles: Mapping[str, float], links: tuple[str, ...], root: str) -> NDArray[np.float64]:
     """yourdfpy's placements of the links at the leaders' angles (len(links), 4, 4)."""
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
@@ -36,9 +34,7 @@ def oracle(
     return np.array([reader.get_transform(name, root) for name in links])
 
 
-def placements(
-    model: pinocchio.Model, angles: Mapping[str, float], links: tuple[str, ...]
-) -> NDArray[np.float64]:
+def placements(model: pinocchio.Model, angles: Mapping[str, float], links: tuple[str, ...]) -> NDArray[np.float64]:
     """Pinocchio's placements of the links (len(links), 4, 4); `angles` may name more joints than are free."""
     q = pinocchio.neutral(model)
     for name, shape in zip(model.names, model.joints, strict=True):
@@ -68,9 +64,7 @@ def mimic_pair(leader: str, follower: str, *, branch: bool, multiplier: float = 
     ("leader", "follower"),
     [kinds for kinds in itertools.product(ONE_AXIS, ONE_AXIS) if kinds != ("continuous", "prismatic")],
 )
-def test_a_mimic_joint_follows_as_yourdfpy_says(
-    leader: str, follower: str, multiplier: float, branch: bool
-) -> None:
+def test_a_mimic_joint_follows_as_yourdfpy_says(leader: str, follower: str, multiplier: float, branch: bool) -> None:
     text = mimic_pair(leader, follower, branch=branch, multiplier=multiplier)
     model, left_free = build_model(urdf.read(text))
     assert left_free == ()
@@ -99,8 +93,7 @@ def test_a_follower_that_comes_before_its_leader_is_left_free_and_named_and_othe
     )
     model, left_free = build_model(urdf.read(text))
     assert left_free == (
-        "joint 'early': it mimics 'leader', which comes after it in Pinocchio's order of joints; "
-        "it is left free",
+        "joint 'early': it mimics 'leader', which comes after it in Pinocchio's order of joints; it is left free",
     )
     assert [shape.nq for shape in model.joints][1:] == [1, 1, 0]
 
@@ -159,9 +152,7 @@ def test_the_mimic_joints_of_real_robots_follow_as_yourdfpy_says(name: str) -> N
 
 
 @pytest.mark.parametrize(("name", "count"), [("romeo", 12), ("talos_full", 10), ("talos_full_box", 10)])
-def test_robots_with_followers_before_their_leaders_load_with_these_alone_left_free(
-    name: str, count: int
-) -> None:
+def test_robots_with_followers_before_their_leaders_load_with_these_alone_left_free(name: str, count: int) -> None:
     description = urdf.read(find(name).urdf)
     model, left_free = build_model(description)
     assert len(left_free) == count
@@ -300,7 +291,5 @@ def test_whatever_else_pinocchio_raises_is_a_load_error_with_its_cause(
 
     monkeypatch.setattr(model_module.pinocchio, "buildModelFromXML", refuse)
     for text in (pair(), chain(200, "fixed")):
-        with pytest.raises(
-            RobotLoadError, match="Pinocchio refuses it: Some components of something are wrong"
-        ):
+        with pytest.raises(RobotLoadError, match="Pinocchio refuses it: Some components of something are wrong"):
             build_model(urdf.read(text))

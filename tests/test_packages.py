@@ -23,9 +23,7 @@ def made(path: Path) -> Path:
     return path
 
 
-@pytest.mark.parametrize(
-    "given", ["", "robot_description"], ids=["what holds the package", "the package itself"]
-)
+@pytest.mark.parametrize("given", ["", "robot_description"], ids=["what holds the package", "the package itself"])
 def test_a_package_is_found_in_a_given_directory(tmp_path: Path, given: str) -> None:
     mesh = made(tmp_path / "robot_description" / "meshes" / "arm.stl")
     for directory in (tmp_path / given, str(tmp_path / given)):
@@ -35,9 +33,7 @@ def test_a_package_is_found_in_a_given_directory(tmp_path: Path, given: str) -> 
 
 def test_a_package_whose_folder_is_called_otherwise_is_known_by_its_manifest(tmp_path: Path) -> None:
     mesh = made(tmp_path / "checkout-2" / "arm.stl")
-    (tmp_path / "checkout-2" / "package.xml").write_text(
-        "<package><name> robot_description </name></package>"
-    )
+    (tmp_path / "checkout-2" / "package.xml").write_text("<package><name> robot_description </name></package>")
     assert resolve("package://robot_description/arm.stl", package_dirs=[tmp_path / "checkout-2"]) == mesh
     assert resolve("package://other/arm.stl", package_dirs=[tmp_path / "checkout-2"]) is None
 
@@ -65,17 +61,13 @@ def test_a_package_is_found_through_ros_package_path(
     assert resolve("package://p/arm.stl") == mesh
 
 
-def test_ros_package_path_may_name_the_package_itself(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_ros_package_path_may_name_the_package_itself(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     mesh = made(tmp_path / "p" / "arm.stl")
     monkeypatch.setenv("ROS_PACKAGE_PATH", str(tmp_path / "p"))
     assert resolve("package://p/arm.stl") == mesh
 
 
-def test_a_package_is_found_through_ament_prefix_path(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_package_is_found_through_ament_prefix_path(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     mesh = made(tmp_path / "install" / "share" / "p" / "arm.stl")
     monkeypatch.setenv("AMENT_PREFIX_PATH", os.pathsep.join(["/opt/ros/none", str(tmp_path / "install")]))
     assert resolve("package://p/arm.stl") == mesh
@@ -111,9 +103,7 @@ def test_a_file_address_is_taken_from_the_root_and_decoded(tmp_path: Path) -> No
     assert resolve(f"file://localhost{tmp_path}/two%20words.stl") == mesh
 
 
-def test_a_plain_path_is_absolute_or_relative_to_the_urdf_file(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_plain_path_is_absolute_or_relative_to_the_urdf_file(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     mesh = made(tmp_path / "meshes" / "arm.stl")
     urdf_path = made(tmp_path / "urdf" / "robot.urdf")
     assert resolve(str(mesh)) == mesh

@@ -182,6 +182,25 @@ class TestProof:
         assert proof(arm, Target("tip", (0, L1 - L2 + 1e-9, 0)), limits=False) is None
         assert proof(arm, Target("tip", (0, L1 + L2 + 1e-3, 0)), limits=False).bound == pytest.approx(L1 + L2)
 
+    @pytest.mark.parametrize("stiff", [1, 2, 3])
+    def test_cuts_the_chain_where_that_proves_most(self, stiff):
+        lengths = (0.5, 0.4, 0.3, 0.2)
+        bounds = [(-0.1, 3.1)] * 3
+        bounds[stiff - 1] = (1.5, 1.6)  # this one cannot stretch
+        text = robot(
+            *(link(f"l{i}") for i in range(6)),
+            joint("j0", "l0", "l1", axis(0, 0, 1), kind="continuous", limit=""),
+            *(
+                joint(f"j{i}", f"l{i}", f"l{i + 1}", origin((lengths[i - 1], 0, 0)), axis(0, 0, 1), limit=limit(*b))
+                for i, b in enumerate(bounds, start=1)
+            ),
+            joint("end", "l4", "l5", origin((lengths[3], 0, 0)), kind="fixed", limit=""),
+        )
+        before, after = lengths[stiff - 1], lengths[stiff]
+        bent = math.sqrt(before**2 + after**2 + 2 * before * after * math.cos(1.5))
+        found = proof(load_quietly(text), Target("l5", (3, 0, 0)))
+        assert found.bound == pytest.approx(bent + sum(lengths) - before - after)
+
     def test_counts_what_lies_along_the_hinge(self):
         text = robot(
             *(link(name) for name in "abcd"),
@@ -200,7 +219,16 @@ class TestProof:
         text = robot(
             *(link(name) for name in "abc"),
             joint("turn", "a", "b", origin((1, 2, 3), (0.3, 0, 0)), axis(0, 0, 1), kind="continuous", limit=""),
-            joint("slide", "b", "c", origin((0.3, 0, 0)), axis(1, 0, 0), kind="prismatic", limit=limit(-0.1, 0.5)),
+            # a quarter turn about z: the slide's own −y is its parent's x
+            joint(
+                "slide",
+                "b",
+                "c",
+                origin((0.3, 0, 0), (0, 0, math.pi / 2)),
+                axis(0, -1, 0),
+                kind="prismatic",
+                limit=limit(-0.1, 0.5),
+            ),
         )
         loaded = load_quietly(text)
         direction = np.array([0.6, 0, 0.8])

@@ -2,6 +2,7 @@ from __future__ import annotations
 
 import io
 import math
+import pickle
 import re
 import shutil
 import warnings
@@ -461,6 +462,28 @@ class TestRandom:
             assert (values[bounded] >= robot.lower[bounded]).all()
             assert (values[bounded] <= robot.upper[bounded]).all()
 
+    @pytest.mark.parametrize(
+        ("kind", "limits", "drawn_from"),
+        [
+            ("revolute", (-3.0, 9.0), (-3.0, 9.0)),
+            ("revolute", (-1e16, 1e16), (-math.pi, math.pi)),
+            ("revolute", (1.0, 1e16), (1.0, 1.0 + 2 * math.pi)),
+            ("revolute", (-1e16, 1.0), (1.0 - 2 * math.pi, 1.0)),
+            ("prismatic", (-1e16, 1e16), (-1.0, 1.0)),
+            ("prismatic", (0.0, 1e16), (0.0, 2.0)),
+            ("continuous", (-math.inf, math.inf), (-math.pi, math.pi)),
+        ],
+    )
+    def test_takes_limits_that_no_one_reaches_for_none(self, kind, limits, drawn_from):
+        bounds = "" if kind == "continuous" else limit(*limits)
+        loaded = load_quietly(robot(link("a"), link("b"), joint("j", "a", "b", kind=kind, limit=bounds)))
+        rng = np.random.default_rng(14)
+        values = np.array([loaded.angles(loaded.random(rng))["j"] for _ in range(500)])
+        low, high = drawn_from
+        assert ((values >= low) & (values <= high)).all()
+        assert values.min() < low + 0.1 * (high - low)
+        assert values.max() > high - 0.1 * (high - low)
+
     def test_fills_the_limits(self, panda):
         rng = np.random.default_rng(11)
         fractions = []
@@ -685,6 +708,22 @@ class TestLoad:
             "sys.exit(any(name in sys.modules for name in ('yourdfpy', 'trimesh', 'meshcat', 'scipy')))"
         )
         assert subprocess.run([sys.executable, "-c", code], check=False).returncode == 0
+
+    @pytest.mark.parametrize(
+        ("name", "options"), [("lion", {"root": "free_flyer"}), ("panda", {}), ("panda", {"mimic": False})]
+    )
+    def test_makes_a_robot_that_another_process_can_have(self, name, options):
+        loaded = load_quietly(name, **options)
+        with warnings.catch_warnings():
+            warnings.simplefilter("error")
+            copy = pickle.loads(pickle.dumps(loaded))
+        assert copy.model == loaded.model
+        assert (copy.name, copy.root, copy.mimics) == (loaded.name, loaded.root, loaded.mimics)
+        assert copy.warnings == loaded.warnings
+        assert set(copy.poses) == set(loaded.poses)
+        q = loaded.random(15)
+        for frame in loaded.frame_names[-3:]:
+            assert copy.placement(frame, q) == loaded.placement(frame, q)
 
     def test_shows_itself_in_a_line(self, arm: Any):
         assert repr(arm) == f"<Robot 'arm': 12 joints, {len(arm.frame_names)} frames, fixed root>"

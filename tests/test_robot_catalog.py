@@ -124,9 +124,7 @@ def test_the_file_that_holds_no_robot_says_so() -> None:
         urdf.read(find(BROKEN).urdf)
 
 
-def test_the_installed_folder_comes_before_the_checkout_s(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_the_installed_folder_comes_before_the_checkout_s(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     package = tmp_path / "src" / "pinik"
     (tmp_path / "urdf").mkdir()
     (tmp_path / "urdf" / "checkout.urdf").touch()

@@ -188,9 +188,7 @@ FAULTS = {
 
 
 @pytest.mark.parametrize(("text", "element", "cause"), FAULTS.values(), ids=FAULTS)
-def test_each_fault_is_refused_with_its_element_and_its_cause(
-    text: str, element: str | None, cause: str
-) -> None:
+def test_each_fault_is_refused_with_its_element_and_its_cause(text: str, element: str | None, cause: str) -> None:
     with pytest.raises(RobotLoadError) as caught:
         urdf.read(text)
     assert caught.value.element == element
@@ -210,9 +208,7 @@ WARNINGS = {
     ),
     "a mimic of nobody": (pair('<mimic joint="k"/>'), "joint 'j': it mimics 'k', and there is no such joint"),
     "a mimic of a fixed joint": (
-        robot(
-            *map(link, "abc"), joint("k", "a", "b", kind="fixed"), joint("j", "b", "c", '<mimic joint="k"/>')
-        ),
+        robot(*map(link, "abc"), joint("k", "a", "b", kind="fixed"), joint("j", "b", "c", '<mimic joint="k"/>')),
         "joint 'j': it mimics 'k', which is a fixed joint; it is left free",
     ),
     "a floating mimic": (
@@ -253,9 +249,7 @@ SILENT = {
     "soft limits of 0": pair('<safety_controller soft_lower_limit="0" soft_upper_limit="0" k_velocity="x"/>'),
     "no efforts": pair(limit='<limit lower="-1" upper="1"/>'),
     "empty dynamics": pair("<dynamics/>"),
-    "a limit without end on a continuous joint": pair(
-        limit='<limit lower="-inf" upper="inf"/>', kind="continuous"
-    ),
+    "a limit without end on a continuous joint": pair(limit='<limit lower="-inf" upper="inf"/>', kind="continuous"),
     "an axis of zero on a fixed joint": pair('<axis xyz="0 0 0"/>', kind="fixed"),
     "a mirrored mesh": robot(shape('<mesh filename="m.stl" scale="1 -1 1"/>')),
     "an undefined material": robot(
@@ -328,9 +322,7 @@ def test_a_chain_of_mimics_names_its_ultimate_leader() -> None:
     assert mimics == {"first": Mimic("third", -6.0, 2.0), "second": Mimic("third", -3.0, 0.5), "third": None}
 
 
-@pytest.mark.parametrize(
-    "name", ["ü ö", "日本", "a&amp;b", "&lt;x&gt;", "&quot;'", " a ", "a&#10;b", "a&#9;b", "😀"]
-)
+@pytest.mark.parametrize("name", ["ü ö", "日本", "a&amp;b", "&lt;x&gt;", "&quot;'", " a ", "a&#10;b", "a&#9;b", "😀"])
 def test_any_name_survives_the_way_to_pinocchio(name: str) -> None:
     description = urdf.read(robot(link("a"), link(name), joint(name, "a", name)))
     model = pinocchio.buildModelFromXML(description.xml)
@@ -468,9 +460,7 @@ def mutated(draw: st.DrawFn) -> str:
             case "move":
                 draw(st.sampled_from(holders)).append(copy.deepcopy(element))
             case "retag":
-                element.tag = draw(
-                    st.sampled_from(["link", "joint", "origin", "axis", "limit", "mimic", "box"])
-                )
+                element.tag = draw(st.sampled_from(["link", "joint", "origin", "axis", "limit", "mimic", "box"]))
     text = ElementTree.tostring(root, encoding="unicode")
     return text[: draw(st.integers(1, len(text)))] if draw(st.integers(0, 9)) == 0 else text
 

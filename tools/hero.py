@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import sys
 from pathlib import Path
 
 import numpy as np
@@ -52,10 +51,10 @@ def main() -> None:
     ball_at(scene, panda, q, "panda_hand_tcp", [0, 0, 0], 0.032, at)
 
     render(
-        scene, OUT, size=(1600, 800), scale=2.0, frames=int(sys.argv[1]) if len(sys.argv) > 1 else 96, fov=15.6,
+        scene, OUT, size=(1600, 800), scale=1.0, frames=80, fov=15.6,
         camera=(0.05, -8.4, 1.55), look_at=(0.08, 0.0, 0.58), ground=0.0, light=(-0.45, -0.75, 1.25),
     )  # fmt: skip
-    Image.open(OUT).convert("RGB").resize((1600, 800), Image.Resampling.LANCZOS).save(OUT, optimize=True)
+    Image.open(OUT).convert("RGB").save(OUT, optimize=True)
 
 
 if __name__ == "__main__":

@@ -86,7 +86,7 @@ def render(
     size: tuple[int, int] = (900, 700),
     fov: float = 26.0,
     frames: int = 48,
-    scale: float = 2.0,
+    scale: float = 1.0,
     light: Point = (0.5, -0.7, 1.2),
     background: Sequence[float] = (0.93, 0.935, 0.94),
     ground: float | None = None,

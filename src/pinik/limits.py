@@ -63,13 +63,11 @@ class Limits:
         outside = self.turning & ((q < self.lower) | (q > self.upper))
         if not outside.any():
             return q
-        q = q.copy()
-        for i in np.flatnonzero(outside):
-            turn = 2.0 * math.pi
-            nearest_to_middle = q[i] - turn * round((q[i] - 0.5 * (self.lower[i] + self.upper[i])) / turn)
-            inside = self.lower[i] + (q[i] - self.lower[i]) % turn
-            q[i] = inside if inside <= self.upper[i] else nearest_to_middle
-        return q
+        middle = 0.5 * (self.lower[outside] + self.upper[outside])
+        turn = 2.0 * math.pi
+        wrapped = q.copy()
+        wrapped[outside] -= turn * np.round((q[outside] - middle) / turn)
+        return wrapped
 
     def blocked(self, q: Array, wanted: Array, inside: Array) -> NDArray[np.bool_]:
         """(nv,) the coordinates that sat at a limit at `q` and would leave it towards `wanted`; `inside`: its clip."""

@@ -176,7 +176,5 @@ def _meets(angle: float, low: float, high: float) -> bool:
 
 
 def _joint_range(joint: Joint, limits: Limits) -> tuple[float, float]:
-    if joint.kind == "continuous":
-        return -math.inf, math.inf
     ends = [joint.multiplier * float(end[joint.idx_q]) + joint.offset for end in (limits.lower, limits.upper)]
     return min(ends), max(ends)

@@ -225,7 +225,7 @@ class Robot:
         q = self.neutral()
         for joint, lower, upper in zip(self._settable, self.lower, self.upper, strict=True):
             low, high = joint.range_to_draw_from(lower, upper)
-            self.set_angle(q, joint, min(rng.uniform(low, high), high))  # which numpy may round past the end
+            self.set_angle(q, joint, rng.uniform(low, high))
         for joint in self.joints:
             if joint.kind == "floating":
                 quaternion = rng.normal(size=4)

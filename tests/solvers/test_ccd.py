@@ -9,9 +9,9 @@ import pinocchio
 import pytest
 
 import pinik
-from robots import load_quietly
 from pinik import CCD, Kinematics, Target, Tolerance
 from pinik.limits import Limits
+from robots import load_quietly
 from urdf_texts import joint, link
 from urdf_texts import robot as robot_text
 

@@ -1,0 +1,84 @@
+"""One run of one solver from one start: the loop that every solve, study and live view drains."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Generator, Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .kinematics import Kinematics
+from .limits import Limits
+from .solution import State, Status
+from .solvers import JacobianSolver, Patience, Solver, SweepingSolver
+from .stepping import advance
+from .targets import Target, Tolerance
+
+__all__ = ["TO_THE_END", "run"]
+
+Array = NDArray[np.float64]
+
+TO_THE_END = Patience(50, 1e-4)
+"""How patiently a run is followed to its end when no other attempt waits."""
+
+
+def run(
+    solver: Solver,
+    kinematics: Kinematics,
+    limits: Limits,
+    start: Array,
+    max_iterations: int,
+    tolerance: Tolerance,
+    patience: Patience,
+    *,
+    judge_limits_at_end: bool = False,
+    downhill: bool = False,
+    attempt: int = 0,
+) -> Generator[State, Sequence[Target] | None, None]:
+    """States of one attempt.
+
+    With `judge_limits_at_end` a Jacobian method steps freely until it has converged; what then lies outside the
+    limits is turned by whole turns, and where that is not enough put inside and led on inside. With `downhill` a
+    Jacobian method's step is cut until the residual falls, so that it comes to rest where it would swing about.
+    """
+    unlimited = judge_limits_at_end and limits.enabled and isinstance(solver, JacobianSolver)
+    box = Limits.of(limits.robot, False) if unlimited else limits
+    at = kinematics.linearize(start)
+    milestone, since = at.residual, 0
+    iteration, updates, scale = 0, 0, 1.0
+    while True:
+        status = None
+        if all([error.within(tolerance) for error in at.errors]):
+            if box is limits or limits.contains(at.q):
+                status = Status.CONVERGED
+            else:
+                q = limits.wrap(at.q)
+                box = limits
+                at = kinematics.linearize(limits.clip(q))
+                milestone, since = at.residual, 0
+                if all([error.within(tolerance) for error in at.errors]):
+                    status = Status.CONVERGED
+        if status is None:
+            if at.residual < milestone * (1.0 - patience.progress):
+                milestone, since = at.residual, 0
+            elif since >= patience.iterations:
+                status = Status.STALLED
+            if status is None and iteration >= max_iterations:
+                status = Status.MAX_ITERATIONS
+        moved = yield State(at.q, iteration, updates, tuple(at.errors), at.residual, attempt, status)
+        if moved is not None:
+            kinematics.retarget([moved] if isinstance(moved, Target) else moved)
+            at = kinematics.linearize(at.q)
+            milestone, since = math.inf, 0
+        elif status is not None:
+            return
+        q, updated = advance(solver, kinematics, box, at, tolerance, scale)
+        there = kinematics.linearize(q)
+        if not downhill or isinstance(solver, SweepingSolver):
+            at = there
+        elif there.residual < at.residual:
+            at, scale = there, min(2.0 * scale, 1.0)
+        else:
+            scale /= 4.0
+        iteration, updates, since = iteration + 1, updates + updated, since + 1
