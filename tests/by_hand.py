@@ -50,7 +50,7 @@ ZOO = robot(
     joint("s_plane", "body", "d", origin((-0.2, 0.1, 0), (0.2, 0.5, -1)), kind="planar", limit=""),
     joint("t_hinge", "d", "e", origin((0.3, 0, 0)), axis(0, 0, -1), mimic("l_hinge", -0.5, 0.1)),
     joint("u_slide", "e", "f", origin((0, 0.2, 0)), axis(0, 1, 0), mimic("l_hinge", 0.1), kind="prismatic"),
-    joint("v_turn", "f", "g", origin((0.1, 0, 0)), axis(1, 0, 0), mimic("k_turn", 0.5), kind="continuous"),
+    joint("v_turn", "f", "g", origin((0.1, 0, 0)), axis(1, 0, 0), mimic("l_hinge", 0.5), kind="continuous"),
     joint("w_hinge", "g", "hand", origin((0.1, 0, 0.1)), axis(0, 1, 1), mimic("m_slide", 3.0, -0.2)),
 )
 

@@ -60,10 +60,7 @@ def mimic_pair(leader: str, follower: str, *, branch: bool, multiplier: float = 
 
 @pytest.mark.parametrize("branch", [False, True], ids=["beyond its leader", "beside its leader"])
 @pytest.mark.parametrize("multiplier", [-0.7, 0.0, 2.0])
-@pytest.mark.parametrize(
-    ("leader", "follower"),
-    [kinds for kinds in itertools.product(ONE_AXIS, ONE_AXIS) if kinds != ("continuous", "prismatic")],
-)
+@pytest.mark.parametrize(("leader", "follower"), itertools.product(ONE_AXIS, ONE_AXIS))
 def test_a_mimic_joint_follows_as_yourdfpy_says(leader: str, follower: str, multiplier: float, branch: bool) -> None:
     text = mimic_pair(leader, follower, branch=branch, multiplier=multiplier)
     model, left_free = build_model(urdf.read(text))
@@ -73,15 +70,6 @@ def test_a_mimic_joint_follows_as_yourdfpy_says(leader: str, follower: str, mult
     for angle in np.linspace(-3.1, 3.1, 9):
         expected = oracle(text, {"a": angle}, links, "base")
         np.testing.assert_allclose(placements(model, {"a": angle}, links), expected, atol=1e-12)
-
-
-def test_a_slider_that_mimics_a_continuous_joint_is_left_free_and_named() -> None:
-    model, left_free = build_model(urdf.read(mimic_pair("continuous", "prismatic", branch=True)))
-    assert list(model.names) == ["universe", "a", "b"]
-    assert model.nv == 2
-    assert left_free == (
-        "joint 'b': it slides, and Pinocchio cannot let it mimic the continuous joint 'a'; it is left free",
-    )
 
 
 def test_a_follower_that_comes_before_its_leader_is_left_free_and_named_and_others_are_not() -> None:

@@ -440,6 +440,25 @@ class TestLimits:
         assert loaded.lower.tolist() == [0.0, 0.0]
         assert loaded.upper.tolist() == [1.5, 0.0]
 
+    def test_of_a_follower_bind_a_continuous_leader_too(self):
+        """As (cos, sin) the leader could keep no limits: where others mimic it, q holds its angle."""
+        text = robot(
+            *map(link, ("base", "wheel", "pointer")),
+            joint("turn", "base", "wheel", axis(0, 0, 1), kind="continuous", limit=""),
+            joint("z_follow", "base", "pointer", axis(0, 0, 1), mimic("turn", -0.25, 0.1), limit=limit(-0.5, 0.5)),
+        )
+        loaded = load_quietly(text)
+        assert (loaded.lower[0], loaded.upper[0]) == pytest.approx((-1.6, 2.4))
+        assert (loaded.lower_q[0], loaded.upper_q[0]) == pytest.approx((-1.6, 2.4))
+        solved = loaded.solve("pointer", rpy=[0, 0, 1.5])
+        assert not solved.success
+        assert solved.angles == pytest.approx({"turn": -1.6, "z_follow": 0.5})
+        turned = loaded.configuration({"turn": 2.0 + 2 * math.pi})
+        assert loaded.angles(turned)["z_follow"] == pytest.approx(0.1 - 0.25 * (2.0 + 2 * math.pi))
+        direction = loaded.placement("pointer", turned).rotation[:, 0]
+        follow = loaded.angles(turned)["z_follow"]
+        np.testing.assert_allclose(direction, [math.cos(follow), math.sin(follow), 0.0], atol=1e-12)
+
     def test_stand_in_q_as_well(self):
         loaded = load_quietly(ZOO)
         for q in (loaded.lower_q, loaded.upper_q):

@@ -43,7 +43,7 @@ class Limits:
         turning = np.zeros(robot.model.nq, dtype=bool)
         for joint in robot.joints:
             if joint.nq == 1:
-                turning[joint.idx_q] = joint.kind == "revolute"
+                turning[joint.idx_q] = joint.kind != "prismatic"
                 if enabled:
                     entry[joint.idx_v] = joint.idx_q
         if enabled:

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import threading
-from collections.abc import Callable, Collection, Mapping
+from collections.abc import Callable, Collection
 from xml.etree import ElementTree
 
 import pinocchio
 
 from .errors import InputError, RobotLoadError
-from .urdf import Description, JointTag
+from .urdf import Description
 
 __all__ = ["MAX_DEGREES_OF_FREEDOM", "MAX_LINKS", "build_model"]
 
@@ -57,9 +57,8 @@ def build_model(
     _check_names(description, root)
     _check_size(description, 0 if root_joint is None else root_joint.nv)
     free = _built(description, description.xml, root_joint, mimic=False)
-    tags = {tag.name: tag for tag in description.joints}
     causes = {
-        tag.name: _why_left_free(tag, tags[tag.mimic.leader], free)
+        tag.name: _why_left_free(tag.name, tag.mimic.leader, free)
         for tag in description.joints
         if mimic and tag.mimic is not None
     }
@@ -67,7 +66,8 @@ def build_model(
     honoured = {name for name, cause in causes.items() if cause is None}
     if not honoured:
         return free, warnings
-    xml = _with_mimics(description.xml, honoured, {tag.name: tag.kind for tag in description.joints})
+    leaders = {tag.mimic.leader for tag in description.joints if tag.mimic is not None and tag.name in honoured}
+    xml = _with_mimics(description.xml, honoured, leaders)
     return _built(description, xml, root_joint, mimic=True), warnings
 
 
@@ -102,31 +102,25 @@ def _check_size(description: Description, root_freedoms: int) -> None:
         )
 
 
-def _why_left_free(follower: JointTag, leader: JointTag, free: pinocchio.Model) -> str | None:
+def _why_left_free(follower: str, leader: str, free: pinocchio.Model) -> str | None:
     """Why Pinocchio cannot make this joint follow its leader; None where it can."""
-    if free.getJointId(follower.name) < free.getJointId(leader.name):
-        return f"it mimics {leader.name!r}, which comes after it in Pinocchio's order of joints"
-    if leader.kind == "continuous" and follower.kind == "prismatic":
-        return f"it slides, and Pinocchio cannot let it mimic the continuous joint {leader.name!r}"
+    if free.getJointId(follower) < free.getJointId(leader):
+        return f"it mimics {leader!r}, which comes after it in Pinocchio's order of joints"
     return None
 
 
-def _with_mimics(xml: str, honoured: Collection[str], kinds: Mapping[str, str]) -> str:
-    """The text with the honoured mimics alone, each follower of a kind that Pinocchio pairs with its leader.
+def _with_mimics(xml: str, honoured: Collection[str], leaders: Collection[str]) -> str:
+    """The text with the honoured mimics alone, and no continuous joint among leaders and followers.
 
-    Pinocchio wants leader and follower both or neither continuous. For the follower, which has no variable
-    and no limit of its own in the model, the two kinds of turning mean the same.
+    As (cos, sin) a leader would forget its whole turns, which its followers need, and could keep no limits that
+    theirs impose; and Pinocchio pairs continuous joints with continuous ones only.
     """
     robot = ElementTree.fromstring(xml)
     for joint in robot.iter("joint"):
-        mimic = joint.find("mimic")
-        if mimic is None:
-            continue
-        if joint.attrib["name"] not in honoured:
+        name, mimic = joint.attrib["name"], joint.find("mimic")
+        if mimic is not None and name not in honoured:
             joint.remove(mimic)
-        elif kinds[mimic.attrib["joint"]] == "continuous":
-            joint.set("type", "continuous")
-        elif joint.attrib["type"] == "continuous":
+        if joint.attrib["type"] == "continuous" and (name in leaders or name in honoured):
             joint.set("type", "revolute")
             for limit in joint.findall("limit"):
                 joint.remove(limit)

@@ -44,7 +44,8 @@ class Joint:
 
     Attributes:
         name: As in the URDF; the root joint of a free or planar root is "root_joint".
-        kind: "revolute", "continuous", "prismatic", "floating" or "planar".
+        kind: "revolute", "continuous", "prismatic", "floating" or "planar". A continuous joint holds (cos, sin) in q,
+            or its angle where others mimic it.
         id: Index in `pinocchio.Model.joints`.
         idx_q, nq: First entry and number of entries in `q`; a follower has none of its own.
         idx_v, nv: The same in a tangent vector.
@@ -276,7 +277,7 @@ class Robot:
     def angles(self, q: ArrayLike) -> dict[str, float]:
         """Joint name → angle (rad, or m for prismatic) at `q`, followers included.
 
-        A continuous joint's angle lies in (−π, π].
+        A continuous joint's angle lies in (−π, π], unless others mimic it.
         """
         values = self.check_configuration(q)
         return {joint.name: self._angle(values, joint) for joint in self.joints if joint.has_one_axis}
@@ -295,7 +296,7 @@ class Robot:
         values = as_vector(q, self.model.nq, what, f"the configuration of {self.name!r}")
         for joint in self.joints:
             part = None
-            if joint.nq and joint.kind == "continuous":
+            if joint.nq == 2:
                 part, words = values[joint.idx_q : joint.idx_q + 2], "(cos, sin)"
             elif joint.kind == "floating":
                 part, words = values[joint.idx_q + 3 : joint.idx_q + 7], "its quaternion xyzw"
