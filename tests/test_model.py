@@ -60,7 +60,7 @@ def mimic_pair(leader: str, follower: str, *, branch: bool, multiplier: float = 
 
 @pytest.mark.parametrize("branch", [False, True], ids=["beyond its leader", "beside its leader"])
 @pytest.mark.parametrize("multiplier", [-0.7, 0.0, 2.0])
-@pytest.mark.parametrize(("leader", "follower"), itertools.product(ONE_AXIS, ONE_AXIS))
+@pytest.mark.parametrize(("leader", "follower"), list(itertools.product(ONE_AXIS, ONE_AXIS)))
 def test_a_mimic_joint_follows_as_yourdfpy_says(leader: str, follower: str, multiplier: float, branch: bool) -> None:
     text = mimic_pair(leader, follower, branch=branch, multiplier=multiplier)
     model, left_free = build_model(urdf.read(text))

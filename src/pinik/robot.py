@@ -145,7 +145,7 @@ class Robot:
     def __reduce__(self) -> tuple[Any, ...]:
         # Built anew: a serialized Pinocchio 4.1.0 model with mimic joints crashes when it is used.
         build = partial(Robot, name=self.name, root=self.root, package_dirs=self.package_dirs)
-        return partial(build, mimic=self._mimic, srdf=self._srdf), (self.description,)
+        return partial(build, mimic=self._mimic, srdf=self._srdf), (self.description,), {"warnings": self.warnings}
 
     @property
     def data(self) -> Any:
@@ -419,6 +419,9 @@ class Robot:
                     source=self.description.source,
                     element=f"joint {joint.name!r}",
                 )
+            if low == high and len(set(self._own_limits(joint))) == 2:
+                words = f"joint {joint.name!r}: the limits of the joints that mimic it leave it only the value {low:g}"
+                self.warnings += (words,)
             lower.append(low + 0.0)  # a negative multiplier turns 0 into −0, which numpy holds to be below 0
             upper.append(high + 0.0)
         return np.array(lower), np.array(upper)
