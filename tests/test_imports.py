@@ -23,7 +23,7 @@ SOURCE = ROOT / "src" / "pinik"
 FRONTS = {("robot", "loop")}
 # Package → the modules that alone may import it.
 ONLY_THERE = {
-    "yourdfpy": {"geometry"},
+    "yourdfpy": {"second_opinion"},
     "trimesh": {"geometry"},
     "scipy": {"geometry"},
     "meshcat": {"viewer.scene"},
@@ -141,6 +141,12 @@ def test_heavy_packages_are_imported_where_they_belong():
         if (package := i.imported.split(".")[0]) in ONLY_THERE and i.importer not in ONLY_THERE[package]
     ]
     assert not wrong
+
+
+def test_yourdfpy_is_asked_by_check_alone_and_when_it_runs():
+    askers = [i for i in OWN if i.imported == "second_opinion"]
+    assert {i.importer for i in askers} == {"cli.inspection"}
+    assert all(i.inside_function for i in askers)
 
 
 def test_shapes_are_loaded_for_nobody_who_did_not_ask():

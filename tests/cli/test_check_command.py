@@ -2,6 +2,9 @@ from __future__ import annotations
 
 import pytest
 
+from pinik import second_opinion
+from pinik.second_opinion import ask_yourdfpy
+
 LINKS = '<link name="a"/><link name="b"/>'
 JOINT = (
     '<joint name="j" type="revolute"><parent link="a"/><child link="b"/><axis xyz="0 0 1"/>'
@@ -78,3 +81,42 @@ def test_what_was_mended_is_a_warning(run, urdf):
     assert answer.status == 0
     assert any("j" in words and "limit" in words for words in answer.json["warnings"])
     assert any(line.startswith("warning: joint 'j'") for line in run("check", urdf(body)).out.splitlines())
+
+
+def test_yourdfpy_gives_a_second_opinion(run):
+    person = run("check", "lion")
+    (line,) = [line for line in person.out.splitlines() if "yourdfpy" in line]
+    assert line.startswith("yourdfpy agrees: 54 links at 3 configurations, at most ")
+    opinion = run("check", "lion", "--json").json["second_opinion"]
+    assert opinion["agrees"]
+    assert (opinion["links"], opinion["disagreeing"], opinion["unread"]) == (54, [], None)
+
+
+def test_what_yourdfpy_cannot_read_is_a_warning_and_no_failure(run, urdf):
+    file = urdf(LINKS + JOINT.format(lower=-1))
+    file.write_text(file.read_text().replace(' name="r"', ""))
+    person = run("check", file)
+    assert (person.status, person.err) == (0, "")
+    assert any(line.startswith("warning: yourdfpy gives no second opinion: ") for line in person.out.splitlines())
+    opinion = run("check", file, "--json").json["second_opinion"]
+    assert opinion["agrees"] is False
+    assert "KeyError" in opinion["unread"]
+
+
+def test_a_disagreement_is_a_warning_and_no_failure(run, urdf, monkeypatch):
+    file = urdf(LINKS + JOINT.format(lower=-1))
+    other = file.with_name("other.urdf")
+    other.write_text(file.read_text().replace("<axis", '<origin xyz="0 0 nan"/><axis'))
+    monkeypatch.setattr(second_opinion, "ask_yourdfpy", lambda robot, path: ask_yourdfpy(robot, other))
+    person = run("check", file)
+    assert person.status == 0
+    assert any(line.startswith("warning: yourdfpy disagrees about 'b': ") for line in person.out.splitlines())
+    opinion = run("check", file, "--json").json["second_opinion"]
+    assert opinion["disagreeing"] == ["b"]
+    assert opinion["position_difference_m"] is None
+
+
+def test_there_is_no_second_opinion_on_what_cannot_be_loaded(run, urdf):
+    file = urdf(LINKS + JOINT.format(lower=2))
+    assert run("check", file, "--json").json["second_opinion"] is None
+    assert "yourdfpy" not in run("check", file).out

@@ -22,9 +22,9 @@ def check(
     package_dir: PackageDirs = None,
     as_json: AsJson = False,
 ) -> ExitStatus:
-    """Check a URDF file: its faults, what pinik had to mend, and its meshes.
+    """Check a URDF file: its faults, what pinik had to mend, its meshes, and whether yourdfpy agrees about its links.
 
-    Exit status 3 says that it cannot be loaded.
+    Exit status 3 says that it cannot be loaded; what yourdfpy says changes no status.
 
     Example:
 
@@ -49,5 +49,8 @@ def _emit(found: Inspection) -> None:
         output.emit(f"missing mesh: {address}")
     for words in found.mesh_faults:
         output.emit(f"mesh: {words}")
+    opinion = found.second_opinion
+    if opinion is not None:
+        output.emit(str(opinion) if opinion.agrees else f"warning: {opinion}")
     if found.loads:
         output.emit(f"{found.links} links, {found.joints} joints, {found.meshes} meshes, {found.shapes} shapes")

@@ -1,4 +1,4 @@
-"""Look into a URDF file: by pinik's own reader, by Pinocchio, and by trimesh at its meshes."""
+"""Look into a URDF file: by pinik's own reader, by Pinocchio, by trimesh at its meshes, and by yourdfpy."""
 
 from __future__ import annotations
 
@@ -7,12 +7,15 @@ import warnings
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from .. import packages, robot_catalog, urdf
 from ..errors import RobotLoadError, UnknownNameError
 from ..robot import Robot
 from .output import native_output_silenced
+
+if TYPE_CHECKING:
+    from ..second_opinion import SecondOpinion
 
 __all__ = ["Fault", "Inspection", "inspect"]
 
@@ -42,6 +45,7 @@ class Inspection:
         missing_meshes: Addresses of meshes that were not found.
         mesh_faults: A sentence about each other shape that cannot be drawn.
         links, joints, meshes, shapes: How many there are; joints that move, meshes with different addresses.
+        second_opinion: What yourdfpy says; None where the file cannot be loaded.
     """
 
     file: str
@@ -54,6 +58,7 @@ class Inspection:
     joints: int = 0
     meshes: int = 0
     shapes: int = 0
+    second_opinion: SecondOpinion | None = None
 
     @property
     def loads(self) -> bool:
@@ -62,7 +67,8 @@ class Inspection:
 
     def to_dict(self) -> dict[str, Any]:
         """The JSON form; docs/json.md explains the fields."""
-        return {"schema": 1, "loads": self.loads, **asdict(self)}
+        opinion = None if self.second_opinion is None else self.second_opinion.to_dict()
+        return {"schema": 1, "loads": self.loads, **asdict(self), "second_opinion": opinion}
 
 
 def inspect(source: str, package_dirs: Sequence[Path]) -> Inspection:
@@ -94,6 +100,7 @@ def inspect(source: str, package_dirs: Sequence[Path]) -> Inspection:
         joints=len(robot.joints),
         meshes=len(description.meshes),
         shapes=shapes,
+        second_opinion=_second_opinion(robot, path),
     )
 
 
@@ -121,3 +128,9 @@ def _shapes(path: Path, package_dirs: Sequence[Path]) -> tuple[int, list[str]]:
 
         shapes, words = load_shapes(path, package_dirs)
     return len(shapes), words
+
+
+def _second_opinion(robot: Robot, path: Path) -> SecondOpinion:
+    from ..second_opinion import ask_yourdfpy
+
+    return ask_yourdfpy(robot, path)
