@@ -13,9 +13,11 @@ from .errors import (
     UnknownNameError,
     UrdfWarning,
 )
-from .kinematics import Kinematics, Linearization, TargetError
+from .joint import Joint
+from .kinematics import Kinematics, Linearization
+from .loading import load
 from .loop import iterate, solve
-from .robot import Joint, Robot, load
+from .robot import Robot
 from .robot_catalog import catalog
 from .solution import Solution, State, Status
 from .solvers import (
@@ -30,7 +32,7 @@ from .solvers import (
     SweepingSolver,
     parameter,
 )
-from .targets import Target, Tolerance
+from .targets import Target, TargetError, Tolerance
 
 __version__ = "0.1.0"
 

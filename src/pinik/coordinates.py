@@ -10,8 +10,8 @@ import numpy as np
 import pinocchio
 from numpy.typing import NDArray
 
+from .joint import Joint
 from .limits import Limits
-from .robot import Joint
 
 __all__ = ["Coordinate"]
 

@@ -5,10 +5,9 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 
-from .kinematics import TargetError
 from .reach import Shortfall
 from .solution import Status
-from .targets import Target, Tolerance
+from .targets import Target, TargetError, Tolerance
 
 __all__ = ["explain"]
 

@@ -9,9 +9,10 @@ from typing import NamedTuple
 import numpy as np
 import pinocchio
 
-from .kinematics import Kinematics, TargetTerm
+from .joint import Joint
+from .kinematics import Kinematics
 from .limits import Limits
-from .robot import Joint
+from .target_term import TargetTerm
 
 __all__ = ["Shortfall", "shortfall"]
 

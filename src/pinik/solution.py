@@ -14,9 +14,8 @@ import pinocchio
 from numpy.typing import NDArray
 
 from .errors import SolveError
-from .kinematics import TargetError
 from .robot import Robot
-from .targets import Target
+from .targets import Target, TargetError
 
 __all__ = ["Solution", "State", "Status", "measure_errors"]
 

@@ -37,7 +37,7 @@ def random_start(kinematics: Kinematics, limits: Limits, q0: Array, *, seed: int
         u = uniform(seed, target, attempt, joint.idx_v)
         entry = joint.idx_q
         low, high = joint.range_to_draw_from(float(limits.lower[entry]), float(limits.upper[entry]), float(q0[entry]))
-        robot.set_angle(q, joint, low + u * (high - low))
+        joint.set_angle(q, low + u * (high - low))
     return q
 
 

@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 from .checks import as_finite_number, as_point, as_rotation, as_se3, as_unit_vector, as_vector
 from .errors import InputError, UnknownNameError
 
-__all__ = ["Target", "Tolerance"]
+__all__ = ["Target", "TargetError", "Tolerance"]
 
 Array = NDArray[np.float64]
 
@@ -41,6 +41,24 @@ class Tolerance(NamedTuple):
         if (pair <= 0.0).any():
             raise InputError(f"tolerance takes two positive numbers (metres, radians); got {pair.tolist()}")
         return cls(float(pair[0]), float(pair[1]))
+
+
+class TargetError(NamedTuple):
+    """How far one target is missed; None for what it does not ask for.
+
+    Attributes:
+        position: Metres.
+        orientation: Radians; for an axis target the angle between the axis and its direction.
+    """
+
+    position: float | None
+    orientation: float | None
+
+    def within(self, tolerance: Tolerance) -> bool:
+        """Whether both errors are at most their tolerances."""
+        return (self.position is None or self.position <= tolerance.position) and (
+            self.orientation is None or self.orientation <= tolerance.orientation
+        )
 
 
 @dataclass(frozen=True, eq=False, init=False)

@@ -45,7 +45,7 @@ def configuration(robot: Robot, pose: str | None, settings: Iterable[str] | None
             robot.configuration({name: angle})  # refuses what is not finite
         except ValueError:
             raise CommandError(f"{option} {name}: the value is a finite number; got {text!r}") from None
-        robot.set_angle(q, joint, angle)
+        joint.set_angle(q, angle)
     return q
 
 

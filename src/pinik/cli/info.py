@@ -9,7 +9,8 @@ from typing import Any
 
 import pinocchio
 
-from ..robot import Joint, Robot
+from ..joint import Joint
+from ..robot import Robot
 from . import output
 from .assignments import named_poses
 from .exits import ExitStatus

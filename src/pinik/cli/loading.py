@@ -7,7 +7,8 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from ..errors import RobotLoadError, UnknownNameError, UrdfWarning
-from ..robot import Robot, load
+from ..loading import load
+from ..robot import Robot
 from . import output
 from .exits import CommandError, ExitStatus
 

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from ..kinematics import TargetError
 from ..solution import Solution
+from ..targets import TargetError
 from .output import emit, painted
 from .tables import emit_table
 from .units import Units

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 import pinocchio
 
-from ..robot import Joint
+from ..joint import Joint
 
 __all__ = ["Units", "length", "roll_pitch_yaw"]
 

@@ -11,17 +11,17 @@ import numpy as np
 import pinocchio
 
 from .base import Array, Patience, SweepingSolver, parameter
+from .chaser import Chaser
 
 if TYPE_CHECKING:
     from ..coordinates import Coordinate
-    from ..kinematics import Kinematics, TargetTerm
+    from ..joint import Joint
+    from ..kinematics import Kinematics
     from ..limits import Limits
-    from ..robot import Joint
     from ..targets import Tolerance
 
 __all__ = ["CCD"]
 
-_NO_DIRECTION = 1e-9  # [m]
 _INDIFFERENT = 1e-14  # a joint whose turn changes g by less than rounding stays
 _HALVINGS = 12
 _NOTHING = np.zeros((3, 3))
@@ -97,9 +97,9 @@ class CCD(SweepingSolver):
                 chasers = self._chasers(q, kinematics)
         return q, updates
 
-    def _chasers(self, q: Array, kinematics: Kinematics) -> list[_Chaser]:
+    def _chasers(self, q: Array, kinematics: Kinematics) -> list[Chaser]:
         pinocchio.forwardKinematics(kinematics.model, kinematics.data, q)
-        return [_Chaser(term, self) for term in kinematics.terms]
+        return [Chaser(term, self.position_weight, self.scaling, self.max_residual) for term in kinematics.terms]
 
     def _relaxation(self, kinematics: Kinematics) -> float:
         if self.relaxation is not None:
@@ -112,7 +112,7 @@ class CCD(SweepingSolver):
         coordinate: Coordinate,
         axis: Array,
         origin: Array,
-        chasers: list[_Chaser],
+        chasers: list[Chaser],
         low: float,
         high: float,
         scale: float,
@@ -159,114 +159,7 @@ class CCD(SweepingSolver):
         return 0.0
 
 
-class _Chaser:
-    """One target during a sweep: effector and goal, carried along without a forward kinematics.
-
-    `p` (3,) is the effector's point, `U` (3, k) the axes of its frame that matter; `goal` (3,) and `V` (3, k) are
-    where they should be, None where that is free, and `at` (3,) is the point that U's only column should point at.
-    """
-
-    def __init__(self, term: TargetTerm, solver: CCD) -> None:
-        self.term = term
-        term.update_placements()
-        target, p, R = term.target, term.p, term.R
-        self.weight = target.weight * target.weight
-        self.p = p.copy()
-        self.goal, rotation, direction, self.at = term.wanted()
-        self.U: Array | None = None
-        self.V: Array | None = None
-        if rotation is not None:
-            self.U, self.V = R.copy(), rotation
-        elif target.axis is not None:
-            self.U = R.dot(target.axis)[:, None]
-            self.V = None if direction is None else direction[:, None]
-        scale = term.chain_length if solver.scaling == "printed" else term.chain_length**2
-        self.alpha = solver.position_weight / scale
-        self.max_residual = solver.max_residual
-
-    def moved_by(self, mover: Joint) -> bool:
-        """Whether the mover moves effector and goal against each other."""
-        return (mover.id in self.term.frame_support) != (mover.id in self.term.reference_support)
-
-    def within(self, tolerance: Tolerance) -> bool:
-        """Whether effector and goal agree."""
-        if self.goal is not None:
-            left = self.goal - self.p
-            if float(left.dot(left)) > tolerance.position * tolerance.position:
-                return False
-        return self.U is None or self.angle() <= tolerance.orientation
-
-    def angle(self) -> float:
-        """The orientation error [rad]."""
-        U, V = self.U, self._facing() if self.V is None else self.V
-        assert U is not None
-        if U.shape[1] == 1:
-            a, b = U[:, 0], V[:, 0]
-            return math.atan2(float(np.linalg.norm(pinocchio.skew(a).dot(b))), float(a.dot(b)))
-        return float(np.linalg.norm(pinocchio.log3(V.dot(U.T))))
-
-    def point_pairs(self, origin: Array) -> list[tuple[Array, Array, float]]:
-        """(effector's point, its goal, weight), both points (3,) in the world; `origin` is the joint's."""
-        pairs = []
-        if self.goal is not None:
-            goal, w = self._drawn_goal(), self.alpha
-            if self.U is not None:
-                c, d = self.p - origin, goal - origin
-                c_squared, d_squared = float(c.dot(c)), float(d.dot(d))
-                longer = max(c_squared, d_squared)
-                w *= 1.0 + (math.sqrt(min(c_squared, d_squared) / longer) if longer > 0.0 else 1.0)
-            pairs.append((self.p, goal, w))
-        if self.at is not None and self.U is not None:
-            line = self.at - self.p
-            squared = float(line.dot(line))
-            if squared > _NO_DIRECTION**2:
-                pairs.append((self.p + math.sqrt(squared) * self.U[:, 0], self.at, 1.0 / squared))
-        return pairs
-
-    def correlation(self, mover: Joint, origin: Array) -> Array:
-        """Σ w c dᵀ (3, 3) of what the mover carries (c) and where it should go (d), seen from `origin`."""
-        M = np.zeros((3, 3)) if self.V is None or self.U is None else self.U.dot(self.V.T)
-        for c, d, w in self.point_pairs(origin):
-            M += (w * (c - origin))[:, None] * (d - origin)
-        if self.weight != 1.0:
-            M *= self.weight
-        return M if mover.id in self.term.frame_support else M.T
-
-    def carry(self, mover: Joint, origin: Array, R: Array | None, shift: Array) -> None:
-        """Turn by R (3, 3) about `origin`, or else by `shift` (3,), what the mover moves: effector, goal, or both."""
-
-        def moved(point: Array) -> Array:
-            return point + shift if R is None else origin + R.dot(point - origin)
-
-        if mover.id in self.term.frame_support:
-            self.p = moved(self.p)
-            if self.U is not None and R is not None:
-                self.U = R.dot(self.U)
-        if mover.id in self.term.reference_support:
-            self.goal = None if self.goal is None else moved(self.goal)
-            self.at = None if self.at is None else moved(self.at)
-            if self.V is not None and R is not None:
-                self.V = R.dot(self.V)
-
-    def _drawn_goal(self) -> Array:
-        """The goal, or the point on the way to it that D_max allows."""
-        assert self.goal is not None
-        if self.max_residual == math.inf:
-            return self.goal
-        e = self.goal - self.p
-        length = math.sqrt(e.dot(e))
-        return self.goal if length <= self.max_residual else self.p + e * (self.max_residual / length)
-
-    def _facing(self) -> Array:
-        """The direction (3, 1) of the point to look at; the axis itself where that has none."""
-        assert self.at is not None
-        assert self.U is not None
-        line = self.at - self.p
-        distance = math.sqrt(line.dot(line))
-        return self.U if distance < _NO_DIRECTION else (line / distance)[:, None]
-
-
-def _carry(chasers: list[_Chaser], coordinate: Coordinate, axis: Array, origin: Array, change: float) -> None:
+def _carry(chasers: list[Chaser], coordinate: Coordinate, axis: Array, origin: Array, change: float) -> None:
     mover, multiplier = coordinate.movers[0]
     amount = change * multiplier
     shift = axis * amount
@@ -275,7 +168,7 @@ def _carry(chasers: list[_Chaser], coordinate: Coordinate, axis: Array, origin: 
         chaser.carry(mover, origin, R, shift)
 
 
-def _best_slide(axis: Array, origin: Array, mover: Joint, chasers: list[_Chaser]) -> float:
+def _best_slide(axis: Array, origin: Array, mover: Joint, chasers: list[Chaser]) -> float:
     """Σ w (d − c)·a / Σ w over the pairs that the mover changes [m]; eq. 4.24 for one."""
     pull, weight = 0.0, 0.0
     for chaser in chasers:

@@ -55,6 +55,6 @@ class PseudoInverse(JacobianSolver):
         robot = kinematics.robot
         rest = at.q.copy()
         for name, angle in self.rest_posture.items():
-            robot.set_angle(rest, robot.settable_joint(name), angle)
+            robot.settable_joint(name).set_angle(rest, angle)
         pull = self.rest_gain * pinocchio.difference(robot.model, at.q, rest) * at.free
         return self.direction(at.J, at.e, pull)

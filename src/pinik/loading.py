@@ -1,0 +1,73 @@
+"""`load`: a robot from a catalogue name, a path or URDF text."""
+
+from __future__ import annotations
+
+import os
+import warnings
+from collections.abc import Iterable, Sequence
+from pathlib import Path
+
+from . import packages, robot_catalog, urdf
+from .errors import InputError, UrdfWarning
+from .robot import Robot
+
+__all__ = ["load"]
+
+
+def load(
+    source: str | os.PathLike[str],
+    *,
+    root: str = "fixed",
+    package_dirs: Iterable[str | os.PathLike[str]] = (),
+    mimic: bool = True,
+) -> Robot:
+    """Load a robot.
+
+    Args:
+        source: A catalogue name ("arm", "lion", "panda", …: `pinik.catalog()`), a path to a .urdf file, or URDF text.
+        root: How the root link hangs in the world: "fixed", "free_flyer" or "planar".
+        package_dirs: Folders in which `package://` addresses of meshes are looked for first.
+        mimic: Whether mimic joints follow their leaders; False leaves them all free.
+
+    Raises:
+        RobotLoadError: The description is faulty; the message names the element and the cause.
+        UnknownNameError: No robot of that name.
+        InputError: An unknown root, a source that is neither name nor path nor text, or one folder for a list.
+
+    Warns:
+        UrdfWarning: For whatever was mended or left out, and for meshes that were not found.
+    """
+    if isinstance(package_dirs, (str, os.PathLike)):
+        raise InputError(f"package_dirs takes a list of folders; got the single {package_dirs!r}")
+    name, srdf, path_or_text = _locate(source)
+    description = urdf.read(path_or_text)
+    robot = Robot(description, name=name, root=root, package_dirs=tuple(package_dirs), mimic=mimic, srdf=srdf)
+    missing = [a for a in description.meshes if not _mesh_found(a, description.path, robot.package_dirs)]
+    if missing:
+        count = "1 mesh was" if len(missing) == 1 else f"{len(missing)} meshes were"
+        robot.warnings += (
+            f"{count} not found ({missing[0]}{', …' if len(missing) > 1 else ''}); kinematics needs none",
+        )
+    for words in robot.warnings:
+        warnings.warn(f"{robot.name}: {words}", UrdfWarning, stacklevel=2)
+    return robot
+
+
+def _locate(source: str | os.PathLike[str]) -> tuple[str | None, Path | None, str | Path]:
+    """(catalogue name, SRDF, path or text) for what a person gave."""
+    if not isinstance(source, (str, os.PathLike)):
+        raise InputError(f"a robot is a catalogue name, a path or URDF text; got {source!r}")
+    if isinstance(source, str):
+        if source.lstrip("\ufeff \t\r\n").startswith("<"):
+            return None, None, source
+        looks_like_path = os.sep in source or source.endswith((".urdf", ".xml", ".xacro"))
+        if not looks_like_path and (source in robot_catalog.catalog() or not os.path.exists(source)):
+            entry = robot_catalog.find(source)
+            return entry.name, entry.srdf, entry.urdf
+    path = Path(source)
+    srdf = path.with_suffix(".srdf")
+    return None, srdf if srdf.is_file() else None, path
+
+
+def _mesh_found(address: str, urdf_path: Path | None, package_dirs: Sequence[Path]) -> bool:
+    return packages.resolve(address, urdf_path=urdf_path, package_dirs=package_dirs) is not None

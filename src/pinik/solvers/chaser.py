@@ -1,0 +1,127 @@
+"""One target during a sweep of cyclic coordinate descent."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+import numpy as np
+import pinocchio
+
+from .base import Array
+
+if TYPE_CHECKING:
+    from ..joint import Joint
+    from ..target_term import TargetTerm
+    from ..targets import Tolerance
+
+__all__ = ["Chaser"]
+
+_NO_DIRECTION = 1e-9  # [m]
+
+
+class Chaser:
+    """One target during a sweep: effector and goal, carried along without a forward kinematics.
+
+    `p` (3,) is the effector's point, `U` (3, k) the axes of its frame that matter; `goal` (3,) and `V` (3, k) are
+    where they should be, None where that is free, and `at` (3,) is the point that U's only column should point at.
+    """
+
+    def __init__(self, term: TargetTerm, position_weight: float, scaling: str, max_residual: float) -> None:
+        self.term = term
+        term.update_placements()
+        target, p, R = term.target, term.p, term.R
+        self.weight = target.weight * target.weight
+        self.p = p.copy()
+        self.goal, rotation, direction, self.at = term.wanted()
+        self.U: Array | None = None
+        self.V: Array | None = None
+        if rotation is not None:
+            self.U, self.V = R.copy(), rotation
+        elif target.axis is not None:
+            self.U = R.dot(target.axis)[:, None]
+            self.V = None if direction is None else direction[:, None]
+        scale = term.chain_length if scaling == "printed" else term.chain_length**2
+        self.alpha = position_weight / scale
+        self._max_residual = max_residual
+
+    def moved_by(self, mover: Joint) -> bool:
+        """Whether the mover moves effector and goal against each other."""
+        return (mover.id in self.term.frame_support) != (mover.id in self.term.reference_support)
+
+    def within(self, tolerance: Tolerance) -> bool:
+        """Whether effector and goal agree."""
+        if self.goal is not None:
+            left = self.goal - self.p
+            if float(left.dot(left)) > tolerance.position * tolerance.position:
+                return False
+        return self.U is None or self.angle() <= tolerance.orientation
+
+    def angle(self) -> float:
+        """The orientation error [rad]."""
+        U, V = self.U, self._facing() if self.V is None else self.V
+        assert U is not None
+        if U.shape[1] == 1:
+            a, b = U[:, 0], V[:, 0]
+            return math.atan2(float(np.linalg.norm(pinocchio.skew(a).dot(b))), float(a.dot(b)))
+        return float(np.linalg.norm(pinocchio.log3(V.dot(U.T))))
+
+    def point_pairs(self, origin: Array) -> list[tuple[Array, Array, float]]:
+        """(effector's point, its goal, weight), both points (3,) in the world; `origin` is the joint's."""
+        pairs = []
+        if self.goal is not None:
+            goal, w = self._drawn_goal(), self.alpha
+            if self.U is not None:
+                c, d = self.p - origin, goal - origin
+                c_squared, d_squared = float(c.dot(c)), float(d.dot(d))
+                longer = max(c_squared, d_squared)
+                w *= 1.0 + (math.sqrt(min(c_squared, d_squared) / longer) if longer > 0.0 else 1.0)
+            pairs.append((self.p, goal, w))
+        if self.at is not None and self.U is not None:
+            line = self.at - self.p
+            squared = float(line.dot(line))
+            if squared > _NO_DIRECTION**2:
+                pairs.append((self.p + math.sqrt(squared) * self.U[:, 0], self.at, 1.0 / squared))
+        return pairs
+
+    def correlation(self, mover: Joint, origin: Array) -> Array:
+        """Σ w c dᵀ (3, 3) of what the mover carries (c) and where it should go (d), seen from `origin`."""
+        M = np.zeros((3, 3)) if self.V is None or self.U is None else self.U.dot(self.V.T)
+        for c, d, w in self.point_pairs(origin):
+            M += (w * (c - origin))[:, None] * (d - origin)
+        if self.weight != 1.0:
+            M *= self.weight
+        return M if mover.id in self.term.frame_support else M.T
+
+    def carry(self, mover: Joint, origin: Array, R: Array | None, shift: Array) -> None:
+        """Turn by R (3, 3) about `origin`, or else by `shift` (3,), what the mover moves: effector, goal, or both."""
+
+        def moved(point: Array) -> Array:
+            return point + shift if R is None else origin + R.dot(point - origin)
+
+        if mover.id in self.term.frame_support:
+            self.p = moved(self.p)
+            if self.U is not None and R is not None:
+                self.U = R.dot(self.U)
+        if mover.id in self.term.reference_support:
+            self.goal = None if self.goal is None else moved(self.goal)
+            self.at = None if self.at is None else moved(self.at)
+            if self.V is not None and R is not None:
+                self.V = R.dot(self.V)
+
+    def _drawn_goal(self) -> Array:
+        """The goal, or the point on the way to it that D_max allows."""
+        assert self.goal is not None
+        if self._max_residual == math.inf:
+            return self.goal
+        e = self.goal - self.p
+        length = math.sqrt(e.dot(e))
+        return self.goal if length <= self._max_residual else self.p + e * (self._max_residual / length)
+
+    def _facing(self) -> Array:
+        """The direction (3, 1) of the point to look at; the axis itself where that has none."""
+        assert self.at is not None
+        assert self.U is not None
+        line = self.at - self.p
+        distance = math.sqrt(line.dot(line))
+        return self.U if distance < _NO_DIRECTION else (line / distance)[:, None]
