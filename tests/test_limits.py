@@ -26,6 +26,15 @@ def outside(angle: float, low: float, high: float) -> float:
     return max(low - angle, angle - high, 0.0)
 
 
+HINGES_AND_A_SLIDE = robot(
+    *map(link, ("base", "a", "b", "c", "d")),
+    joint("hinge", "base", "a", axis(0, 0, 1), limit=limit(-2, 1.5)),
+    joint("leader", "a", "b", axis(0, 0, 1), limit=limit(-1, 1)),
+    joint("slide", "b", "c", axis(0, 0, 1), kind="prismatic", limit=limit(-0.2, 0.6)),
+    joint("z_follower", "c", "d", axis(0, 0, 1), mimic("leader", 0.5), limit=limit(-1, 1)),
+)
+
+
 class TestWrap:
     @given(
         low=st.floats(-8, 8).map(lambda x: round(x, 2)),
@@ -60,12 +69,13 @@ class TestWrap:
 
     @given(seed=st.integers(0, 2**32 - 1))
     def test_leaves_what_is_inside_and_what_does_not_turn_to_the_last_bit(self, seed):
-        loaded = load_quietly(ZOO)
+        loaded = load_quietly(HINGES_AND_A_SLIDE)
         limits = Limits.of(loaded)
         rng = np.random.default_rng(seed)
         q = loaded.random(rng)
         assert (limits.wrap(q) == q).all()
-        hinge_, slide = loaded.joint("l_hinge").idx_q, loaded.joint("m_slide").idx_q
+        hinge_, slide = loaded.joint("hinge").idx_q, loaded.joint("slide").idx_q
+        q[loaded.joint("leader").idx_q] += TURN  # its follower would turn by half as much: another configuration
         q[hinge_] += rng.choice([-2, -1, 1, 2]) * TURN
         q[slide] += rng.choice([-TURN, TURN])
         kept = q.copy()
@@ -90,8 +100,22 @@ class TestBox:
         for name in bounded:
             assert limits.entry[loaded.joint(name).idx_v] == loaded.joint(name).idx_q
         assert np.isfinite(limits.lower).sum() == np.isfinite(limits.upper).sum() == 2
-        turning = loaded.joint("l_hinge").idx_q
-        assert np.flatnonzero(limits.turning).tolist() == [turning]
+        assert not limits.turning.any()  # its hinge leads others
+        plain = load_quietly(HINGES_AND_A_SLIDE)
+        assert np.flatnonzero(Limits.of(plain).turning).tolist() == [plain.joint("hinge").idx_q]
+
+    def test_loosened_holds_only_joints_of_a_single_value(self):
+        loaded = load_quietly(
+            robot(
+                *map(link, ("base", "a", "b")),
+                joint("dead", "base", "a", axis(0, 0, 1), limit=limit(0.0, 0.0)),
+                joint("live", "a", "b", axis(0, 0, 1), limit=limit(-1.0, 1.0)),
+            )
+        )
+        loose = Limits.of(loaded).loosened()
+        assert loose.lower.tolist() == [0.0, -np.inf]
+        assert loose.upper.tolist() == [0.0, np.inf]
+        assert not Limits.of(load_quietly(HINGES_AND_A_SLIDE)).loosened().enabled
 
     def test_clips_entry_by_entry_into_itself(self, panda):
         limits = Limits.of(panda)

@@ -79,19 +79,23 @@ def test_stretched_out_the_pseudo_inverse_swings_and_dls_comes_to_rest(name, fra
     """Thesis §3: pseudo-inverse oscillates at unreachable targets, DLS far less, the less the larger λ; D_max helps."""
     robot = load_quietly(name)
 
-    def settled(solver):
-        return largest_change_after_settling(robot, frame, position, solver)
+    def settled(solver, steps=300):
+        return largest_change_after_settling(robot, frame, position, solver, steps=steps)
 
     pseudo_inverse, _ = settled(pinik.PseudoInverse(max_step=math.inf, cutoff=0.0))
     light, _ = settled(pinik.DampedLeastSquares(rule="constant", damping=0.3))
     heavy, _ = settled(pinik.DampedLeastSquares(rule="constant", damping=1.1))
-    still, still_error = settled(pinik.DampedLeastSquares(max_residual=0.1))
-    ccd, ccd_error = settled(pinik.CCD())
+    still, still_error = settled(pinik.DampedLeastSquares(max_residual=0.1), steps=1200)
+    by_default = {method: settled(pinik.SOLVERS[method]())[0] for method in FOUR}
+    _, ccd_error = settled(pinik.CCD())
     assert pseudo_inverse > 0.5
     assert heavy <= max(light, 1e-9) <= pseudo_inverse
     assert heavy < 1e-5
     assert still < 1e-6
-    assert ccd < 1e-6
+    assert by_default["pinv"] > 0.4
+    assert by_default["dls"] < 1e-6
+    assert by_default["ccd"] < 1e-6
+    assert by_default["jt"] < 0.01
     assert still_error == pytest.approx(ccd_error, abs=1e-6)  # at rest where CCD is: stretched to the full
     if reach is not None:
         assert still_error == pytest.approx(math.hypot(*position) - reach, abs=1e-6)
@@ -169,8 +173,9 @@ def test_an_answer_that_is_whole_turns_outside_is_turned_inside(method):
     """The first joint's range lies around 2π: the step from its lower end leads below it."""
     robot = straight_chain(1, 0.1, 6.2)
     wanted = -0.5
-    s = robot.solve("tip", position=[math.cos(wanted), math.sin(wanted), 0.0], method=method, restarts=0, q0=[0.2])
+    s = robot.solve("tip", position=[math.cos(wanted), math.sin(wanted), 0.0], method=method, q0=[0.2])
     assert s.success, s.message
+    assert s.restarts == 0
     assert s.angles["j1"] == pytest.approx(wanted + 2 * math.pi, abs=1e-3)
 
 
@@ -187,6 +192,21 @@ def test_joints_at_their_limits_leave_their_part_to_the_others(method):
     J[:, 0] = 0.0
     expected = solver.direction(J, target.position - robot.placement("tip", q0).translation)
     assert np.allclose(state.q - q0, expected, atol=1e-12)
+
+
+@pytest.mark.parametrize("method", FOUR)
+def test_joints_of_a_single_value_stay_there(method):
+    robot = load_quietly(
+        robot_text(
+            *(link(name) for name in ("base", "a", "b", "tip")),
+            joint("dead", "base", "a", axis(0, 0, 1), limit=limit(0.0, 0.0)),
+            joint("live", "a", "b", origin((1, 0, 0)), axis(0, 0, 1), limit=limit(-3.0, 3.0)),
+            joint("end", "b", "tip", origin((1, 0, 0)), kind="fixed", limit=""),
+        )
+    )
+    s = robot.solve("tip", position=[1.0, 1.0, 0.0], method=method, trace=True)
+    assert s.success, s.message
+    assert all(state.q[0] == 0.0 for state in s.trace)
 
 
 @pytest.mark.parametrize("method", FOUR)
@@ -294,7 +314,7 @@ def test_a_target_sent_in_moves_while_it_runs(method, arm):
         ({"locked": "bone1_x"}, "locked takes a list"),
         ({"locked": ["bone1_q"]}, "near: 'bone1_z'|near: 'bone1_x'"),
         ({"method": "newton"}, "no method 'newton'; there are: 'ccd'"),
-        ({"damp": 3}, "no parameter of 'dls' 'damp'; near: 'damping'"),
+        ({"damp": 3}, "no parameter 'damp'; near: 'damping'; the method is 'dls'"),
         ({"engine": "cuda"}, "no engine 'cuda'"),
         ({"engine": "native"}, "no compiled engine"),
     ],
@@ -304,6 +324,31 @@ def test_bad_input_is_refused_in_words(options, words, arm):
     keywords = {"position": [0.3, 0.1, 0.8]} | options
     with pytest.raises(pinik.PinikError, match=words):
         arm.solve("tip", **keywords)
+
+
+@pytest.mark.parametrize("targets", [None, 3, "tip", ["tip"], [None], {"frame": "tip"}])
+def test_what_is_no_target_is_refused(targets, arm):
+    with pytest.raises(pinik.InputError, match="targets are Target objects"):
+        pinik.solve(arm, targets)
+    states = pinik.iterate(arm, Target("tip", [0, 0, 1]))
+    next(states)
+    with pytest.raises(pinik.InputError, match="targets are Target objects"):
+        states.send(targets if targets is not None else 3)
+
+
+@pytest.mark.parametrize("locked", [None, 3, "bone1_x"])
+def test_locked_that_is_no_list_is_refused(locked, arm):
+    with pytest.raises(pinik.InputError, match="locked takes a list"):
+        arm.solve("tip", position=[0, 0, 1], locked=locked)
+
+
+def test_a_robot_is_needed():
+    with pytest.raises(pinik.InputError, match=r"robot is what pinik.load returns; got 'arm'"):
+        pinik.solve("arm", Target("tip", [0, 0, 1]))
+
+
+def test_targets_may_come_from_a_generator(arm):
+    assert pinik.solve(arm, (Target(frame, [0.3, 0.1, 0.9]) for frame in ["tip"])).success
 
 
 def test_an_unknown_frame_lists_near_ones(arm):
@@ -318,3 +363,97 @@ def test_targets_that_are_none_are_refused(arm):
         arm.solve([[0.1, 0.2, 0.3]])
     with pytest.raises(pinik.InputError, match=r"belong into Target\(...\)"):
         arm.solve([Target("tip", [0, 0, 1])], rpy=[0, 0, 0])
+
+
+def test_sent_targets_have_iterations_of_their_own(arm):
+    states = pinik.iterate(arm, Target("tip", [0.4, 0.2, 0.8]), "jt", max_iterations=3, tolerance=(1e-12, 1e-12))
+    state = next(states)
+    for _ in range(3):
+        taken = 0
+        while state.status is None:
+            state = next(states)
+            taken += 1
+        assert state.status is Status.MAX_ITERATIONS
+        state = states.send(Target("tip", [0.3, -0.2, 0.9]))
+        assert state.status is None
+        assert taken >= 2
+
+
+def test_iterate_takes_the_solvers_parameters(arm):
+    *_, last = pinik.iterate(arm, Target("tip", [0.4, 0.2, 0.8]), "ccd", stiffness={"bone1_x": 0.5})
+    assert last.status is Status.CONVERGED
+
+
+def test_without_restarts_a_solve_is_what_iterate_does(panda):
+    rng = np.random.default_rng(6)
+    for _ in range(5):
+        target = Target("panda_hand_tcp", placement=panda.placement("panda_hand_tcp", panda.random(rng)))
+        q0 = panda.random(rng)
+        s = panda.solve(target, q0=q0, restarts=0, trace=True)
+        states = list(pinik.iterate(panda, target, q0=q0))
+        assert len(s.trace) == len(states)
+        assert all(np.array_equal(a.q, b.q) for a, b in zip(s.trace, states, strict=True))
+
+
+@pytest.mark.parametrize("method", ["dls", "pinv"])
+@pytest.mark.parametrize("weight", [1e-2, 1e-3, 1e3])
+def test_a_light_target_is_reached_all_the_same(method, weight, arm):
+    rng = np.random.default_rng(3)
+    for _ in range(5):
+        wanted = arm.placement("tip", arm.random(rng))
+        targets = [Target("tip", wanted.translation, weight=weight), Target("tip", rotation=wanted.rotation)]
+        s = arm.solve(targets, method=method)
+        assert s.success, s.message
+
+
+@pytest.mark.parametrize("method", FOUR)
+def test_equal_weights_share_equally(method):
+    """One slide, two frames on it that want to be 1 m apart: each gets half."""
+    robot = load_quietly(
+        robot_text(
+            *(link(name) for name in ("base", "sled", "near", "far")),
+            joint("slide", "base", "sled", axis(1, 0, 0), kind="prismatic", limit=limit(-2.0, 2.0)),
+            joint("a", "sled", "near", origin((0, 0.1, 0)), kind="fixed", limit=""),
+            joint("b", "sled", "far", origin((0, 1.0, 0)), kind="fixed", limit=""),
+        )
+    )
+    s = robot.solve([Target("near", [1.0, 0.1, 0.0]), Target("far", [0.0, 1.0, 0.0])], method=method)
+    assert [error.position for error in s.errors] == pytest.approx([0.5, 0.5], abs=1e-6)
+
+
+def test_a_state_put_inside_that_hits_the_target_is_a_success():
+    """A step beyond the limits, cut off by max_iterations, whose clip is exact: the verdict goes by the errors."""
+    robot = load_quietly(
+        robot_text(
+            *(link(name) for name in ("a", "b", "c", "d")),
+            joint("j", "a", "b", axis(1, 0, 0), kind="prismatic", limit=limit(-1.0, 0.0)),
+            joint("k", "b", "c", axis(0, 0, 1), limit=limit(0.0, 1.0)),
+            joint("t", "c", "d", origin((1, 0, 0)), kind="fixed", limit=""),
+        )
+    )
+    for method in JACOBIAN_METHODS:
+        s = robot.solve("d", [0, 0, 0], method=method, q0=[-1, 0.5], max_iterations=2)
+        assert s.success == all(error.within(pinik.Tolerance()) for error in s.errors)
+        assert "  " not in s.message
+        assert " ;" not in s.message
+
+
+@pytest.mark.parametrize("method", FOUR)
+def test_a_robot_without_joints_is_judged_where_it_stands(method):
+    robot = load_quietly(robot_text(link("a"), link("b"), joint("j", "a", "b", kind="fixed", limit="")))
+    s = robot.solve("b", [0, 0, 2], method=method)
+    assert (s.status, s.iterations, s.restarts) == (Status.STALLED, 0, 0)
+    assert s.position_error == 2.0
+    assert robot.solve("b", [0, 0, 0], method=method).success
+
+
+def test_angles_are_told_whole(two_link):
+    s = two_link.solve("tip", rpy=[2.0, 0.0, 0.0])
+    assert "115° off" in s.message
+
+
+def test_a_frame_on_the_point_it_looks_at_looks_at_it(arm):
+    M = arm.placement("tip", arm.neutral())
+    s = arm.solve("tip", axis="x", at=M.translation + M.rotation @ [0, 0, 5e-10], restarts=0)
+    assert s.success
+    assert s.iterations == 0

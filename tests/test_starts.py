@@ -12,6 +12,7 @@ from pinik import Kinematics, Target, starts
 from pinik.limits import Limits
 from pinik.starts import random_start, uniform
 from robots import load_quietly
+from urdf_texts import joint, link, robot
 
 key = st.integers(0, 2**40)
 MASK = (1 << 64) - 1
@@ -138,10 +139,10 @@ class TestRandomStart:
         robot = load_quietly(ZOO, root="free_flyer")
         q0 = robot.random(3)
         q = start(robot, [Target("tip", (1, 0, 0)), Target("hand", (0, 1, 0))], q0)
-        for joint in robot.joints:
-            if joint.nq:
-                part = slice(joint.idx_q, joint.idx_q + joint.nq)
-                assert (q[part] == q0[part]).all() == (not joint.has_one_axis)
+        for moved in robot.joints:
+            if moved.nq:
+                part = slice(moved.idx_q, moved.idx_q + moved.nq)
+                assert (q[part] == q0[part]).all() == (not moved.has_one_axis)
 
     def test_leaves_the_start_itself_alone(self, arm):
         q0 = arm.poses["reach"]
@@ -179,3 +180,20 @@ class TestRandomStart:
         alone = start(arm, targets, q0, locked=[name for name in arm.joint_names if name != "bone3_x"])
         column = arm.joint("bone3_x").idx_q
         assert alone[column] == start(arm, targets, q0)[column]
+
+
+@pytest.mark.parametrize(
+    ("kind", "limits", "expected"),
+    [
+        ("revolute", (-60, 60), (-math.pi, math.pi)),
+        ("revolute", (150, 1000), (150, 150 + 2 * math.pi)),
+        ("revolute", (-math.inf, -2), (-2 - 2 * math.pi, -2)),
+        ("revolute", (-1, 2), (-1, 2)),
+        ("prismatic", (-1e16, 1e16), (4, 6)),
+        ("prismatic", (5.5, math.inf), (5.5, 7.5)),
+        ("prismatic", (0, 3), (0, 3)),
+    ],
+)
+def test_a_range_to_draw_from_is_finite_and_inside_the_limits(kind, limits, expected):
+    text = robot(link("a"), link("b"), joint("j", "a", "b", kind=kind))
+    assert load_quietly(text).joint("j").range_to_draw_from(*limits, slide_about=5.0) == pytest.approx(expected)

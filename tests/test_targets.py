@@ -156,8 +156,11 @@ class TestContradictions:
             ({"placement": np.diag([1, 1, -1, 1])}, "rotation matrix"),
             ({"position": (1, 2, 3), "tool": (0, 0)}, "tool takes 4×4 finite numbers"),
             ({"position": (1, 2, 3), "tool": (0, 0, math.nan)}, "tool takes 3 finite numbers"),
-            ({"position": (1, 2, 3), "weight": 0}, "weight is a positive number; got 0; leave the target out"),
-            ({"position": (1, 2, 3), "weight": -1}, "weight is a positive number"),
+            (
+                {"position": (1, 2, 3), "weight": 0},
+                "from 0.001 to 1000; got 0; leave the target out",
+            ),
+            ({"position": (1, 2, 3), "weight": -1}, "weight is a number from 0.001 to 1000"),
             ({"position": (1, 2, 3), "weight": math.nan}, "weight is a finite number"),
             ({"position": (1, 2, 3), "weight": "2"}, "weight is a finite number"),
             ({"position": (1, 2, 3), "weight": None}, "weight is a finite number"),

@@ -38,6 +38,7 @@ class Attempts:
     restarts: int
     seed: int
     max_iterations: int
+    iterations_to_the_end: int
     tolerance: Tolerance
     deadline: float
     states: list[State] | None
@@ -51,13 +52,16 @@ class Attempts:
         proof = shortfall(self.kinematics, self.limits)
         if proof is not None and proof.distance <= self.tolerance.position:
             proof = None
+        if not self.kinematics.free.any():
+            self.restarts = self.max_iterations = 0
         restarts = self.restarts if proof is None else min(self.restarts, _RESTARTS_WHEN_UNREACHABLE)
-        restarts = restarts if self.kinematics.free.any() else 0
         patience = self.solver.patience if restarts else TO_THE_END
         status, attempt = Status.STALLED, 0
         for attempt in range(restarts + 1):
             start = self.start if attempt == 0 else self._drawn_start(attempt)
-            if proof is None:
+            if not self.restarts:  # the bare method, as `iterate` runs it
+                status = self._attempt(start, attempt, patience)
+            elif proof is None:
                 status = self._attempt(start, attempt, patience, judge_limits_at_end=True)
             else:
                 status = self._attempt(start, attempt, patience, downhill=True)
@@ -65,6 +69,7 @@ class Attempts:
                 break
         assert self.best is not None
         if status not in (Status.CONVERGED, Status.TIME_LIMIT) and self.restarts:
+            self.max_iterations = self.iterations_to_the_end
             status = self._attempt(self.best.q, attempt, TO_THE_END, downhill=True)
         return self._judged(status, proof, attempt, began)
 
@@ -123,10 +128,12 @@ class Attempts:
         assert self.best is not None
         robot, targets, q = self.kinematics.robot, self.kinematics.targets, self.best.q
         errors = measure_errors(robot, targets, q)
-        if status is Status.CONVERGED and not all(error.within(self.tolerance) for error in errors):
-            status = Status.STALLED
-        if status is not Status.CONVERGED and proof is not None:
+        if all(error.within(self.tolerance) for error in errors):
+            status = Status.CONVERGED
+        elif proof is not None:
             status = Status.UNREACHABLE
+        elif status is Status.CONVERGED or not self.kinematics.free.any():
+            status = Status.STALLED
         active = {name: side for name, side in self.limits.active(q).items() if self._moves(name)}
         return Solution(
             robot=robot,

@@ -20,10 +20,12 @@ Array = NDArray[np.float64]
 def as_finite_number(value: object, what: str) -> float:
     """`value` as a float; InputError unless it is one finite number."""
     try:
+        if isinstance(value, (complex, np.complexfloating)):
+            raise TypeError
         number = float(value)  # type: ignore[arg-type]
     except (TypeError, ValueError, OverflowError):
         raise InputError(f"{what} is a finite number; got {value!r}") from None
-    if isinstance(value, (str, bool)) or not math.isfinite(number):
+    if isinstance(value, (str, bytes, bool, np.bool_)) or not math.isfinite(number):
         raise InputError(f"{what} is a finite number; got {value!r}")
     return number
 
@@ -34,7 +36,8 @@ def as_array(value: ArrayLike, shape: tuple[int, ...], what: str, of: str = "") 
     expected = f"{size} finite numbers" + (f" ({of})" if of else "")
     try:
         numbers = np.asarray(value)
-        if numbers.dtype.kind not in "iufO":  # such as texts and truth values, which numpy would convert
+        mixed = numbers.dtype.kind == "O" and any(isinstance(item, (str, bytes, bool)) for item in numbers.flat)
+        if mixed or numbers.dtype.kind not in "iufO":  # such as texts and truth values, which numpy would convert
             raise TypeError
         array = np.array(numbers, dtype=np.float64)
     except (TypeError, ValueError, OverflowError):

@@ -59,7 +59,7 @@ class UnknownNameError(PinikError, KeyError):
         self.name = name
         self.valid = tuple(valid)
         self._hint = hint
-        near = get_close_matches(str(name), self.valid, n=4, cutoff=0.5)
+        near = get_close_matches(str(name), self.valid, n=4, cutoff=0.6)
         if near:
             help_ = "near: " + ", ".join(repr(n) for n in near)
         else:

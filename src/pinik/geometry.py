@@ -5,6 +5,7 @@ Importing this module imports trimesh (over a second); import it only where shap
 
 from __future__ import annotations
 
+import os
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -14,7 +15,10 @@ import pinocchio
 import trimesh
 from numpy.typing import NDArray
 
+from . import urdf
+from .errors import InputError
 from .packages import resolve
+from .robot import Robot
 from .xml_reader import Element, parse
 
 __all__ = ["Color", "Shape", "load_shapes"]
@@ -46,19 +50,32 @@ class Shape:
 
 
 def load_shapes(
-    urdf_path_or_text: str | Path, package_dirs: Sequence[str | Path] = ()
+    robot_or_urdf: Robot | str | os.PathLike[str], package_dirs: Iterable[str | os.PathLike[str]] = ()
 ) -> tuple[list[Shape], list[str]]:
-    """Read the visual shapes of a URDF that has been checked before.
+    """Read the visual shapes of a robot.
 
     Args:
-        urdf_path_or_text: A path to a .urdf, or its text.
-        package_dirs: Folders in which `package://` addresses are looked up first.
+        robot_or_urdf: What `pinik.load` returned, a path to a .urdf, or URDF text.
+        package_dirs: Folders in which `package://` addresses are looked up first; before the robot's own.
 
     Returns:
         The shapes, in the order of the file, and a sentence about each one that could not be read.
+
+    Raises:
+        RobotLoadError: There is no such file, it is no URDF, or something in it is wrong.
+        InputError: Something that is none of these, or one folder for a list.
     """
-    document, path = _document(urdf_path_or_text)
-    robot = parse(document)
+    if isinstance(package_dirs, (str, os.PathLike)) or not isinstance(package_dirs, Iterable):
+        raise InputError(f"package_dirs takes a list of folders; got {package_dirs!r}")
+    folders = [Path(folder) for folder in package_dirs]
+    if isinstance(robot_or_urdf, Robot):
+        description = robot_or_urdf.description
+        folders.extend(robot_or_urdf.package_dirs)
+    elif isinstance(robot_or_urdf, (str, os.PathLike)):
+        description = urdf.read(robot_or_urdf)
+    else:
+        raise InputError(f"shapes belong to a Robot, a path or URDF text; got {robot_or_urdf!r}")
+    robot = parse(description.document, None if description.path else "utf-8")
     named = {
         material.attributes.get("name", ""): color
         for material in robot.walk()
@@ -72,7 +89,7 @@ def load_shapes(
         for index, visual in enumerate(link.named("visual")):
             try:
                 placement, given = _origin(visual), _visual_color(visual, named)
-                parts = _parts(visual, path, package_dirs, files)
+                parts = _parts(visual, description.path, folders, files)
             except Exception as fault:  # a shape is never worth an error, whatever its file makes trimesh raise
                 warnings.append(f"link '{link_name}': a shape is left out: {fault}")
                 continue
@@ -80,13 +97,6 @@ def load_shapes(
                 name = f"{link_name}/{index}" + (f"/{part}" if len(parts) > 1 else "")
                 shapes.append(Shape(link_name, name, placement, mesh, given or own or GREY))
     return shapes, warnings
-
-
-def _document(urdf_path_or_text: str | Path) -> tuple[bytes, Path | None]:
-    if isinstance(urdf_path_or_text, str) and urdf_path_or_text.lstrip().startswith("<"):
-        return urdf_path_or_text.encode(), None
-    path = Path(urdf_path_or_text)
-    return path.read_bytes(), path
 
 
 def _child(element: Element, tag: str) -> Element | None:
@@ -125,7 +135,7 @@ def _visual_color(visual: Element, named: dict[str, Color]) -> Color | None:
 def _parts(
     visual: Element,
     urdf_path: Path | None,
-    package_dirs: Sequence[str | Path],
+    package_dirs: Sequence[Path],
     files: dict[str, list[Part]],
 ) -> list[Part]:
     """The meshes of one visual element, each with its own colour if it has one."""
@@ -163,7 +173,7 @@ def _scaled(mesh: trimesh.Trimesh, scale: NDArray[np.float64]) -> trimesh.Trimes
     return scaled
 
 
-def _load_file(address: str, urdf_path: Path | None, package_dirs: Sequence[str | Path]) -> list[Part]:
+def _load_file(address: str, urdf_path: Path | None, package_dirs: Sequence[Path]) -> list[Part]:
     """A mesh file as one mesh for each colour in it, in its own frame [m]."""
     path = resolve(address, urdf_path=urdf_path, package_dirs=package_dirs)
     if path is None:

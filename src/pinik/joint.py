@@ -63,7 +63,13 @@ class Joint:
         return own if self.leader is None else self.multiplier * own + self.offset
 
     def set_angle(self, q: Array, angle: float) -> None:
-        """Write a one-axis joint's angle [rad or m] into `q`, in place."""
+        """Write a one-axis joint's angle [rad or m] into `q`, in place.
+
+        Raises:
+            InputError: A floating or planar joint, which has no angle.
+        """
+        if not self.has_one_axis:
+            raise InputError(f"joint {self.name!r} is {self.kind} and has no angle; give its SE3 in joint_placements")
         if self.nq == 2:
             q[self.idx_q : self.idx_q + 2] = math.cos(angle), math.sin(angle)
         else:
@@ -105,17 +111,13 @@ class Joint:
     def range_to_draw_from(self, lower: float, upper: float, slide_about: float = 0.0) -> tuple[float, float]:
         """The limits [rad or m] made finite, for drawing angles at random.
 
-        Without limits, or with limits so wide that they are none, ±π for a turning joint and ±1 m about `slide_about`
-        for a sliding one; with one limit, as much from there on.
+        Without limits, or with limits so wide that they are none, ±π about zero for a turning joint and ±1 m about
+        `slide_about` for a sliding one; moved inside the limits where it would reach out.
         """
-        half = 1.0 if self.kind == "prismatic" else math.pi
         if upper - lower <= _WIDEST_RANGE:
             return lower, upper
-        if abs(lower) <= _WIDEST_RANGE:
-            return lower, lower + 2.0 * half
-        if abs(upper) <= _WIDEST_RANGE:
-            return upper - 2.0 * half, upper
-        middle = slide_about if self.kind == "prismatic" else 0.0
+        half, middle = (1.0, slide_about) if self.kind == "prismatic" else (math.pi, 0.0)
+        middle = min(max(middle, lower + half), upper - half)
         return middle - half, middle + half
 
 

@@ -14,11 +14,13 @@ from .coordinates import Coordinate
 from .errors import InputError
 from .robot import Robot
 from .target_term import TargetTerm
-from .targets import Target, TargetError
+from .targets import Target, TargetError, as_targets
 
 __all__ = ["Kinematics", "Linearization"]
 
 Array = NDArray[np.float64]
+
+_SQUARED_METRES_PER_RADIAN = 0.3**2
 
 
 class Linearization(NamedTuple):
@@ -27,10 +29,11 @@ class Linearization(NamedTuple):
     Attributes:
         q: The configuration (nq,).
         e: Weighted residual (m,).
-        J: Weighted Jacobian (m, nv), zero in the columns of locked joints.
+        J: Weighted Jacobian (m, nv), zero in the columns that are not free.
         errors: Each target's error, unweighted.
         residual: Norm of e, before anything shortens it.
-        free: (nv,) whether the solver may move a tangent coordinate; J is zero in the columns of the others.
+        distance: How far off the targets are in all [m], weighted, a radian counted as 0.3 m.
+        free: (nv,) whether the solver may move a tangent coordinate.
     """
 
     q: Array
@@ -38,6 +41,7 @@ class Linearization(NamedTuple):
     J: Array
     errors: list[TargetError]
     residual: float
+    distance: float
     free: NDArray[np.bool_]
 
 
@@ -53,6 +57,9 @@ class Kinematics:
         targets: What is asked for.
         terms: The targets, compiled: see `TargetTerm`.
         coordinates: The free ones among them one by one, distal joints first, as CCD visits them.
+        lightest: The smallest weight as a part of the largest.
+        size_of_chain: The longest of the targets' chains [m].
+        held_entries: The entries of q that stay, where nq and nv differ; else None.
         free: (nv,) whether a tangent coordinate moves a target and is not locked.
         locked: Joints that hold still.
         size: Number of residual rows m.
@@ -79,24 +86,28 @@ class Kinematics:
             UnknownNameError: No such frame or joint.
             InputError: No target, or a locked joint that follows another.
         """
-        if isinstance(locked, str):
-            raise InputError(f"locked takes a list of joint names; got the string {locked!r}")
+        if isinstance(locked, str) or not isinstance(locked, Iterable):
+            raise InputError(f"locked takes a list of joint names; got {locked!r}")
         self.robot = robot
         self.locked = tuple(robot.settable_joint(name) for name in locked)
         self.target_jacobian = target_jacobian
         self.evaluations = 0
         self.retarget(targets)
 
-    def retarget(self, targets: Sequence[Target]) -> None:
+    def retarget(self, targets: Target | Sequence[Target]) -> None:
         """Ask for other targets."""
-        self.targets = tuple(targets)
-        if not self.targets:
-            raise InputError("there is nothing to solve: give at least one target")
+        self.targets = as_targets(targets)
         self.model = self.robot.model
         ids = [(self._frame_id(t), _reference_id(self.robot, t)) for t in self.targets]
         self.data = self.model.createData()
+        # Only their ratios mean something; with the heaviest at 1, numbers keep their size.
+        weights = [target.weight for target in self.targets]
+        heaviest = max(weights)
+        self.lightest = min(weights) / heaviest
         self.terms = [
-            TargetTerm(self.model, self.data, self.robot.joints, t, frame, reference, self.target_jacobian)
+            TargetTerm(
+                self.model, self.data, self.robot.joints, t, frame, reference, self.target_jacobian, t.weight / heaviest
+            )
             for t, (frame, reference) in zip(self.targets, ids, strict=True)
         ]
         self.size = sum(term.size for term in self.terms)
@@ -113,6 +124,18 @@ class Kinematics:
         relative = any(target.relative_to is not None for target in self.targets)
         self._columns_to_clear = np.flatnonzero(~self.free) if relative or self.locked else None
         self.coordinates = self._coordinates()
+        self.size_of_chain = max(term.chain_length for term in self.terms)
+        self.held_entries = self._held_entries()
+
+    def _held_entries(self) -> NDArray[np.intp] | None:
+        """The entries of q that belong to no free coordinate, where integrating by 0 could change their last bits."""
+        if self.model.nq == self.model.nv:
+            return None
+        held = np.ones(self.model.nq, dtype=bool)
+        for joint in self.robot.joints:
+            if self.free[joint.idx_v : joint.idx_v + joint.nv].any():
+                held[joint.idx_q : joint.idx_q + joint.nq] = False
+        return np.flatnonzero(held)
 
     def _coordinates(self) -> tuple[Coordinate, ...]:
         """The free tangent coordinates, distal joints first."""
@@ -126,7 +149,8 @@ class Kinematics:
             for index in range(joint.nv):
                 if moved and self.free[joint.idx_v + index]:
                     coordinates.append(Coordinate(joint, index, tuple(moved)))
-        return tuple(coordinates)
+        # By the most distal mover: a follower may lie beyond joints that come after its leader.
+        return tuple(sorted(coordinates, key=lambda c: max(mover.id for mover, _ in c.movers), reverse=True))
 
     def linearize(self, q: Array) -> Linearization:
         """Residual, Jacobian and errors at `q` (nq,)."""
@@ -141,7 +165,16 @@ class Kinematics:
             errors = [part[2] for part in parts]
         if self._columns_to_clear is not None:
             J[:, self._columns_to_clear] = 0.0
-        return Linearization(q, e, J, errors, math.sqrt(e.dot(e)), self.free)
+        return Linearization(q, e, J, errors, math.sqrt(e.dot(e)), self._distance(errors), self.free)
+
+    def _distance(self, errors: list[TargetError]) -> float:
+        squared = 0.0
+        for term, (position, orientation) in zip(self.terms, errors, strict=True):
+            own = 0.0 if position is None else position * position
+            if orientation is not None:
+                own += _SQUARED_METRES_PER_RADIAN * orientation * orientation
+            squared += term.weight * term.weight * own
+        return math.sqrt(squared)
 
     def shortened(self, e: Array, longest: float) -> Array:
         """The residual with each position part cut to `longest` [m], its direction kept: ClampMag of the thesis."""
@@ -150,7 +183,7 @@ class Kinematics:
         for term in self.terms:
             if term.target.position is not None:
                 part = e[row : row + 3]
-                length = math.sqrt(part.dot(part)) / term.target.weight
+                length = math.sqrt(part.dot(part)) / term.weight
                 if length > longest:
                     part *= longest / length
             row += term.size

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import math
 from dataclasses import dataclass
 
@@ -26,7 +27,7 @@ class Limits:
         enabled: Whether they hold.
         lower, upper: (nq,) bounds of the entries of q; infinite where there are none.
         entry: (nv,) the entry of q behind each tangent coordinate that has bounds, −1 for the others.
-        turning: (nq,) which entries are hinge angles, equal when 2π apart.
+        turning: (nq,) which entries are hinge angles, equal when 2π apart; not so for what others mimic.
     """
 
     robot: Robot
@@ -41,14 +42,23 @@ class Limits:
         """The limits of a robot, all infinite unless `enabled`."""
         entry = np.full(robot.model.nv, -1, dtype=np.intp)
         turning = np.zeros(robot.model.nq, dtype=bool)
+        leaders = {joint.leader for joint in robot.joints}
         for joint in robot.joints:
             if joint.nq == 1:
-                turning[joint.idx_q] = joint.kind != "prismatic"
+                turning[joint.idx_q] = joint.kind != "prismatic" and joint.name not in leaders
                 if enabled:
                     entry[joint.idx_v] = joint.idx_q
         if enabled:
             return cls(robot, True, robot.lower_q, robot.upper_q, entry, turning)
         return cls(robot, False, np.full(robot.model.nq, -np.inf), np.full(robot.model.nq, np.inf), entry, turning)
+
+    def loosened(self) -> Limits:
+        """Without the limits, but for those that leave a joint only one value."""
+        single = self.lower == self.upper
+        if not single.any():
+            return Limits.of(self.robot, False)
+        lower, upper = np.where(single, self.lower, -np.inf), np.where(single, self.upper, np.inf)
+        return dataclasses.replace(self, lower=lower, upper=upper)
 
     def clip(self, q: Array) -> Array:
         """The nearest configuration inside, entry by entry."""
@@ -77,20 +87,10 @@ class Limits:
     def active(self, q: Array) -> dict[str, str]:
         """Joint name → "lower", "upper" or "both", for the joints that sit at a limit."""
         sides = {}
-        for name, angle, low, high in self._bounded(q):
-            at_lower, at_upper = angle - low <= _AT_LIMIT, high - angle <= _AT_LIMIT
-            if at_lower or at_upper:
-                sides[name] = "both" if at_lower and at_upper else "lower" if at_lower else "upper"
+        for joint in self.robot.joints:
+            if joint.nq == 1:
+                angle, entry = q[joint.idx_q], joint.idx_q
+                at_lower, at_upper = angle - self.lower[entry] <= _AT_LIMIT, self.upper[entry] - angle <= _AT_LIMIT
+                if at_lower or at_upper:
+                    sides[joint.name] = "both" if at_lower and at_upper else "lower" if at_lower else "upper"
         return sides
-
-    def _bounded(self, q: Array) -> list[tuple[str, float, float, float]]:
-        return [
-            (
-                joint.name,
-                float(q[joint.idx_q]),
-                float(self.lower[joint.idx_q]),
-                float(self.upper[joint.idx_q]),
-            )
-            for joint in self.robot.joints
-            if joint.nq == 1 and self.enabled
-        ]

@@ -8,10 +8,10 @@ from collections.abc import Iterable, Sequence
 from pathlib import Path
 
 from . import packages, robot_catalog, urdf
-from .errors import InputError, UrdfWarning
+from .errors import InputError, RobotLoadError, UrdfWarning
 from .robot import Robot
 
-__all__ = ["load"]
+__all__ = ["load", "locate"]
 
 
 def load(
@@ -37,11 +37,16 @@ def load(
     Warns:
         UrdfWarning: For whatever was mended or left out, and for meshes that were not found.
     """
-    if isinstance(package_dirs, (str, os.PathLike)):
-        raise InputError(f"package_dirs takes a list of folders; got the single {package_dirs!r}")
-    name, srdf, path_or_text = _locate(source)
+    if isinstance(package_dirs, (str, os.PathLike)) or not isinstance(package_dirs, Iterable):
+        raise InputError(f"package_dirs takes a list of folders; got {package_dirs!r}")
+    folders = tuple(package_dirs)
+    for folder in folders:
+        if not isinstance(folder, (str, os.PathLike)):
+            raise InputError(f"package_dirs takes a list of folders; got {folder!r} among them")
+    homes = tuple(_home_expanded(Path(folder)) for folder in folders)
+    name, srdf, path_or_text = locate(source)
     description = urdf.read(path_or_text)
-    robot = Robot(description, name=name, root=root, package_dirs=tuple(package_dirs), mimic=mimic, srdf=srdf)
+    robot = Robot(description, name=name, root=root, package_dirs=homes, mimic=mimic, srdf=srdf)
     missing = [a for a in description.meshes if not _mesh_found(a, description.path, robot.package_dirs)]
     if missing:
         count = "1 mesh was" if len(missing) == 1 else f"{len(missing)} meshes were"
@@ -53,8 +58,14 @@ def load(
     return robot
 
 
-def _locate(source: str | os.PathLike[str]) -> tuple[str | None, Path | None, str | Path]:
-    """(catalogue name, SRDF, path or text) for what a person gave."""
+def locate(source: str | os.PathLike[str]) -> tuple[str | None, Path | None, str | Path]:
+    """(catalogue name, SRDF, path or text) for what a person gave.
+
+    Raises:
+        UnknownNameError: No robot of that name.
+        RobotLoadError: There is no such file, and the catalogue has a robot that may be meant.
+        InputError: Neither name nor path nor text.
+    """
     if not isinstance(source, (str, os.PathLike)):
         raise InputError(f"a robot is a catalogue name, a path or URDF text; got {source!r}")
     if isinstance(source, str):
@@ -64,9 +75,19 @@ def _locate(source: str | os.PathLike[str]) -> tuple[str | None, Path | None, st
         if not looks_like_path and (source in robot_catalog.catalog() or not os.path.exists(source)):
             entry = robot_catalog.find(source)
             return entry.name, entry.srdf, entry.urdf
-    path = Path(source)
-    srdf = path.with_suffix(".srdf")
-    return None, srdf if srdf.is_file() else None, path
+    path = _home_expanded(Path(source))
+    if path.stem in robot_catalog.catalog() and not os.path.lexists(path):
+        raise RobotLoadError(f"there is no such file; the catalogue has a robot {path.stem!r}", source=str(path))
+    srdf = path.with_suffix(".srdf") if path.name else None
+    return None, srdf if srdf and srdf.is_file() else None, path
+
+
+def _home_expanded(path: Path) -> Path:
+    """The path with "~" as the shell reads it; as it is where there is no such home."""
+    try:
+        return path.expanduser()
+    except RuntimeError:
+        return path
 
 
 def _mesh_found(address: str, urdf_path: Path | None, package_dirs: Sequence[Path]) -> bool:

@@ -19,11 +19,15 @@ from .robot import Robot
 from .run import TO_THE_END, run
 from .solution import Solution, State
 from .solvers import JacobianSolver, Solver, make_solver
-from .targets import Target, Tolerance
+from .targets import Target, Tolerance, as_targets
 
 __all__ = ["iterate", "solve"]
 
 Array = NDArray[np.float64]
+
+
+# Iterations in which the best of the failed attempts is followed to its end, unless the caller allows fewer.
+_TO_THE_END_AT_MOST = 5000
 
 
 def iterate(
@@ -36,12 +40,13 @@ def iterate(
     locked: Iterable[str] = (),
     max_iterations: int | None = None,
     tolerance: Tolerance | ArrayLike | None = None,
-) -> Generator[State, Sequence[Target] | None, None]:
+    **solver_parameters: Any,
+) -> Generator[State, Target | Sequence[Target] | None, None]:
     """Run one solver from one start and yield a State per iteration, the start first.
 
     Ends with the state whose `status` is set: converged, stalled or out of iterations. It serves the three ways to
     run: drain it (until reached); take `max_iterations=1` per simulation step from the last q (chase); or a few
-    (hybrid). `states.send(targets)` moves the targets while it runs.
+    (hybrid). `states.send(targets)` moves the targets while it runs and starts its count of iterations anew.
 
     Args:
         robot: The robot.
@@ -52,11 +57,12 @@ def iterate(
         locked: Names of joints that hold still.
         max_iterations: Iterations at most; the solver's own number when None.
         tolerance: (metres, radians) that count as reached.
+        **solver_parameters: The solver's own parameters.
 
     Raises:
         InputError, UnknownNameError: As `solve`.
     """
-    made = make_solver(solver)
+    made = make_solver(solver, **solver_parameters)
     kinematics = _kinematics(robot, targets, made, locked)
     box = Limits.of(robot, limits)
     start = _start(robot, box, q0)
@@ -90,17 +96,19 @@ def solve(
         robot: The robot.
         targets: One target or several.
         method: "ccd", "jt", "pinv", "dls", another name in `pinik.SOLVERS`, a Solver class or an instance.
-        q0: Start (nq,), put inside the limits; neutral when None.
+        q0: Start (nq,); neutral when None. With limits it is put inside them first, joint by joint, the joints that
+            move nothing and the locked ones as well.
         limits: Whether the answer keeps inside the joints' limits.
         locked: Names of joints that hold still (a floating or planar joint's too).
         restarts: Fresh starts, drawn from `seed`, when an attempt fails; the solver's own number when None; 0 for
-            the bare method.
+            the bare method, as `iterate` runs it.
         seed: Of the restarts' starts.
         max_iterations: Iterations of one attempt at most; the solver's own number when None.
         tolerance: (metres, radians) that count as reached; 1e-4 m and 1e-3 rad when None.
         time_limit: Seconds; checked between iterations.
         engine: "auto", "python" or "native".
-        trace: Whether to keep every state.
+        trace: Whether to keep every state. With restarts, attempts of Jacobian methods may pass the limits on their
+            way; the answer does not.
         **solver_parameters: The solver's own parameters, such as `damping=0.1`.
 
     Returns:
@@ -124,6 +132,7 @@ def solve(
         restarts=solver.restarts if restarts is None else _count(restarts, "restarts", least=0),
         seed=_count(seed, "seed", least=0),
         max_iterations=solver.max_iterations if max_iterations is None else _count(max_iterations, "max_iterations"),
+        iterations_to_the_end=_TO_THE_END_AT_MOST if max_iterations is None else max_iterations,
         tolerance=Tolerance.of(tolerance),
         deadline=math.inf if time_limit is None else began + _seconds(time_limit),
         states=[] if trace else None,
@@ -155,14 +164,13 @@ _TARGET_KEYWORDS = (
 
 
 def _kinematics(robot: Robot, targets: Target | Sequence[Target], solver: Solver, locked: Iterable[str]) -> Kinematics:
-    if isinstance(targets, Target):
-        targets = [targets]
-    for target in targets:
-        if not isinstance(target, Target):
-            raise InputError(f"targets are Target objects; got {target!r}")
+    if not isinstance(robot, Robot):
+        raise InputError(f"robot is what pinik.load returns; got {robot!r}")
+    if isinstance(locked, str) or not isinstance(locked, Iterable):
+        raise InputError(f"locked takes a list of joint names; got {locked!r}")
     at_target = isinstance(solver, JacobianSolver) and solver.target_jacobian
     _check_joint_names(robot, solver)
-    return Kinematics(robot, targets, locked=locked, target_jacobian=at_target)
+    return Kinematics(robot, as_targets(targets), locked=(*locked, *solver.held), target_jacobian=at_target)
 
 
 def _check_joint_names(robot: Robot, solver: Solver) -> None:

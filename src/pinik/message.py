@@ -47,11 +47,11 @@ def explain(
         return f"no free joint moves {_frames(targets)}; {missed}"
     if status is Status.UNREACHABLE and proof is not None:
         frame = targets[proof.target].frame
-        side = "inside the hole of" if proof.inner else "beyond the reach of"
-        sentence = (
-            f"unreachable: the target of {frame} lies {_length(proof.distance)} {side} its chain, "
-            f"{_length(proof.bound)} from its first joint; {missed}"
-        )
+        if proof.inner:
+            side = f"inside the hole of {_length(proof.bound)} around its chain's first joint"
+        else:
+            side = f"beyond its chain's reach of {_length(proof.bound)}"
+        sentence = f"unreachable: the target of {frame} lies {_length(proof.distance)} {side}; {missed}"
     else:
         begin = {
             Status.STALLED: "stalled",
@@ -93,6 +93,8 @@ def _frames(targets: Sequence[Target]) -> str:
 
 
 def _length(metres: float) -> str:
+    if metres >= 100.0:
+        return f"{metres:,.0f} m"
     if metres >= 1.0:
         return f"{metres:.3g} m"
     if metres >= 0.01:
@@ -103,4 +105,5 @@ def _length(metres: float) -> str:
 
 
 def _angle(radians: float) -> str:
-    return f"{math.degrees(radians):.2g}°"
+    degrees = math.degrees(radians)
+    return f"{degrees:.0f}°" if degrees >= 10.0 else f"{degrees:.2g}°"

@@ -13,8 +13,9 @@ from .urdf import Description
 
 __all__ = ["MAX_DEGREES_OF_FREEDOM", "MAX_LINKS", "build_model"]
 
-# pinocchio.Data holds tensors of nv³ numbers, in all 66 bytes per nv³ (measured at nv = 200..400): 1.8 GB.
-MAX_DEGREES_OF_FREEDOM = 300
+# pinocchio.Data holds tensors of nv³ numbers, and a solve has two of them, the robot's and its own: 0.9 GB at
+# nv = 200, 1.6 GB at 250, 2.7 GB at 300 (measured as the largest resident size of `pinik solve`).
+MAX_DEGREES_OF_FREEDOM = 250
 # The parser looks every parent up by a walk over all frames: 10,000 links take a second, 100,000 minutes.
 MAX_LINKS = 10_000
 
@@ -51,7 +52,7 @@ def build_model(
         InputError: `root` is none of these.
         RobotLoadError: The robot is too large for Pinocchio, or Pinocchio refuses it.
     """
-    if root not in ROOT_JOINTS:
+    if not isinstance(root, str) or root not in ROOT_JOINTS:
         raise InputError(f"no root {root!r}; there are: {', '.join(map(repr, ROOT_JOINTS))}")
     root_joint = None if ROOT_JOINTS[root] is None else ROOT_JOINTS[root]()
     _check_names(description, root)
@@ -97,7 +98,7 @@ def _check_size(description: Description, root_freedoms: int) -> None:
     if freedoms > MAX_DEGREES_OF_FREEDOM:
         raise RobotLoadError(
             f"{freedoms:,} degrees of freedom; at most {MAX_DEGREES_OF_FREEDOM} can be loaded, because "
-            "Pinocchio's working memory grows with their third power (2 GB at 310)",
+            "Pinocchio's working memory grows with their third power (a solve at 250 takes 1.6 GB)",
             source=description.source,
         )
 

@@ -18,7 +18,7 @@ __all__ = ["Shortfall", "shortfall"]
 
 Vector = Sequence[float]  # three plain numbers: every solve asks, and numpy is slow with so few
 
-_ROUNDING = 1e-12  # of the reach: what rounding in the placements of a chain may amount to
+_ROUNDING = 1e-12  # of the lengths that enter: what rounding in the placements of a chain may amount to
 
 
 class Shortfall(NamedTuple):
@@ -84,7 +84,7 @@ def _term_shortfall(index: int, term: TargetTerm, model: pinocchio.Model, limits
     reach, hole = _bounds(_spans(term, model, limits), len(term.movers) + 1)
     if not math.isfinite(reach):
         return None
-    slack = _ROUNDING * reach
+    slack = _ROUNDING * (reach + float(np.linalg.norm(position)) + float(np.linalg.norm(base)))
     if distance > reach + slack:
         return Shortfall(index, distance - reach, reach, False)
     if distance < hole - slack:

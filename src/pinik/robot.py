@@ -19,6 +19,7 @@ from .checks import as_finite_number, as_se3, as_vector
 from .errors import InputError, RobotLoadError, UnknownNameError
 from .joint import Joint, joints_of, limits_cut_by_followers
 from .model import build_model
+from .named_poses import read_poses
 
 if TYPE_CHECKING:
     from .solution import Solution
@@ -85,6 +86,8 @@ class Robot:
         self.mimics = {j.name: (j.leader, j.multiplier, j.offset) for j in self.joints if j.leader is not None}
         self.lower, self.upper = self._joint_limits()
         self.lower_q, self.upper_q = self._configuration_limits()
+        for limits in (self.lower, self.upper, self.lower_q, self.upper_q):
+            limits.setflags(write=False)
 
     def __repr__(self) -> str:
         return (
@@ -103,22 +106,21 @@ class Robot:
             self._local.data = self.model.createData()
         return self._local.data
 
-    @cached_property
+    @property
     def poses(self) -> dict[str, Array]:
-        """Named configurations from the SRDF beside the URDF: name → q (nq,).
+        """Named configurations from the SRDF beside the URDF: name → q (nq,), read-only; copy one to change it.
 
         Raises:
             RobotLoadError: There is an SRDF, and it is faulty.
         """
-        if self._srdf is None:
-            return {}
-        model = pinocchio.Model(self.model)
-        try:
-            pinocchio.loadReferenceConfigurations(model, str(self._srdf), False)
-        except (RuntimeError, ValueError) as error:
-            raise RobotLoadError(f"the SRDF cannot be read: {error}", source=str(self._srdf)) from error
-        references = model.referenceConfigurations
-        return {entry.key(): pinocchio.normalize(model, np.array(entry.data())) for entry in references}
+        poses = {name: q.copy() for name, q in self._poses.items()}
+        for q in poses.values():
+            q.setflags(write=False)
+        return poses
+
+    @cached_property
+    def _poses(self) -> dict[str, Array]:
+        return {} if self._srdf is None else read_poses(self._srdf, self.model, self.joints)
 
     def frame_id(self, name: str) -> int:
         """The model's index of a frame; a link is meant where a link and a joint share the name.
@@ -171,7 +173,10 @@ class Robot:
         Args:
             rng: A `numpy.random.Generator`, or a seed for one.
         """
-        rng = np.random.default_rng(rng)
+        try:
+            rng = np.random.default_rng(rng)
+        except (TypeError, ValueError):
+            raise InputError(f"rng is a numpy Generator or a seed, a whole number from 0; got {rng!r}") from None
         q = self.neutral()
         for joint, lower, upper in zip(self._settable, self.lower, self.upper, strict=True):
             low, high = joint.range_to_draw_from(lower, upper)
@@ -202,17 +207,18 @@ class Robot:
             InputError: A follower, a joint of the other kind, a number that is not finite, or a placement of a
                 planar joint outside its plane.
         """
+        for given in (angles, joint_placements):
+            if given is not None and not isinstance(given, Mapping):
+                raise InputError(f"joints are given by name, as in {{'joint': 0.3}}; got {given!r}")
         q = self.neutral()
         for name, value in (angles or {}).items():
             joint = self.settable_joint(name)
-            if not joint.has_one_axis:
-                raise InputError(f"joint {name!r} is {joint.kind}; give its SE3 in joint_placements")
             joint.set_angle(q, as_finite_number(value, f"the angle of joint {name!r}"))
-        for name, given in (joint_placements or {}).items():
+        for name, placement in (joint_placements or {}).items():
             joint = self.settable_joint(name)
             if joint.has_one_axis:
                 raise InputError(f"joint {name!r} is {joint.kind}; give its scalar in angles")
-            joint.set_placement(q, as_se3(given, f"the placement of joint {name!r}"))
+            joint.set_placement(q, as_se3(placement, f"the placement of joint {name!r}"))
         return q
 
     def angles(self, q: ArrayLike) -> dict[str, float]:

@@ -35,7 +35,7 @@ def run(
     judge_limits_at_end: bool = False,
     downhill: bool = False,
     attempt: int = 0,
-) -> Generator[State, Sequence[Target] | None, None]:
+) -> Generator[State, Target | Sequence[Target] | None, None]:
     """States of one attempt.
 
     With `judge_limits_at_end` a Jacobian method steps freely until it has converged; what then lies outside the
@@ -43,10 +43,10 @@ def run(
     Jacobian method's step is cut until the residual falls, so that it comes to rest where it would swing about.
     """
     unlimited = judge_limits_at_end and limits.enabled and isinstance(solver, JacobianSolver)
-    box = Limits.of(limits.robot, False) if unlimited else limits
+    box = limits.loosened() if unlimited else limits
     at = kinematics.linearize(start)
     milestone, since = at.residual, 0
-    iteration, updates, scale = 0, 0, 1.0
+    iteration, last, updates, scale = 0, max_iterations, 0, 1.0
     while True:
         status = None
         if all([error.within(tolerance) for error in at.errors]):
@@ -64,13 +64,13 @@ def run(
                 milestone, since = at.residual, 0
             elif since >= patience.iterations:
                 status = Status.STALLED
-            if status is None and iteration >= max_iterations:
+            if status is None and iteration >= last:
                 status = Status.MAX_ITERATIONS
         moved = yield State(at.q, iteration, updates, tuple(at.errors), at.residual, attempt, status)
         if moved is not None:
-            kinematics.retarget([moved] if isinstance(moved, Target) else moved)
+            kinematics.retarget(moved)
             at = kinematics.linearize(at.q)
-            milestone, since = math.inf, 0
+            milestone, since, last = math.inf, 0, iteration + max_iterations
         elif status is not None:
             return
         q, updated = advance(solver, kinematics, box, at, tolerance, scale)

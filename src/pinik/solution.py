@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from .errors import SolveError
 from .robot import Robot
-from .targets import Target, TargetError
+from .targets import NO_DIRECTION, Target, TargetError
 
 __all__ = ["Solution", "State", "Status", "measure_errors"]
 
@@ -192,7 +192,7 @@ def _measure(robot: Robot, target: Target, q: Array) -> TargetError:
         axis = placement.rotation @ target.axis
         direction = target.direction if target.at is None else target.at - placement.translation
         assert direction is not None
-        if not np.any(direction):  # the frame sits on the point that it should look at
+        if target.at is not None and np.linalg.norm(direction) < NO_DIRECTION:
             return TargetError(position, 0.0)
         orientation = math.atan2(float(np.linalg.norm(np.cross(axis, direction))), float(axis @ direction))
     return TargetError(position, orientation)

@@ -8,6 +8,7 @@ import numpy as np
 import pinocchio
 from numpy.typing import NDArray
 
+from .errors import InputError
 from .kinematics import Kinematics, Linearization
 from .limits import Limits
 from .solvers import JacobianSolver, Solver, SweepingSolver
@@ -23,7 +24,10 @@ def advance(
 ) -> tuple[Array, int]:
     """(the next configuration, joints updated one by one); `scale` shortens the step of a Jacobian method."""
     if isinstance(solver, SweepingSolver):
-        return solver.sweep(at.q, kinematics, limits, tolerance)
+        q, updates = solver.sweep(at.q, kinematics, limits, tolerance)
+        if np.shape(q) != at.q.shape:
+            raise InputError(f"{solver.name}.sweep returns q of shape {at.q.shape}; got {np.shape(q)}")
+        return (limits.clip(q), updates) if np.isfinite(q).all() else (at.q, updates)
     assert isinstance(solver, JacobianSolver)
     if solver.max_residual < math.inf:
         at = at._replace(e=kinematics.shortened(at.e, solver.max_residual))
@@ -38,6 +42,8 @@ def advance(
 
 def _stepped(dq: Array, solver: JacobianSolver, kinematics: Kinematics, at: Linearization, scale: float) -> Array:
     """The configuration after the step, clamped and scaled; joints that are not free stay to the last bit."""
+    if np.shape(dq) != at.free.shape:
+        raise InputError(f"{solver.name}.direction returns dq of shape {at.free.shape}; got {np.shape(dq)}")
     dq = dq * at.free
     length = math.sqrt(dq.dot(dq))
     if not math.isfinite(length):
@@ -49,7 +55,10 @@ def _stepped(dq: Array, solver: JacobianSolver, kinematics: Kinematics, at: Line
     scale *= solver.step_size
     if scale != 1.0:
         dq = dq * scale
-    return np.array(pinocchio.integrate(kinematics.model, at.q, dq))
+    q: Array = pinocchio.integrate(kinematics.model, at.q, dq)
+    if kinematics.held_entries is not None:
+        q[kinematics.held_entries] = at.q[kinematics.held_entries]
+    return q
 
 
 def _step_along_limits(

@@ -15,14 +15,13 @@ import pinocchio
 from numpy.typing import NDArray
 
 from .joint import Joint
-from .targets import Target, TargetError
+from .targets import NO_DIRECTION, Target, TargetError
 
 __all__ = ["TargetTerm"]
 
 Array = NDArray[np.float64]
 
 _ALIGNED = pinocchio.LOCAL_WORLD_ALIGNED
-_NO_DIRECTION = 1e-9  # [m]
 
 
 class TargetTerm:
@@ -30,6 +29,7 @@ class TargetTerm:
 
     Attributes:
         target: The target.
+        weight: Factor on its rows, at most 1.
         size: Its rows: 3 for a position, 3 for an orientation or an axis.
         frame_joint, reference_joint: The joints that carry the frame and the reference (0: the world).
         frame_placement, reference_placement: Where they sit on these joints.
@@ -47,11 +47,13 @@ class TargetTerm:
         frame: int,
         reference: int | None,
         target_jacobian: bool,
+        weight: float,
     ) -> None:
         self.target = target
-        self.size = 3 * ((target.position is not None) + (target.rotation is not None or target.axis is not None))
+        self.size = 3 * ((target.position is not None) + target.asks_orientation)
         self._model, self._data = model, data
         self._target_jacobian = target_jacobian
+        self.weight = weight
         self._frame = frame
         self._reference = reference
         # Views into data: they show each new placement without a call.
@@ -94,7 +96,6 @@ class TargetTerm:
 
     def linearize(self, q: Array) -> tuple[Array, Array, TargetError]:
         """(e, J, error) of this target alone, weighted but for the error."""
-        target = self.target
         J = self._frame_jacobian(q, self._frame)
         moving = None if self._reference is None else self._frame_jacobian(q, self._reference)
         position, rotation, direction, at = self.wanted()
@@ -117,8 +118,8 @@ class TargetTerm:
                     e_orientation, J, orientation_error = self._orientation_rows(J, moving, rotation, direction, at)
                     e, J = np.concatenate((e, e_orientation)), np.concatenate((J_position, J))
             error = TargetError(position_error, orientation_error)
-        if target.weight != 1.0:
-            return target.weight * e, target.weight * J, error
+        if self.weight != 1.0:
+            return self.weight * e, self.weight * J, error
         return e, J, error
 
     def _frame_jacobian(self, q: Array, frame: int) -> Array:
@@ -154,7 +155,7 @@ class TargetTerm:
             return e, J_angular - np.outer(axis, axis.dot(J_angular)), angle
         line = at - self.p
         distance = math.sqrt(line.dot(line))
-        if distance < _NO_DIRECTION:  # the frame sits on the point that it should look at: every direction is right
+        if distance < NO_DIRECTION:  # the frame sits on the point that it should look at: every direction is right
             return np.zeros(3), np.zeros_like(J_angular), 0.0
         direction = line / distance
         e, angle = _shortest_rotation(axis, direction)

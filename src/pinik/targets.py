@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from typing import Any, NamedTuple
 
@@ -13,10 +13,13 @@ from numpy.typing import ArrayLike, NDArray
 from .checks import as_finite_number, as_point, as_rotation, as_se3, as_unit_vector, as_vector
 from .errors import InputError, UnknownNameError
 
-__all__ = ["Target", "TargetError", "Tolerance"]
+__all__ = ["NO_DIRECTION", "Target", "TargetError", "Tolerance", "as_targets"]
 
 Array = NDArray[np.float64]
 
+NO_DIRECTION = 1e-9
+"""[m] A frame nearer than this to the point that it should look at counts as looking at it."""
+_LIGHTEST, _HEAVIEST = 1e-3, 1e3
 _NAMED_AXES = {"x": (1.0, 0.0, 0.0), "y": (0.0, 1.0, 0.0), "z": (0.0, 0.0, 1.0)}
 _NAMED_AXES |= {f"-{name}": (-x, -y, -z) for name, (x, y, z) in list(_NAMED_AXES.items())}
 
@@ -41,6 +44,10 @@ class Tolerance(NamedTuple):
         if (pair <= 0.0).any():
             raise InputError(f"tolerance takes two positive numbers (metres, radians); got {pair.tolist()}")
         return cls(float(pair[0]), float(pair[1]))
+
+
+NO_DIRECTION = 1e-9
+"""[m] A frame nearer than this to the point that its axis should point at counts as pointing at it."""
 
 
 class TargetError(NamedTuple):
@@ -122,11 +129,11 @@ class Target:
             at: Point (3,) [m] for `axis` to point at.
             tool: SE3 (or 4×4) of the point meant, in the frame; or just its position (3,) [m].
             relative_to: Frame in which the target is expressed.
-            weight: Positive factor.
+            weight: Factor from 0.001 to 1000.
 
         Raises:
             InputError: Nothing asked for, contradictory, not finite, of the wrong shape; a zero direction or
-                quaternion; a weight that is not positive.
+                quaternion; a weight out of its range.
         """
         if not isinstance(frame, str):
             raise InputError(f"a target's frame is a name; got {frame!r}")
@@ -151,12 +158,15 @@ class Target:
             position, rotation = pose.translation, pose.rotation
         if position is None and not given:
             raise InputError(f"{what}nothing is asked for; give position=, an orientation, or placement=")
-        if as_finite_number(weight, f"{what}weight") <= 0.0:
+        if not _LIGHTEST <= as_finite_number(weight, f"{what}weight") <= _HEAVIEST:
             raise InputError(
-                f"{what}weight is a positive number; got {weight!r}; leave the target out to switch it off"
+                f"{what}weight is a number from {_LIGHTEST:g} to {_HEAVIEST:g}; got {weight!r}; "
+                "leave the target out to switch it off"
             )
 
         def keep(name: str, value: Any) -> None:
+            if isinstance(value, np.ndarray):
+                value.setflags(write=False)
             object.__setattr__(self, name, value)
 
         keep("frame", frame)
@@ -168,6 +178,11 @@ class Target:
         keep("tool", None if tool is None else _tool(tool, f"{what}tool"))
         keep("relative_to", relative_to)
         keep("weight", float(weight))
+
+    @property
+    def asks_orientation(self) -> bool:
+        """Whether a rotation, or an axis's direction, is wanted."""
+        return self.rotation is not None or self.axis is not None
 
     @classmethod
     def from_dict(cls, fields: Mapping[str, Any]) -> Target:
@@ -202,6 +217,26 @@ class Target:
         return fields
 
 
+def as_targets(targets: Target | Iterable[Target]) -> tuple[Target, ...]:
+    """One target or several, as a tuple of at least one.
+
+    Raises:
+        InputError: Something that is no Target, or none at all.
+    """
+    if isinstance(targets, Target):
+        return (targets,)
+    if isinstance(targets, str) or not isinstance(targets, Iterable):
+        raise InputError(f"targets are Target objects; got {targets!r}")
+    checked = tuple(targets)
+    for target in checked:
+        if not isinstance(target, Target):
+            raise InputError(f"targets are Target objects; got {target!r}")
+    if not checked:
+        raise InputError("there is nothing to solve: give at least one target")
+    return checked
+
+
+_LIGHTEST, _HEAVIEST = 1e-3, 1e3
 _KEYWORDS = (
     "frame", "position", "rotation", "rpy", "quat_xyzw", "quat_wxyz", "placement", "axis", "direction", "at", "tool",
     "relative_to", "weight",

@@ -8,7 +8,8 @@ written anew, without shapes and with plain numbers, so that Pinocchio reads exa
 from __future__ import annotations
 
 import os
-from dataclasses import dataclass
+import stat
+from dataclasses import dataclass, field
 from pathlib import Path
 
 from .errors import RobotLoadError
@@ -47,6 +48,7 @@ class Description:
         meshes: The addresses of the meshes as written, each once, in order.
         xml: The URDF text for Pinocchio: kinematics, inertias and limits, without shapes.
         warnings: What was mended or left out, in words.
+        document: The bytes that were read, shapes and all.
     """
 
     name: str
@@ -58,6 +60,7 @@ class Description:
     meshes: tuple[str, ...]
     xml: str
     warnings: tuple[str, ...]
+    document: bytes = field(repr=False)
 
 
 def read(source: str | os.PathLike[str]) -> Description:
@@ -77,8 +80,8 @@ def read(source: str | os.PathLike[str]) -> Description:
         label = _shown(os.fspath(source))
         path = Path(source)
     try:
-        root = parse(_file_bytes(path)) if path else parse(_text_bytes(str(source)), "utf-8")
-        return _describe(root, label, path)
+        document = _file_bytes(path) if path else _text_bytes(str(source))
+        return _describe(parse(document, None if path else "utf-8"), label, path, document)
     except DocumentError as fault:
         line = f" (line {fault.line})" if fault.line else ""
         raise RobotLoadError(fault.message + line, source=label, element=fault.owner) from None
@@ -101,7 +104,9 @@ def _file_bytes(path: Path) -> bytes:
     try:
         if path.is_dir():
             raise DocumentError("this is a directory, not a URDF file")
-        # A pipe, as from "<(xacro ...)", is welcome; an endless one must not fill the memory.
+        if not (stat.S_ISREG(path.stat().st_mode) or _is_open_already(path)):
+            raise DocumentError("this is a pipe or a device, not a URDF file")
+        # An endless stream must not fill the memory.
         with path.open("rb") as file:
             return file.read(MAX_BYTES + 1)
     except FileNotFoundError:
@@ -111,7 +116,12 @@ def _file_bytes(path: Path) -> bytes:
         raise DocumentError(f"the file cannot be read: {cause}") from None
 
 
-def _describe(robot: Element, source: str, path: Path | None) -> Description:
+def _is_open_already(path: Path) -> bool:
+    """Whether it names a stream that somebody opened for us, as "<(xacro ...)" and "/dev/stdin" do."""
+    return os.path.abspath(path).startswith(("/dev/fd/", "/proc/self/fd/", "/dev/stdin"))
+
+
+def _describe(robot: Element, source: str, path: Path | None, document: bytes) -> Description:
     _check_root(robot)
     warnings: list[str] = []
     if not robot.named("link"):
@@ -135,6 +145,7 @@ def _describe(robot: Element, source: str, path: Path | None) -> Description:
         meshes=tuple(dict.fromkeys(mesh for link in links for mesh in link.meshes)),
         xml=written(name, links, joints),
         warnings=tuple(warnings),
+        document=document,
     )
 
 

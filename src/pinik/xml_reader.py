@@ -12,6 +12,7 @@ __all__ = ["DocumentError", "Element", "parse"]
 MAX_BYTES = 16 * 1024 * 1024
 MAX_ELEMENTS = 500_000
 MAX_DEPTH = 100
+XINCLUDE = "http://www.w3.org/2001/XInclude"
 
 
 class DocumentError(Exception):
@@ -68,6 +69,7 @@ class _Builder:
         self._count = 0
         self._parser = parser
         self._lines_before = lines_before
+        self._xinclude_prefixes = {"xi"}
         parser.StartElementHandler = self._start
         parser.EndElementHandler = self._end
         parser.StartDoctypeDeclHandler = self._refuse_doctype
@@ -79,6 +81,7 @@ class _Builder:
             raise DocumentError(f"more than {MAX_ELEMENTS:,} XML elements", line=line)
         if len(self._open) == MAX_DEPTH:
             raise DocumentError(f"XML elements nested more than {MAX_DEPTH} deep", line=line)
+        self._refuse_xinclude(tag, attributes, line)
         element = Element(tag, attributes, line)
         if self._open:
             self._open[-1].children.append(element)
@@ -94,6 +97,15 @@ class _Builder:
             f"<!DOCTYPE {name}>: document types, entities and external references are refused",
             line=self._line(),
         )
+
+    def _refuse_xinclude(self, tag: str, attributes: dict[str, str], line: int) -> None:
+        for name, value in attributes.items():
+            declared, _, prefix = name.partition(":")
+            if declared == "xmlns" and value == XINCLUDE:
+                self._xinclude_prefixes.add(prefix)
+        prefix, colon, _ = tag.partition(":")
+        if (prefix if colon else "") in self._xinclude_prefixes:
+            raise DocumentError("external references (XInclude) are refused", owner=f"<{tag}>", line=line)
 
     def _line(self) -> int:
         return self._parser.CurrentLineNumber + self._lines_before

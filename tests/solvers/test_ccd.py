@@ -257,3 +257,55 @@ def test_the_axis_of_a_frame_is_turned_towards_a_point_it_moves_around():
 
         for _, before, after, _ in single_updates(robot, target, CCD(relaxation=1.0), robot.random(rng), limits):
             assert badness(after) <= badness(before) + 1e-12
+
+
+FOLLOWER_BEYOND = {
+    "the follower beyond other joints": robot_text(
+        *(link(name) for name in ("base", "a", "b", "c", "tip")),
+        joint("j1", "base", "a", '<axis xyz="0 0 1"/>', limit=limited(-3, 3)),
+        joint("j2", "a", "b", '<origin xyz="1 0 0"/><axis xyz="0 1 0"/>', limit=limited(-3, 3)),
+        joint("j3", "b", "c", '<origin xyz="1 0 0"/><axis xyz="0 0 1"/>', '<mimic joint="j1"/>', limit=limited(-3, 3)),
+        joint("z_end", "c", "tip", '<origin xyz="1 0 0"/>', kind="fixed", limit=""),
+    ),
+    "the leader in another branch": robot_text(
+        *(link(name) for name in ("base", "side", "a", "b", "c", "tip")),
+        joint("a_lead", "base", "side", '<axis xyz="0 0 1"/>', limit=limited(-3, 3)),
+        joint("b1", "base", "a", '<axis xyz="0 0 1"/>', limit=limited(-3, 3)),
+        joint("b2", "a", "b", '<origin xyz="1 0 0"/><axis xyz="0 1 0"/>', limit=limited(-3, 3)),
+        joint("b3", "b", "c", '<origin xyz="1 0 0"/><axis xyz="0 0 1"/>', '<mimic joint="a_lead" multiplier="0.25"/>',
+              limit=limited(-3, 3)),
+        joint("z_end", "c", "tip", '<origin xyz="1 0 0"/>', kind="fixed", limit=""),
+    ),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("relative_to", [None, "a"])
+@pytest.mark.parametrize("text", FOLLOWER_BEYOND.values(), ids=FOLLOWER_BEYOND)
+def test_sweeps_never_go_uphill_where_followers_move_what_their_leaders_do_not(text, relative_to):
+    robot = load_quietly(text)
+    rng = np.random.default_rng(2)
+    limits = Limits.of(robot, True)
+    for _ in range(40):
+        wanted = robot.placement("tip", robot.random(rng), relative_to).translation
+        target = Target("tip", wanted, relative_to=relative_to)
+        kinematics = Kinematics(robot, [target])
+        q = robot.random(rng)
+        for _ in range(4):
+            after, _ = CCD().sweep(q, kinematics, limits, NEVER)
+            assert objective(robot, target, after, 1.0) <= objective(robot, target, q, 1.0) + 1e-12
+            q = after
+
+
+def test_max_step_is_the_leaders_not_the_followers():
+    robot = load_quietly(FOLLOWER_BEYOND["the leader in another branch"])
+    target = Target("tip", robot.placement("tip", robot.configuration({"a_lead": 2.0})).translation)
+    *_, state = pinik.iterate(robot, target, CCD(max_step=0.1), max_iterations=1)
+    assert np.abs(state.q).max() == pytest.approx(0.1)
+
+
+def test_a_joint_of_stiffness_zero_is_held_through_restarts_as_well(arm):
+    wanted = arm.placement("tip", arm.random(10))
+    s = arm.solve("tip", placement=wanted, method="ccd", stiffness={"bone1_x": 0.0}, restarts=3, max_iterations=50)
+    assert s.angles["bone1_x"] == 0.0
+    held = arm.solve("tip", placement=wanted, method="ccd", stiffness=dict.fromkeys(arm.joint_names, 0.0))
+    assert (held.iterations, held.joint_updates) == (0, 0)

@@ -1,8 +1,11 @@
 from __future__ import annotations
 
+import dataclasses
 import math
 import pickle
+from dataclasses import dataclass
 
+import numpy as np
 import pytest
 
 import pinik
@@ -34,6 +37,55 @@ def test_wrong_names_list_the_right_ones():
         make_solver(3)
 
 
+@pytest.mark.parametrize(
+    "method", [pinik.Solver, pinik.JacobianSolver, pinik.SweepingSolver, pinik.Solver(), ":x", "..a:x"]
+)
+def test_what_is_no_whole_solver_is_refused(method, arm):
+    with pytest.raises(pinik.PinikError):
+        arm.solve("tip", position=[0, 0, 1], method=method)
+
+
+def test_a_solver_whose_class_lacks_its_decorator_is_told_so(arm):
+    class Bare(pinik.JacobianSolver):
+        gain: float = pinik.parameter(0.5, "factor")
+
+        def direction(self, J, e):
+            return self.gain * J.T @ e
+
+    with pytest.raises(pinik.InputError, match="Bare: its class lacks @dataclass"):
+        arm.solve("tip", position=[0, 0, 1], method=Bare)
+
+
+def test_a_plain_field_and_no_name_are_enough(arm):
+    @dataclass(frozen=True, kw_only=True)
+    class Plain(pinik.JacobianSolver):
+        rounds: int = pinik.parameter(3, "a whole number", low=1)
+        gain: float = 0.5
+
+        def direction(self, J, e):
+            return self.gain * J.T @ e
+
+    assert arm.solve("tip", position=[0.1, 0.1, 1.2], method=Plain).method == "Plain"
+    assert type(Plain(rounds=4).rounds) is int
+
+
+@pytest.mark.parametrize("step", [np.zeros((12, 1)), np.zeros(3), None, 1.0])
+def test_a_direction_of_the_wrong_shape_is_refused_in_words(step, arm):
+    @dataclass(frozen=True, kw_only=True)
+    class Wrong(pinik.JacobianSolver):
+        def direction(self, J, e):
+            return step
+
+    with pytest.raises(pinik.InputError, match=r"Wrong.direction returns dq of shape \(12,\)"):
+        arm.solve("tip", position=[0, 0, 1], method=Wrong)
+
+
+def test_a_rest_posture_of_a_joint_without_an_angle_is_refused():
+    robot = pinik.load("arm", root="free_flyer")
+    with pytest.raises(pinik.InputError, match="'root_joint' is floating and has no angle"):
+        robot.solve("tip", position=[2, 0, 1], method="pinv", rest_posture={"root_joint": 2.0})
+
+
 @pytest.mark.parametrize("name", ["ccd", "jt", "pinv", "dls"])
 def test_solvers_are_immutable_and_travel_to_other_processes(name):
     solver = make_solver(name, max_step=0.3)
@@ -44,8 +96,6 @@ def test_solvers_are_immutable_and_travel_to_other_processes(name):
 
 @pytest.mark.parametrize("name", ["ccd", "jt", "pinv", "dls"])
 def test_every_parameter_says_what_it_is(name):
-    import dataclasses
-
     for field in dataclasses.fields(pinik.SOLVERS[name]):
         assert field.metadata["help"], field.name
         assert {"unit", "low", "high", "choices", "optional"} <= set(field.metadata)

@@ -14,7 +14,8 @@ from .description import ZERO, Description, Vector, mesh_visual
 
 BASE_HEIGHT = 0.12  # [m], up to the first swing
 LENGTHS = (0.28, 0.25, 0.21, 0.17, 0.13, 0.16)  # [m], five segments and the gripper: 1.20 in all
-RADII = (0.062, 0.056, 0.050, 0.045, 0.040, 0.035)  # [m], of the joints
+RADII = (0.062, 0.055, 0.048, 0.041, 0.035, 0.030)  # [m], of the joints
+RIMS = (0.077, 0.070, 0.064, 0.058, 0.052, 0.046)  # [m], of the segments next to the joints
 SWING = (-math.pi / 4, math.pi / 4)
 BONES_UP: Vector = (math.pi / 2, 0, math.pi / 2)  # bone axes (x, y, z) -> world (y, z, x)
 TIP_UP: Vector = (-math.pi / 2, -math.pi / 2, 0)  # and back: the tip's z leaves the gripper
@@ -22,9 +23,10 @@ TIP_UP: Vector = (-math.pi / 2, -math.pi / 2, 0)  # and back: the tip's z leaves
 
 def _dress(robot: Description) -> None:
     """Give the links their shapes, one mesh a colour."""
-    shapes = {"base": arm_shapes.base(BASE_HEIGHT, RADII[0]), "gripper": arm_shapes.gripper(LENGTHS[-1], RADII[-1])}
-    for number, (radius, after) in enumerate(pairwise(RADII), start=1):
-        shapes[f"bone{number}"] = arm_shapes.segment(LENGTHS[number - 1], radius, after)
+    shapes = {"base": arm_shapes.base(BASE_HEIGHT, RADII[0], RIMS[0])}
+    for number, ends in enumerate(pairwise(zip(RADII, RIMS, strict=True)), start=1):
+        shapes[f"bone{number}"] = arm_shapes.segment(LENGTHS[number - 1], *ends)
+    shapes["gripper"] = arm_shapes.gripper(LENGTHS[-1], RADII[-1], RIMS[-1])
     for link, surfaces in shapes.items():
         for material, shape in surfaces.items():
             path = f"meshes/arm/{link}_{material}.obj"

@@ -15,7 +15,7 @@ MATERIALS = {
 Surfaces = dict[str, Mesh]  # by material
 
 FOOT = 1.36  # where a fork's root is, in radii from its joint's centre: clear of the other fork at 45 degrees
-FLANGE = 1.24  # in radii, so that the cheeks stand on it
+GRIP = 0.040  # [m], from the tip to each finger: a ball of this radius is held
 CHEEK = (0.74, 1.04)  # a fork's cheeks, in radii from the middle
 
 
@@ -49,16 +49,15 @@ def knuckle() -> Surfaces:
     }
 
 
-def segment(length: float, radius: float, next_radius: float) -> Surfaces:
-    """An arm's segment from its own joint's fork (about z) to the fork that holds the next (about x)."""
+def segment(length: float, near: tuple[float, float], far: tuple[float, float]) -> Surfaces:
+    """An arm's segment from its own joint's fork (about z) to the next joint's (about x); ends are (joint, rim)."""
+    (radius, wide), (next_radius, narrow) = near, far
     start, end = FOOT * radius, length - FOOT * next_radius
-    wide, narrow = FLANGE * radius, FLANGE * next_radius
     body = lathe([
-        (0, start), (0.90 * wide, start), (0.90 * wide, start + 0.20 * radius), (0.97 * wide, start + 0.26 * radius),
-        (0.97 * narrow, end - 0.26 * next_radius), (0.90 * narrow, end - 0.20 * next_radius), (0.90 * narrow, end),
-        (0, end),
+        (0, start), (0.90 * wide, start), (0.90 * wide, start + 0.14 * wide), (0.97 * wide, start + 0.19 * wide),
+        (0.97 * narrow, end - 0.19 * narrow), (0.90 * narrow, end - 0.14 * narrow), (0.90 * narrow, end), (0, end),
     ]).facing("y")  # fmt: skip
-    flanges = [_flange(wide, start, 0.16 * radius), _flange(narrow, end, -0.16 * next_radius)]
+    flanges = [_flange(wide, start, 0.10 * wide), _flange(narrow, end, -0.10 * narrow)]
     forks = [fork("z", 1, radius), fork("x", -1, next_radius).moved((0, length, 0))]
     return {"blue": body, "silver": joined([*forks, *flanges])}
 
@@ -71,11 +70,10 @@ def _flange(radius: float, root: float, height: float) -> Mesh:
                   (radius - bevel, high), (0, high)]).facing("y")  # fmt: skip
 
 
-def base(height: float, radius: float) -> Surfaces:
+def base(height: float, radius: float, rim: float) -> Surfaces:
     """The foot on the ground (its middle at the origin, y up) and the first fork."""
     foot = lathe([(0, 0), (0.155, 0), (0.155, 0.012), (0.150, 0.017), (0, 0.017)], 36).facing("y")
     top = height - FOOT * radius
-    rim = FLANGE * radius
     cone = lathe(
         [(0, 0.014), (0.118, 0.014), (0.108, 0.021), (rim + 0.002, top), (rim - 0.002, top + 0.004), (0, top + 0.004)],
         36,
@@ -93,19 +91,20 @@ def base(height: float, radius: float) -> Surfaces:
     }
 
 
-def gripper(length: float, radius: float) -> Surfaces:
-    """The hand on its fork: a palm across x and two fingers that close on the tip, `length` from the joint."""
+def gripper(length: float, radius: float, rim: float) -> Surfaces:
+    """The hand on its fork: a palm across x and two parallel fingers, the tip (`length` from the joint) between them."""
     root = FOOT * radius
-    wrist = _flange(FLANGE * radius, root, 0.16 * radius)
-    palm = plate(_rounded(0.062, 0.030, 0.014), root + 0.004, root + 0.042, 0.006).facing("y")
-    # Seen along z (x to the right, y up): the right finger, from its carriage to the pad.
-    bottom, knee, top = root + 0.036, root + 0.066, length + 0.008
-    outline = [(0.030, bottom), (0.054, bottom), (0.054, knee), (0.026, top), (0.014, top), (0.014, top - 0.030)]
-    finger = plate(outline, -0.011, 0.011, 0.0025)
-    pad = plate(_rectangle((0.010, top - 0.034), (0.016, top - 0.004)), -0.009, 0.009, 0.0015)
-    carriage = plate(_rectangle((0.024, root + 0.038), (0.058, root + 0.052)), -0.016, 0.016, 0.003)
+    wrist = _flange(rim, root, 0.10 * rim)
+    palm = plate(_rounded(0.100, 0.034, 0.014), root + 0.003, root + 0.046, 0.006).facing("y")
+    rail = plate(_rectangle((-0.090, root + 0.040), (0.090, root + 0.053)), -0.020, 0.020, 0.002)
+    # Seen along z (x to the right, y up): the right finger, from its carriage on the rail to its end.
+    bottom, top = root + 0.047, length + 0.034
+    carriage = plate(_rectangle((0.034, bottom), (0.088, bottom + 0.020)), -0.026, 0.026, 0.004)
+    outline = [(GRIP + 0.007, bottom), (0.082, bottom), (0.082, bottom + 0.026), (0.064, top), (GRIP + 0.007, top)]
+    finger = plate(outline, -0.018, 0.018, 0.004)
+    pad = plate(_rectangle((GRIP, length - 0.028), (GRIP + 0.010, top - 0.003)), -0.015, 0.015, 0.002)
     return {
-        "silver": joined([fork("z", 1, radius), wrist]),
+        "silver": joined([fork("z", 1, radius), wrist, rail]),
         "blue": palm,
         "graphite": joined([finger, _other_side(finger), carriage, _other_side(carriage)]),
         "orange": joined([pad, _other_side(pad)]),

@@ -7,14 +7,13 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 
-from .lion_anatomy import CHEST, FORE_LEG, HEAD, HEAD_SIZE, HIND_LEG, NECK, SPINE, TAIL_SEGMENT
+from .lion_anatomy import CHEST, FORE_LEG, HEAD, HEAD_SIZE, HIND_LEG, NECK, SPINE, TAIL_DROOP, TAIL_SEGMENT
 from .sculpt import (
     Field,
     Mesh,
     Point,
     Solid,
     ball,
-    bar,
     blend,
     carve,
     ellipsoid,
@@ -130,7 +129,7 @@ def head() -> Surfaces:
     surfaces = painted(skin, "tawny", black=liner.field, nose=LIPS, pale=pale.field)
 
     normal = outward(solid, eye)
-    gaze = (normal[0] + 0.8, normal[1], normal[2])
+    gaze = (normal[0] + 0.12, normal[1], normal[2])
     length = math.sqrt(sum(c * c for c in gaze))
 
     def on_eye(s: float, radius: float, towards_gaze: float) -> Mesh:
@@ -145,7 +144,7 @@ def head() -> Surfaces:
         *both(lambda s: ellipsoid((1.507, s * 0.021, 1.083), (0.016, 0.017, 0.014))),
         ellipsoid((1.510, 0, 1.070), (0.010, 0.009, 0.020)),
     )
-    surfaces["nose"] = joined([surfaces["nose"], mesh(tip, 0.0075)])
+    surfaces["nose"] = joined([surfaces["nose"], mesh(tip, 0.0088)])
     surfaces["white"] = joined(_fang((1.452, s * 0.030, 1.022), (0.004, 0, -0.044), 0.010) for s in (1, -1))
     ears = [_ear(s) for s in (1, -1)]
     surfaces["tawny"] = joined([surfaces["tawny"], *(ear["tawny"] for ear in ears)])
@@ -173,18 +172,13 @@ def jaw() -> Surfaces:
         *both(lambda s: limb((1.21, s * 0.075, 1.022), (1.42, s * 0.034, 1.004), 0.038, 0.030)),
         ellipsoid((1.440, 0, 1.000), (0.056, 0.052, 0.050)),  # chin
         ellipsoid((1.32, 0, 0.998), (0.12, 0.060, 0.034)),
+        ellipsoid((1.425, 0, 0.962), (0.034, 0.036, 0.038), (0, 20, 0)),  # a short beard
     )
     solid = carve(bone, lambda x, y, z: MOUTH(x, y, z) - 0.002, width=0.006)
     chin = ellipsoid((1.44, 0, 0.975), (0.11, 0.08, 0.055)).field
     surfaces = painted(mesh(solid, HEAD_CELL), "tawny", pale=chin)
-    surfaces["mouth"] = mesh(ellipsoid((1.34, 0, 1.005), (0.105, 0.032, 0.026), (0, 1, 0)), 0.010)
+    surfaces["mouth"] = mesh(ellipsoid((1.34, 0, 1.005), (0.105, 0.032, 0.026), (0, 1, 0)), 0.0145)
     surfaces["white"] = joined(_fang((1.464, s * 0.022, 0.992), (0.004, s * 0.002, 0.034), 0.008) for s in (1, -1))
-    beard = [
-        lock([(x, y, 0.985), (x - 0.004, 1.1 * y, 0.955), (x - 0.025, 1.1 * y, 0.925)],
-             [0.026, 0.022, 0.001], (1, 0, 0), 0.8, 6)
-        for x, y in ((1.445, 0.0), (1.430, -0.022), (1.430, 0.022), (1.400, -0.028), (1.400, 0.028))
-    ]  # fmt: skip
-    surfaces["pale"] = joined([surfaces["pale"], *beard])
     return {material: part.grown(HEAD_SIZE, HEAD) for material, part in surfaces.items()}
 
 
@@ -211,7 +205,7 @@ def _ruff(
         crown, sides, throat = length
         reach = sides + (crown - sides) * up * up if up > 0 else sides + (throat - sides) * up * up
         reach *= 1.0 + 0.07 * ((3 * k) % 5 - 2)
-        lean = back * (1.0 + 0.10 * ((7 * k) % 3 - 1))
+        lean = back * (1.0 + 0.10 * ((7 * k) % 3 - 1)) * (1.0 - 0.55 * max(0.0, -up))
         path = []
         for t in (0.0, 0.3, 0.6, 0.86, 1.0):
             out = reach * (t - 0.30 * t * t)
@@ -227,6 +221,27 @@ def _ruff(
     return joined(locks)
 
 
+def _bib() -> Mesh:
+    """Locks that lie on the breast, row over row, from the neck down to between the legs."""
+    center = (0.84, 0.0, 0.80)
+    locks = []
+    for count, half_width, top, bottom, lift in ((5, 26, -10, -66, 0.006), (7, 50, 14, -40, 0.016), (8, 62, 38, -8, 0.026)):
+        for k in range(count):
+            across = 2.0 * k / (count - 1) - 1.0
+            turn, down = math.radians(half_width * across), (0.0, 0.3, 0.6, 0.86, 1.0)
+            end = bottom + 16 * across * across + 5 * (k % 2)
+            path = []
+            for t in down:
+                rise = math.radians(top + (end - top) * t)
+                narrowed = turn * (1.0 - 0.25 * t)
+                towards = (math.cos(rise) * math.cos(narrowed), math.cos(rise) * math.sin(narrowed), math.sin(rise))
+                skin = surface_point(TRUNK, center, towards)
+                path.append(tuple(p + (lift - 0.012 * t) * d for p, d in zip(skin, towards, strict=True)))
+            widths = [0.048 * f for f in (0.75, 1.0, 0.88, 0.48, 0.03)]
+            locks.append(lock(path, widths, (math.cos(turn), math.sin(turn), 0.0), 0.45, 6))
+    return joined(locks)
+
+
 def mane() -> dict[str, Surfaces]:
     cap = blend(0.05, ellipsoid((1.10, 0, 1.08), (0.13, 0.185, 0.20)), ellipsoid((1.14, 0, 1.02), (0.09, 0.15, 0.13)))
     scruff = blend(0.06, limb(NECK, HEAD, 0.200, 0.180), ellipsoid((0.97, 0, 0.95), (0.17, 0.195, 0.25)))
@@ -235,23 +250,22 @@ def mane() -> dict[str, Surfaces]:
             "gold": _ruff((1.245, 0, 1.085), (0.128, 0.118), 28, (0.11, 0.13, 0.13), 0.70, 0.020, 0.026),
             "mane": joined([
                 mesh(cap, 0.05),
-                _ruff((1.210, 0, 1.085), (0.138, 0.133), 30, (0.15, 0.20, 0.21), 0.62, 0.035, 0.032, first=6),
+                _ruff((1.210, 0, 1.085), (0.138, 0.133), 30, (0.15, 0.20, 0.17), 0.62, 0.035, 0.032, first=6),
             ]),
-            "dark_mane": _ruff((1.145, 0, 1.080), (0.150, 0.160), 30, (0.22, 0.24, 0.28), 0.75, 0.055, 0.038),
+            "dark_mane": _ruff((1.145, 0, 1.080), (0.150, 0.160), 30, (0.22, 0.23, 0.20), 0.75, 0.055, 0.038),
         },
         "neck": {
             "dark_mane": joined([
                 mesh(scruff, 0.065),
-                _ruff((1.06, 0, 1.03), (0.155, 0.165), 28, (0.24, 0.24, 0.34), 0.75, 0.08, 0.044, first=6),
-                _ruff((0.98, 0, 0.97), (0.160, 0.190), 28, (0.26, 0.24, 0.33), 0.95, 0.08, 0.044),
+                _ruff((1.06, 0, 1.03), (0.155, 0.165), 28, (0.24, 0.22, 0.21), 0.75, 0.05, 0.044, first=6),
+                _ruff((0.98, 0, 0.97), (0.160, 0.190), 28, (0.26, 0.20, 0.16), 0.95, 0.05, 0.044),
             ]),
         },
         "chest": {
             "dark_mane": joined([
                 mesh(ellipsoid((0.89, 0, 0.90), (0.14, 0.165, 0.22)), 0.065),
-                _ruff((0.90, 0, 0.90), (0.12, 0.17), 15, (0.26, 0.16, 0.20), 1.0, 0.08, 0.048, first=-118, span=236),
-                _ruff((0.97, 0, 0.88), (0.10, 0.12), 11, (0.10, 0.15, 0.19), 0.25, 0.10, 0.042, first=112, span=136),
-                _ruff((0.99, 0, 0.80), (0.08, 0.08), 9, (0.10, 0.12, 0.17), 0.30, 0.09, 0.036, first=105, span=150),
+                _ruff((0.90, 0, 0.90), (0.12, 0.17), 13, (0.26, 0.15, 0.15), 1.0, 0.06, 0.048, first=-95, span=190),
+                _bib(),
             ]),
         },
     }  # fmt: skip
@@ -291,17 +305,17 @@ def fore_leg() -> dict[str, Surfaces]:
     shoulder, elbow, wrist, toes, paw = (FORE_LEG[name] for name in ("shoulder", "elbow", "wrist", "toes", "paw"))
     upper = blend(
         0.07,
-        limb(shoulder, elbow, 0.092, 0.068),
+        limb(shoulder, elbow, 0.092, 0.064),
         ellipsoid((0.795, 0.150, 0.85), (0.105, 0.062, 0.17), (0, 14, 0)),  # shoulder blade
         ellipsoid((0.725, 0.152, 0.68), (0.085, 0.060, 0.125), (0, 20, 0)),  # triceps
     )
     forearm = blend(
         0.05,
-        limb(elbow, wrist, 0.054, 0.046),
+        limb(elbow, wrist, 0.058, 0.043),
         ellipsoid((0.712, 0.147, 0.41), (0.056, 0.051, 0.105), (0, -7, 0)),
         ball((0.652, 0.147, 0.522), 0.032),  # point of the elbow
     )
-    metacarpus = blend(0.03, limb(wrist, toes, 0.039, 0.050), ball((0.720, 0.135, 0.148), 0.026))
+    metacarpus = blend(0.04, limb(wrist, toes, 0.043, 0.048), limb(wrist, (0.722, 0.135, 0.145), 0.035, 0.028))
     return {
         "upper_arm": {"tawny": mesh(upper, 0.023)},
         "forearm": {"tawny": mesh(forearm, LEG_CELL)},
@@ -314,17 +328,18 @@ def hind_leg() -> dict[str, Surfaces]:
     hip, knee, hock, toes, paw = (HIND_LEG[name] for name in ("hip", "knee", "hock", "toes", "paw"))
     thigh = blend(
         0.08,
-        limb(hip, knee, 0.125, 0.076),
-        ellipsoid((-0.02, 0.118, 0.74), (0.125, 0.075, 0.20), (0, -18, 0)),
-        ellipsoid((0.07, 0.130, 0.67), (0.105, 0.065, 0.18), (0, -28, 0)),
+        limb((0.0, 0.090, 0.80), (0.06, 0.120, 0.68), 0.095, 0.085),
+        limb((0.06, 0.125, 0.68), knee, 0.080, 0.069),
+        ellipsoid((-0.045, 0.105, 0.755), (0.150, 0.072, 0.200), (0, -10, 0)),  # buttock
+        ellipsoid((0.05, 0.118, 0.69), (0.125, 0.066, 0.190), (0, -28, 0)),
     )
     shank = blend(
         0.05,
-        limb(knee, hock, 0.062, 0.043),
+        limb(knee, hock, 0.066, 0.040),
         ellipsoid((0.07, 0.143, 0.43), (0.062, 0.052, 0.125), (0, 45, 0)),
         limb((0.0, 0.140, 0.40), (-0.145, 0.135, 0.268), 0.030, 0.022),  # Achilles' tendon
     )
-    metatarsus = blend(0.035, limb(hock, toes, 0.036, 0.046), ball((-0.140, 0.135, 0.256), 0.024))
+    metatarsus = blend(0.04, limb(hock, toes, 0.039, 0.0435), limb(hock, (-0.137, 0.135, 0.250), 0.034, 0.026))
     return {
         "thigh": {"tawny": mesh(thigh, 0.024)},
         "shank": {"tawny": mesh(shank, LEG_CELL)},
@@ -337,10 +352,22 @@ def hind_leg() -> dict[str, Surfaces]:
 
 
 def tail(number: int, count: int) -> Surfaces:
+    """Bent so that at rest the tail is one smooth curve."""
     thick = [0.046 - 0.024 * min(k / (count - 1), 1.0) for k in (number - 1, number)]
-    surfaces: Surfaces = {"tawny": bar((0, 0, 0), (-TAIL_SEGMENT, 0, 0), *thick)}
     if number == 1:
-        surfaces["tawny"] = bar((0.03, 0, 0.0), (-TAIL_SEGMENT, 0, 0), 0.062, thick[1])
+        thick[0] = 0.062
+    after = TAIL_DROOP[number] if number < count else 0.0
+    slopes = [math.tan(math.radians(turn / 2)) for turn in (TAIL_DROOP[number - 1] if number > 1 else 0.0, -after)]
+    path, widths = [], []
+    for t in (-0.5, -0.4, -0.25, 0.0, 0.17, 0.33, 0.5, 0.67, 0.83, 1.0, 1.25, 1.4, 1.5):
+        s = min(max(t, 0.0), 1.0)
+        beyond = t - s  # of a cap, where 0.5 is the radius
+        width = thick[0] + s * (thick[1] - thick[0])
+        rise = TAIL_SEGMENT * (slopes[0] * s * (1 - s) ** 2 - slopes[1] * s * s * (1 - s))
+        step = 2 * beyond * width
+        path.append((-TAIL_SEGMENT * s - step, 0.0, rise + step * (slopes[0] if t < 0 else slopes[1])))
+        widths.append(max(width * math.sqrt(max(1 - 4 * beyond * beyond, 0.0)), 0.002))
+    surfaces: Surfaces = {"tawny": lock(path, widths, (0, 0, 1), 1.0, 12)}
     if number == count:
         surfaces["dark_mane"] = joined(_tuft(k) for k in range(11))
     return surfaces

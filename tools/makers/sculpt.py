@@ -268,23 +268,6 @@ def lock(path: Sequence[Point], widths: Sequence[float], flat: Point, thickness:
     return _skin(rings)
 
 
-def bar(a: Point, b: Point, radius_a: float, radius_b: float, sides: int = 14) -> Mesh:
-    """A tapering tube with a half ball at each end."""
-    pa, pb = np.asarray(a, dtype=float), np.asarray(b, dtype=float)
-    forward = (pb - pa) / math.sqrt(float(((pb - pa) ** 2).sum()))
-    side = np.cross(forward, (0.0, 1.0, 0.0) if abs(forward[1]) < 0.9 else (1.0, 0.0, 0.0))
-    side = side / math.sqrt(float((side * side).sum()))
-    other = np.cross(forward, side)
-    caps = [math.pi / 2 * k / 4 for k in (-3.8, -3, -2, -1, 0)]
-    rings = []
-    for end, radius, angles in ((pa, radius_a, caps), (pb, radius_b, [-c for c in caps[::-1]])):
-        for angle in angles:
-            center, r = end + forward * (radius * math.sin(angle)), radius * math.cos(angle)
-            around = [2 * math.pi * k / sides for k in range(sides)]
-            rings.append([center + side * (r * math.cos(t)) + other * (r * math.sin(t)) for t in around])
-    return _skin(rings)
-
-
 def lathe(profile: Sequence[tuple[float, float]], sides: int = 30) -> Mesh:
     """A solid of revolution about z from (radius, height) pairs, bottom to top."""
     angles = [2 * math.pi * k / sides for k in range(sides)]

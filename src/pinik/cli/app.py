@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Sequence
 from typing import Annotated
 
@@ -9,7 +10,7 @@ import typer
 
 from ..errors import PinikError
 from . import check, fk, info, jacobian, output, robots, solve
-from .exits import CommandError, ExitStatus
+from .exits import CommandError, ExitStatus, in_words
 
 __all__ = ["main"]
 
@@ -59,27 +60,50 @@ def main(arguments: Sequence[str] | None = None) -> int:
     Returns:
         The exit status, see `ExitStatus`.
     """
+    words = list(sys.argv[1:] if arguments is None else arguments)
     try:
         output.prepare_streams()
+        if not {"--help", "-h"}.isdisjoint(words):
+            _keep_help_texts_plain()
         command = typer.main.get_command(_app)
         # The commands return their status; --help and --version, which leave early, come back as one too.
-        returned = command.main(args=arguments, prog_name="pinik", standalone_mode=False)
+        returned = command.main(args=words, prog_name="pinik", standalone_mode=False)
         status = ExitStatus(returned or ExitStatus.ANSWERED)
+        output.finish()
     except typer.TyperException as error:
-        status = _wrong_usage(error)
+        status = _wrong_usage(error, words)
     except CommandError as error:
         status = output.say_error(str(error), error.status)
+    except SystemExit:  # Typer's, and rich's: the reader of the help has gone
+        output.abandon_stdout()
+        status = ExitStatus.ANSWERED
     except (PinikError, OSError) as error:
         status = output.say_error(str(error), ExitStatus.WRONG_USAGE)
     except (KeyboardInterrupt, typer.Abort):
         status = ExitStatus.INTERRUPTED
+    except Exception as error:
+        status = output.say_error(f"unforeseen, please report it: {in_words(error)}", ExitStatus.WRONG_USAGE)
     if status is ExitStatus.INTERRUPTED:
         output.say("interrupted")
     return status
 
 
-def _wrong_usage(error: typer.TyperException) -> ExitStatus:
+def _keep_help_texts_plain() -> None:
+    """Let the help paint the names of options alone, not every hyphen in a text."""
+    from typer import rich_utils
+
+    rich_utils.OptionHighlighter.highlights = [r"^(?P<option>--[\w-]+)$", r"^(?P<switch>-\w)$", "(?P<usage>Usage: )"]
+
+
+def _wrong_usage(error: typer.TyperException, words: Sequence[str]) -> ExitStatus:
     context = getattr(error, "ctx", None)
     command = context.command_path if context is not None else "pinik"
+    if command == "pinik":  # some errors do not know their command
+        names = {info.name for info in _app.registered_commands}
+        command = " ".join(["pinik", *[word for word in words if word in names][:1]])
     message = error.format_message().rstrip(".")
+    faults = getattr(error.__cause__, "errors", list)()
+    if faults and isinstance(error, typer.BadParameter):
+        kind = "a whole number" if "int" in faults[0]["type"] else "a number"
+        message = message.removesuffix(error.message.rstrip(".")) + f"{faults[0]['input']!r} is not {kind}"
     return output.say_error(f"{message}; see '{command} --help'", ExitStatus.WRONG_USAGE)

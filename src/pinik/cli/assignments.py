@@ -3,21 +3,32 @@
 from __future__ import annotations
 
 import json
+import os
+import sys
 from collections.abc import Iterable
 from typing import Any
 
-from ..errors import UnknownNameError
+from ..errors import PinikError, UnknownNameError
 from ..robot import Robot
-from ..solvers import Solver, make_solver
-from .exits import CommandError
-from .output import native_output_silenced
+from ..solvers import SOLVERS, Solver, make_solver
+from .exits import CommandError, in_words
+from .output import say
 from .units import Units
 
-__all__ = ["configuration", "named_poses", "solver_with"]
+__all__ = ["configuration", "solver_with"]
 
 
-def configuration(robot: Robot, pose: str | None, settings: Iterable[str] | None, option: str, units: Units) -> Any:
+def configuration(
+    robot: Robot,
+    pose: str | None,
+    settings: Iterable[str] | None,
+    option: str,
+    units: Units,
+    beyond_limits: str | None = "taken as it is",
+) -> Any:
     """The configuration (nq,) of a named pose, or neutral, with some joints set.
+
+    A value outside its joint's limits has a line on stderr.
 
     Args:
         robot: The robot.
@@ -25,6 +36,7 @@ def configuration(robot: Robot, pose: str | None, settings: Iterable[str] | None
         settings: "JOINT=ANGLE" texts.
         option: The option that they came from, for errors.
         units: In which angles were given.
+        beyond_limits: What happens to a value outside its joint's limits, in words; None where nobody cares.
 
     Raises:
         UnknownNameError: No such pose or joint.
@@ -32,11 +44,11 @@ def configuration(robot: Robot, pose: str | None, settings: Iterable[str] | None
     """
     q = robot.neutral()
     if pose is not None:
-        poses = named_poses(robot)
+        poses = robot.poses
         if pose not in poses:
             raise UnknownNameError("pose", pose, poses)
         q = poses[pose].copy()
-    for name, text in _pairs(settings, option, "JOINT=ANGLE"):
+    for name, text in _pairs(settings, option, "JOINT=ANGLE", split_at_last=True):
         joint = robot.settable_joint(name)
         if not joint.has_one_axis:
             raise CommandError(f"{option} sets joints that turn or slide about one axis; {name!r} is {joint.kind}")
@@ -46,13 +58,12 @@ def configuration(robot: Robot, pose: str | None, settings: Iterable[str] | None
         except ValueError:
             raise CommandError(f"{option} {name}: the value is a finite number; got {text!r}") from None
         joint.set_angle(q, angle)
+        index = robot.joint_names.index(name)
+        lower, upper = float(robot.lower[index]), float(robot.upper[index])
+        if beyond_limits and not lower <= angle <= upper:
+            low, high = units.show_limits(lower, upper, joint)
+            say(f"note: {option} {name}={text} lies outside its limits {low} … {high} {units.of(joint)}; {beyond_limits}")
     return q
-
-
-def named_poses(robot: Robot) -> dict[str, Any]:
-    """`robot.poses`, read without the words of Pinocchio's SRDF reader."""
-    with native_output_silenced():
-        return robot.poses
 
 
 def solver_with(method: str, parameters: Iterable[str] | None) -> Solver:
@@ -62,7 +73,7 @@ def solver_with(method: str, parameters: Iterable[str] | None) -> Solver:
         UnknownNameError: No such method or parameter.
         CommandError, InputError: A text or value that cannot be used.
     """
-    solver = make_solver(method)
+    solver = _solver(method)
     values = {}
     for name, text in _pairs(parameters, "--param", "NAME=VALUE"):
         if name not in solver.parameters:
@@ -74,10 +85,25 @@ def solver_with(method: str, parameters: Iterable[str] | None) -> Solver:
     return make_solver(solver, **values)
 
 
-def _pairs(texts: Iterable[str] | None, option: str, form: str) -> list[tuple[str, str]]:
+def _solver(method: str) -> Solver:
+    if method in SOLVERS or ":" not in method:
+        return make_solver(method)
+    if os.getcwd() not in sys.path:  # where "python -m pinik" looks as well
+        sys.path.insert(0, os.getcwd())
+    try:
+        return make_solver(method)
+    except PinikError:
+        raise
+    except (Exception, SystemExit) as error:  # the module is the user's, and may raise whatever it likes
+        raise CommandError(f"--method {method}: its module cannot be imported: {in_words(error)}") from None
+
+
+def _pairs(
+    texts: Iterable[str] | None, option: str, form: str, *, split_at_last: bool = False
+) -> list[tuple[str, str]]:
     pairs: dict[str, str] = {}
     for text in texts or ():
-        name, equals, value = text.partition("=")
+        name, equals, value = text.rpartition("=") if split_at_last else text.partition("=")
         if not (name and equals and value):
             raise CommandError(f"{option} takes {form}; got {text!r}")
         if name in pairs:

@@ -9,7 +9,9 @@ import typer
 from . import output
 from .exits import ExitStatus
 from .inspection import Inspection, inspect
+from .loading import check_folders, one_line_a_kind
 from .options import AsJson, PackageDirs
+from .units import counted
 
 __all__ = ["check"]
 
@@ -30,6 +32,7 @@ def check(
 
       pinik check lion
     """
+    check_folders(package_dir)
     found = inspect(file, tuple(package_dir or ()))
     if as_json:
         output.emit_json(found.to_dict())
@@ -43,7 +46,7 @@ def _emit(found: Inspection) -> None:
     output.emit(output.painted(f"{found.file}: {verdict}", "green" if found.loads else "red"))
     for fault in found.faults:
         output.emit("fault: " + (f"{fault.element}: " if fault.element else "") + fault.message)
-    for words in found.warnings:
+    for words in one_line_a_kind(found.warnings):
         output.emit(f"warning: {words}")
     for address in found.missing_meshes:
         output.emit(f"missing mesh: {address}")
@@ -53,4 +56,5 @@ def _emit(found: Inspection) -> None:
     if opinion is not None:
         output.emit(str(opinion) if opinion.agrees else f"warning: {opinion}")
     if found.loads:
-        output.emit(f"{found.links} links, {found.joints} joints, {found.meshes} meshes, {found.shapes} shapes")
+        counts = {"link": found.links, "joint": found.joints, "mesh": found.meshes, "shape": found.shapes}
+        output.emit(", ".join(counted(count, noun) for noun, count in counts.items()))

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from enum import IntEnum
 
-__all__ = ["CommandError", "ExitStatus"]
+__all__ = ["CommandError", "ExitStatus", "in_words"]
 
 
 class ExitStatus(IntEnum):
@@ -31,3 +31,9 @@ class CommandError(Exception):
     def __init__(self, message: str, status: ExitStatus = ExitStatus.WRONG_USAGE) -> None:
         self.status = status
         super().__init__(message)
+
+
+def in_words(error: BaseException) -> str:
+    """An unforeseen exception on one line: its class and its cause."""
+    cause = " ".join(str(error).split())
+    return f"{type(error).__name__}: {cause}" if cause else type(error).__name__

@@ -33,7 +33,9 @@ def fk(
     package_dir: PackageDirs = None,
     as_json: AsJson = False,
 ) -> ExitStatus:
-    """Show where frames are: position in metres, orientation as fixed-axis roll, pitch, yaw.
+    """Show where frames are.
+
+    Positions are metres, orientations fixed-axis roll, pitch, yaw.
 
     Example:
 

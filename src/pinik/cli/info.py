@@ -12,12 +12,11 @@ import pinocchio
 from ..joint import Joint
 from ..robot import Robot
 from . import output
-from .assignments import named_poses
 from .exits import ExitStatus
 from .loading import load_robot
 from .options import AsJson, Degrees, PackageDirs, RobotSource, Root
 from .tables import emit_table
-from .units import Units
+from .units import Units, counted
 
 __all__ = ["info"]
 
@@ -33,6 +32,8 @@ def info(
     as_json: AsJson = False,
 ) -> ExitStatus:
     """Show a robot's joints with their limits, its frames and its named poses.
+
+    Angles are radians, or degrees with --deg.
 
     Example:
 
@@ -61,7 +62,7 @@ def _fields(robot: Robot) -> dict[str, Any]:
             for follower, (leader, multiplier, offset) in robot.mimics.items()
         },
         "frames": list(robot.frame_names),
-        "poses": {name: {"angles": robot.angles(q), "q": q.tolist()} for name, q in named_poses(robot).items()},
+        "poses": {name: {"angles": robot.angles(q), "q": q.tolist()} for name, q in robot.poses.items()},
         "warnings": list(robot.warnings),
         "engine": _ENGINE,
         "version": _version(),
@@ -105,7 +106,7 @@ def _emit(robot: Robot, units: Units) -> None:
     output.emit(f"{robot.name}  {description.source}")
     output.emit(f"root      {description.root}, {robot.root}")
     output.emit(
-        f"size      {len(robot.joint_names)} joints to set, {len(robot.frame_names)} frames, "
+        f"size      {counted(len(robot.joint_names), "joint")} to set, {counted(len(robot.frame_names), "frame")}, "
         f"nq {model.nq}, nv {model.nv}"
     )
     output.emit(f"engine    {_ENGINE}, pinik {_version()}, Pinocchio {pinocchio.__version__}")
@@ -115,7 +116,7 @@ def _emit(robot: Robot, units: Units) -> None:
         emit_table(("joint", "kind", "lower", "upper", "unit", ""), rows, numeric=("lower", "upper"))
         output.emit("")
     output.emit(_wrapped("frames", robot.frame_names))
-    poses = tuple(named_poses(robot))
+    poses = tuple(robot.poses)
     output.emit(_wrapped("poses", poses or ("none",)))
 
 

@@ -2,17 +2,17 @@
 
 from __future__ import annotations
 
-import os
+import logging
 import warnings
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from .. import packages, robot_catalog, urdf
+from .. import packages, urdf
 from ..errors import RobotLoadError, UnknownNameError
+from ..loading import locate
 from ..robot import Robot
-from .output import native_output_silenced
 
 if TYPE_CHECKING:
     from ..second_opinion import SecondOpinion
@@ -78,18 +78,19 @@ def inspect(source: str, package_dirs: Sequence[Path]) -> Inspection:
         source: A file, or the name of a robot in the catalogue.
         package_dirs: Where packages are looked for first.
     """
-    path = _path(source)
+    package_dirs = tuple(folder.expanduser() for folder in package_dirs)
     try:
+        path = _path(source)
         description = urdf.read(path)
         robot = Robot(description, package_dirs=package_dirs)
     except RobotLoadError as error:
-        return Inspection(str(path), faults=(_fault(error),))
+        return Inspection(error.source, faults=(_fault(error),))
     missing = tuple(
         address
         for address in description.meshes
         if packages.resolve(address, urdf_path=description.path, package_dirs=package_dirs) is None
     )
-    shapes, words = _shapes(path, package_dirs)
+    shapes, words = _shapes(robot)
     return Inspection(
         file=str(path),
         robot=robot.name,
@@ -105,12 +106,11 @@ def inspect(source: str, package_dirs: Sequence[Path]) -> Inspection:
 
 
 def _path(source: str) -> Path:
-    if not os.path.exists(source):
-        try:
-            return robot_catalog.find(source).urdf
-        except UnknownNameError:
-            pass
-    return Path(source)
+    try:
+        _, _, path = locate(source)
+    except UnknownNameError:
+        path = source
+    return Path(path)
 
 
 def _fault(error: RobotLoadError) -> Fault:
@@ -120,13 +120,17 @@ def _fault(error: RobotLoadError) -> Fault:
     return Fault(error.element, message)
 
 
-def _shapes(path: Path, package_dirs: Sequence[Path]) -> tuple[int, list[str]]:
+def _shapes(robot: Robot) -> tuple[int, list[str]]:
     """How many shapes can be drawn, and a sentence about each one that cannot."""
-    with native_output_silenced(), warnings.catch_warnings():
-        warnings.simplefilter("ignore")  # of the mesh readers; what cannot be read is in the sentences
-        from ..geometry import load_shapes
+    from ..geometry import load_shapes
 
-        shapes, words = load_shapes(path, package_dirs)
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")  # of the mesh readers; what cannot be read is in the sentences
+        logging.disable()
+        try:
+            shapes, words = load_shapes(robot)
+        finally:
+            logging.disable(logging.NOTSET)
     return len(shapes), words
 
 

@@ -6,8 +6,7 @@ import json
 import math
 import os
 import sys
-from collections.abc import Iterator, Mapping
-from contextlib import contextmanager
+from collections.abc import Mapping
 from typing import Any, TextIO
 
 import typer
@@ -15,10 +14,11 @@ import typer
 from .exits import CommandError, ExitStatus
 
 __all__ = [
+    "abandon_stdout",
     "emit",
     "emit_json",
+    "finish",
     "is_terminal",
-    "native_output_silenced",
     "painted",
     "prepare_streams",
     "say",
@@ -47,13 +47,22 @@ def emit(text: str) -> None:
         sys.stdout.write(text + "\n")
         sys.stdout.flush()
     except BrokenPipeError:
-        _abandon_stdout()
+        abandon_stdout()
     except OSError as error:
-        _abandon_stdout()
+        abandon_stdout()
         raise CommandError(f"the answer cannot be written: {error.strerror}") from None
 
 
-def _abandon_stdout() -> None:
+def finish() -> None:
+    """Flush stdout for those who wrote to it by other ways, such as the help; a reader who has gone is no error."""
+    try:
+        if sys.stdout is not None:
+            sys.stdout.flush()
+    except OSError:
+        abandon_stdout()
+
+
+def abandon_stdout() -> None:
     """Send what is still buffered nowhere, so that the interpreter's own last flush does not complain."""
     nowhere = os.open(os.devnull, os.O_WRONLY)
     os.dup2(nowhere, sys.stdout.fileno())
@@ -68,7 +77,7 @@ def emit_json(value: Mapping[str, Any]) -> None:
 
 def _finite(value: Any) -> Any:
     if isinstance(value, float):
-        return value if math.isfinite(value) else None
+        return value + 0.0 if math.isfinite(value) else None  # and -0.0 becomes 0.0
     if isinstance(value, Mapping):
         return {str(key): _finite(item) for key, item in value.items()}
     if isinstance(value, (list, tuple)):
@@ -103,32 +112,3 @@ def painted(text: str, color: str, stream: TextIO | None = None) -> str:
 def is_terminal(stream: TextIO | None) -> bool:
     """Whether somebody looks at it."""
     return stream is not None and stream.isatty()
-
-
-@contextmanager
-def native_output_silenced() -> Iterator[None]:
-    """Keep what compiled code prints out of the data and out of the words: below Python, both go nowhere."""
-    import ctypes
-
-    c_library = ctypes.CDLL(None)
-    kept = [(number, os.dup(number)) for number in (1, 2) if _is_open(number)]
-    nowhere = os.open(os.devnull, os.O_WRONLY)
-    try:
-        c_library.fflush(None)
-        for number, _ in kept:
-            os.dup2(nowhere, number)
-        yield
-    finally:
-        c_library.fflush(None)  # while it still goes nowhere
-        for number, copy in kept:
-            os.dup2(copy, number)
-            os.close(copy)
-        os.close(nowhere)
-
-
-def _is_open(number: int) -> bool:
-    try:
-        os.fstat(number)
-    except OSError:
-        return False
-    return True

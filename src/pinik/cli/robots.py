@@ -12,7 +12,9 @@ __all__ = ["robots"]
 
 
 def robots(as_json: AsJson = False) -> ExitStatus:
-    """List the robots that can be loaded by name.
+    """List the robots of the catalogue, by the names that every command takes.
+
+    One of them, ur3_empty, is a file without a robot in it, and says so when loaded.
 
     Example:
 

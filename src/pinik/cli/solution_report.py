@@ -6,7 +6,7 @@ from ..solution import Solution
 from ..targets import TargetError
 from .output import emit, painted
 from .tables import emit_table
-from .units import Units
+from .units import Units, counted, duration, small_length
 
 __all__ = ["emit_solution"]
 
@@ -23,8 +23,8 @@ def emit_solution(solution: Solution, units: Units) -> None:
         _emit_targets(solution, units)
     emit("")
     emit(f"error       {_errors(TargetError(solution.position_error, solution.orientation_error), units)}")
-    emit(f"iterations  {solution.iterations}{_updates(solution)}, {_plural(solution.restarts, 'restart')}")
-    emit(f"time        {1000.0 * solution.time:.3g} ms")
+    emit(f"iterations  {solution.iterations}{_updates(solution)}, {counted(solution.restarts, 'restart')}")
+    emit(f"time        {duration(solution.time)}")
     emit(f"method      {solution.method}, {solution.engine} engine")
 
 
@@ -67,15 +67,11 @@ def _emit_targets(solution: Solution, units: Units) -> None:
 def _errors(error: TargetError, units: Units) -> str:
     words = []
     if error.position is not None:
-        words.append(f"{error.position:.3g} m")
+        words.append(f"{small_length(error.position)} m")
     if error.orientation is not None:
         words.append(f"{units.show_small_angle(error.orientation)} {units.angle}")
     return ", ".join(words)
 
 
 def _updates(solution: Solution) -> str:
-    return f" ({solution.joint_updates} joint updates)" if solution.joint_updates else ""
-
-
-def _plural(count: int, noun: str) -> str:
-    return f"{count} {noun}" if count == 1 else f"{count} {noun}s"
+    return f" ({counted(solution.joint_updates, 'joint update')})" if solution.joint_updates else ""

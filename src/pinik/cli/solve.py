@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Annotated
+from typing import Annotated, Any
 
 import typer
 
+from ..errors import InputError, PinikError
 from ..loop import solve as solve_targets
+from ..solvers import SOLVERS
 from . import goals, output
 from .assignments import configuration, solver_with
-from .exits import CommandError, ExitStatus
+from .exits import CommandError, ExitStatus, in_words
 from .loading import load_robot
 from .options import AsJson, Degrees, PackageDirs, RobotSource, Root
 from .solution_report import emit_solution
@@ -173,20 +175,27 @@ def solve(
     machine = load_robot(robot, root=root, package_dirs=package_dir)
     if targets is not None:
         goals.check_frames(machine, goal, targets)
-    solution = solve_targets(
-        machine,
-        goal,
-        solver,
-        q0=configuration(machine, pose, start, "--start", units),
-        limits=not no_limits,
-        locked=lock or (),
-        restarts=restarts,
-        seed=seed,
-        max_iterations=max_iterations,
-        tolerance=tolerance,
-        time_limit=time_limit,
-        engine=engine,
-    )
+    options: dict[str, Any] = {
+        "restarts": restarts,
+        "seed": seed,
+        "max_iterations": max_iterations,
+        "tolerance": tolerance,
+        "time_limit": time_limit,
+    }
+    q0 = configuration(machine, pose, start, "--start", units, None if no_limits else "moved inside")
+    try:
+        solution = solve_targets(
+            machine, goal, solver, q0=q0, limits=not no_limits, locked=lock or (), engine=engine, **options
+        )
+    except InputError as error:
+        raise CommandError(goals.as_options(str(error), options)) from None
+    except PinikError:
+        raise
+    except Exception as error:
+        if method in SOLVERS:
+            raise
+        # The solver is the user's, and may raise whatever it likes.
+        raise CommandError(f"--method {method}: the solver failed: {in_words(error)}") from None
     if as_json:
         output.emit_json(solution.to_dict())
     else:

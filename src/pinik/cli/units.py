@@ -11,7 +11,7 @@ import pinocchio
 
 from ..joint import Joint
 
-__all__ = ["Units", "length", "roll_pitch_yaw"]
+__all__ = ["Units", "counted", "duration", "length", "roll_pitch_yaw", "small_length"]
 
 
 @dataclass(frozen=True)
@@ -49,7 +49,8 @@ class Units:
 
     def show_small_angle(self, radians: float) -> str:
         """An error's angle for people, without its unit."""
-        return f"{math.degrees(radians) if self.degrees else radians:.3g}"
+        value, decimals = (math.degrees(radians), 3) if self.degrees else (radians, 5)
+        return _small(value, decimals)
 
     def show_scalar(self, value: float, joint: Joint) -> str:
         """A joint's scalar (rad or m) for people, without its unit."""
@@ -70,6 +71,27 @@ class Units:
 def length(metres: float) -> str:
     """A length for people, without its unit."""
     return _infinity(metres) if math.isinf(metres) else f"{metres:z.5f}"
+
+
+def small_length(metres: float) -> str:
+    """An error's length for people, without its unit."""
+    return _small(metres, 6)
+
+
+def duration(seconds: float) -> str:
+    """A time for people."""
+    return f"{1000.0 * seconds:.1f} ms" if seconds < 1.0 else f"{seconds:.2f} s"
+
+
+def counted(count: int, noun: str) -> str:
+    """A number of things."""
+    return f"{count} {noun}{'es' if noun.endswith('sh') else 's'}" if count != 1 else f"1 {noun}"
+
+
+def _small(value: float, decimals: int) -> str:
+    """Three digits of an error that somebody may care about, and no exponent."""
+    shown = f"{value:.3g}"
+    return f"{value:z.{decimals}f}" if "e" in shown or abs(value) < 10.0**-decimals else shown
 
 
 def _infinity(value: float) -> str:

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import dataclasses
 import importlib
-from typing import Any
+import inspect
+from typing import Any, TypeGuard
 
 from ..errors import InputError, UnknownNameError
 from .base import JacobianSolver, Patience, Solver, SweepingSolver, parameter
@@ -43,15 +45,21 @@ def make_solver(method: str | type[Solver] | Solver, **parameters: Any) -> Solve
         UnknownNameError: No such method or parameter.
         InputError: A value out of its range, or something that is no solver.
     """
-    if isinstance(method, Solver):
-        if not parameters:
-            return method
-        return type(method).make(**(method.parameters | parameters))
+    if isinstance(method, Solver) and _is_complete(type(method)):
+        return type(method).make(**(method.parameters | parameters)) if parameters else method
     if isinstance(method, str):
         method = _class_by_name(method)
-    if not (isinstance(method, type) and issubclass(method, Solver)):
+    if not _is_complete(method):
         raise InputError(f"method is a name ({', '.join(SOLVERS)}), a Solver class or an instance; got {method!r}")
+    if any(isinstance(value, dataclasses.Field) for value in vars(method).values()):
+        raise InputError(f"{method.name}: its class lacks @dataclass(frozen=True, kw_only=True)")
     return method.make(**parameters)
+
+
+def _is_complete(method: object) -> TypeGuard[type[Solver]]:
+    """Whether it is a class with all that the loop needs of a solver."""
+    bases = (JacobianSolver, SweepingSolver)
+    return isinstance(method, type) and issubclass(method, bases) and not inspect.isabstract(method)
 
 
 def _class_by_name(name: str) -> Any:
@@ -61,6 +69,6 @@ def _class_by_name(name: str) -> Any:
     if colon:
         try:
             return getattr(importlib.import_module(module), attribute)
-        except (ImportError, AttributeError) as error:
+        except (ImportError, AttributeError, ValueError, TypeError) as error:
             raise UnknownNameError("method", name, SOLVERS, f"could not import it: {error}") from None
     raise UnknownNameError("method", name, SOLVERS)

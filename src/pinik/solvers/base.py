@@ -92,6 +92,12 @@ class Solver:
         math.inf, "D_max: the part of a position residual used", unit="m", low=1e-6, unbounded=True
     )
 
+    def __init_subclass__(cls) -> None:
+        """Give a class without a name of its own its Python name."""
+        super().__init_subclass__()
+        if not cls.name and "name" not in vars(cls):
+            cls.name = cls.__name__
+
     def __post_init__(self) -> None:
         """Check every parameter against its field's range.
 
@@ -112,7 +118,7 @@ class Solver:
         names = [field.name for field in dataclasses.fields(cls)]
         for name in parameters:
             if name not in names:
-                raise UnknownNameError(f"parameter of {cls.name!r}", name, names)
+                raise UnknownNameError("parameter", name, names, f"the method is {cls.name!r}")
         return cls(**parameters)
 
     @property
@@ -120,10 +126,17 @@ class Solver:
         """Name → value."""
         return {field.name: getattr(self, field.name) for field in dataclasses.fields(self)}
 
+    @property
+    def held(self) -> tuple[str, ...]:
+        """Names of joints that this method never moves."""
+        return ()
+
 
 @dataclass(frozen=True, kw_only=True)
 class JacobianSolver(Solver, ABC):
     """A method whose step is a function of Jacobian and residual; subclasses write `direction` and are complete."""
+
+    name = ""
 
     step_size: float = parameter(1.0, "factor on the step, after its clamp (the thesis's α)", low=1e-6, high=2.0)
     target_jacobian: bool = parameter(False, "take the Jacobian at the target instead of the effector (eq. 3.9)")
@@ -141,6 +154,8 @@ class JacobianSolver(Solver, ABC):
 class SweepingSolver(Solver, ABC):
     """A method that changes joint after joint."""
 
+    name = ""
+
     @abstractmethod
     def sweep(self, q: Array, kinematics: Kinematics, limits: Limits, tolerance: Tolerance) -> tuple[Array, int]:
         """One pass over the joints, which ends as soon as every target is within tolerance.
@@ -152,6 +167,8 @@ class SweepingSolver(Solver, ABC):
 
 def _checked(method: str, field: dataclasses.Field[Any], value: Any) -> Any:
     about = field.metadata
+    if not about:  # a field of a user's own, made without `parameter`: nothing is known about it
+        return value
     what = f"{method}: {field.name}"
     default = field.default if field.default is not dataclasses.MISSING else {}
     if value is None and about["optional"]:
@@ -159,7 +176,7 @@ def _checked(method: str, field: dataclasses.Field[Any], value: Any) -> Any:
     if value is None and about["unbounded"]:
         return math.inf
     if about["choices"]:
-        if value not in about["choices"]:
+        if not isinstance(value, str) or value not in about["choices"]:
             raise InputError(f"{what} is one of {', '.join(map(repr, about['choices']))}; got {value!r}")
         return value
     if isinstance(default, bool):
@@ -170,14 +187,15 @@ def _checked(method: str, field: dataclasses.Field[Any], value: Any) -> Any:
         if not isinstance(value, Mapping):
             raise InputError(f"{what} maps joint names to numbers; got {value!r}")
         return {str(name): _number(f"{what}[{name!r}]", number, about) for name, number in value.items()}
-    return _number(what, value, about)
+    number = _number(what, value, about)
+    return int(number) if isinstance(default, int) and number.is_integer() else number
 
 
 def _number(what: str, value: Any, about: Mapping[str, Any]) -> float:
     low = -math.inf if about["low"] is None else about["low"]
     high = math.inf if about["high"] is None else about["high"]
     number = math.nan
-    if isinstance(value, (int, float, np.number)) and not isinstance(value, bool):
+    if isinstance(value, (int, float, np.integer, np.floating)) and not isinstance(value, bool):
         with contextlib.suppress(OverflowError):
             number = float(value)
     if not low <= number <= high or not (about["unbounded"] or math.isfinite(number)):

@@ -99,13 +99,20 @@ class CCD(SweepingSolver):
 
     def _chasers(self, q: Array, kinematics: Kinematics) -> list[Chaser]:
         pinocchio.forwardKinematics(kinematics.model, kinematics.data, q)
-        return [Chaser(term, self.position_weight, self.scaling, self.max_residual) for term in kinematics.terms]
+        kinematics.evaluations += 1
+        size = kinematics.size_of_chain
+        alpha = self.position_weight / (size if self.scaling == "printed" else size * size)
+        return [Chaser(term, alpha, self.max_residual) for term in kinematics.terms]
+
+    @property
+    def held(self) -> tuple[str, ...]:
+        """Joints of stiffness 0, which no restart may move either."""
+        return tuple(name for name, part in self.stiffness.items() if part == 0.0)
 
     def _relaxation(self, kinematics: Kinematics) -> float:
         if self.relaxation is not None:
             return self.relaxation
-        asks_orientation = any(t.rotation is not None or t.axis is not None for t in kinematics.targets)
-        return _RELAXATION_OF_POSES if asks_orientation else 1.0
+        return _RELAXATION_OF_POSES if any(t.asks_orientation for t in kinematics.targets) else 1.0
 
     def _best_change(
         self,
@@ -127,18 +134,18 @@ class CCD(SweepingSolver):
         else:
             M = sum([chaser.correlation(mover, origin) for chaser in chasers], _NOTHING)
             change = _best_turn(M, axis, low, high, shortest=scale < 1.0 or self.max_step < math.pi)
-        if scale > 1.0 and abs(change) > math.pi:
+        if scale > 1.0 and not coordinate.slides and abs(change) > math.pi:
             scale = 1.0  # the long way round to a goal has none of its own to overshoot into
-        change = min(max(scale * change, low), high)
-        return min(max(change, -self.max_step), self.max_step) / multiplier
+        change = min(max(scale * change, low), high) / multiplier
+        return min(max(change, -self.max_step), self.max_step)
 
     def _downhill_change(
         self, coordinate: Coordinate, q: Array, kinematics: Kinematics, limits: Limits, part: float
     ) -> float:
-        """A change that lowers the objective, for a leader whose followers move the targets as well.
+        """A change that lowers the residual, for a leader whose followers move the targets as well.
 
         Such a coordinate turns about several lines at once and has no closed form: a Gauss-Newton step along its
-        Jacobian column, halved until the objective falls.
+        Jacobian column, halved until the residual's norm falls.
         """
         column = coordinate.joint.idx_v
         at = kinematics.linearize(q)

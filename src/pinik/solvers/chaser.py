@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import pinocchio
 
+from ..targets import NO_DIRECTION
 from .base import Array
 
 if TYPE_CHECKING:
@@ -17,8 +18,6 @@ if TYPE_CHECKING:
 
 __all__ = ["Chaser"]
 
-_NO_DIRECTION = 1e-9  # [m]
-
 
 class Chaser:
     """One target during a sweep: effector and goal, carried along without a forward kinematics.
@@ -27,11 +26,11 @@ class Chaser:
     where they should be, None where that is free, and `at` (3,) is the point that U's only column should point at.
     """
 
-    def __init__(self, term: TargetTerm, position_weight: float, scaling: str, max_residual: float) -> None:
+    def __init__(self, term: TargetTerm, alpha: float, max_residual: float) -> None:
         self.term = term
         term.update_placements()
         target, p, R = term.target, term.p, term.R
-        self.weight = target.weight * target.weight
+        self.weight = term.weight * term.weight
         self.p = p.copy()
         self.goal, rotation, direction, self.at = term.wanted()
         self.U: Array | None = None
@@ -41,8 +40,7 @@ class Chaser:
         elif target.axis is not None:
             self.U = R.dot(target.axis)[:, None]
             self.V = None if direction is None else direction[:, None]
-        scale = term.chain_length if scaling == "printed" else term.chain_length**2
-        self.alpha = position_weight / scale
+        self.alpha = alpha
         self._max_residual = max_residual
 
     def moved_by(self, mover: Joint) -> bool:
@@ -80,7 +78,7 @@ class Chaser:
         if self.at is not None and self.U is not None:
             line = self.at - self.p
             squared = float(line.dot(line))
-            if squared > _NO_DIRECTION**2:
+            if squared > NO_DIRECTION**2:
                 pairs.append((self.p + math.sqrt(squared) * self.U[:, 0], self.at, 1.0 / squared))
         return pairs
 
@@ -124,4 +122,4 @@ class Chaser:
         assert self.U is not None
         line = self.at - self.p
         distance = math.sqrt(line.dot(line))
-        return self.U if distance < _NO_DIRECTION else (line / distance)[:, None]
+        return self.U if distance < NO_DIRECTION else (line / distance)[:, None]

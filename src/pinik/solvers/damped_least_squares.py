@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 __all__ = ["DampedLeastSquares"]
 
 # Keeps JJᵀ + λ²I positive definite where rows depend on each other and the damping has faded with the residual.
-_SMALLEST_DAMPING_SQUARED = 1e-12
+_SMALLEST_DAMPING_SQUARED = 1e-15
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -28,9 +28,13 @@ class DampedLeastSquares(JacobianSolver):
     Minimises $\|J\Delta q - e\|^2 + \lambda^2\|\Delta q\|^2$. With λ the `damping`, the rules are:
 
     * "constant": λ² = damping².
-    * "residual" (Chan and Lawrence 1988): λ² = damping² ‖e‖²: bold near the target, careful far from it.
+    * "residual" (Chan and Lawrence 1988): λ² = damping² ‖e‖²: bold near the target, careful far from it. With
+      damping² = ½ it outweighs the curvature of a stretched-out chain, which then rests instead of swinging.
     * "sugihara" (Sugihara 2011): λ² = ½‖e‖² + damping².
-    * "manipulability" (Nakamura and Hanafusa 1986): λ² = damping² (1 − w/w₀)² where w = √det JJᵀ is below w₀.
+    * "manipulability" (Nakamura and Hanafusa 1986): λ² = damping² (1 − w/w₀)² where w = √det JJᵀ is below w₀; that
+      is everywhere where rows of J always depend on each other, as those of a planar chain do.
+
+    In a solve ‖e‖ stands for `Linearization.distance`: metres, and a radian for 0.3 m.
 
     Source: thesis, §3.3–3.4, eqs. 3.3.6 and 3.4.9 (Wampler 1986; Nakamura and Hanafusa 1986).
     """
@@ -40,7 +44,7 @@ class DampedLeastSquares(JacobianSolver):
     restarts = 60
     patience = Patience(3, 0.05)
 
-    damping: float = parameter(math.sqrt(0.05), "λ, or what the rule makes λ from", low=1e-9, high=100.0)
+    damping: float = parameter(math.sqrt(0.5), "λ, or what the rule makes λ from", low=1e-9, high=100.0)
     rule: str = parameter(
         "residual",
         "how λ follows the situation",
@@ -50,7 +54,7 @@ class DampedLeastSquares(JacobianSolver):
     factorization: str = parameter("ldlt", "how the system is solved", choices=("ldlt", "svd"))
 
     def direction(self, J: Array, e: Array, residual: float | None = None) -> Array:
-        """Jᵀ(JJᵀ + λ²I)⁻¹e; the rules go by `residual`, ‖e‖ before D_max cut it, where that is given."""
+        """Jᵀ(JJᵀ + λ²I)⁻¹e; the rules go by `residual` instead of ‖e‖ where that is given."""
         damping_squared = self.damping_squared(J, math.sqrt(e.dot(e)) if residual is None else residual)
         if self.factorization == "svd":
             left, sigma, right = np.linalg.svd(J, full_matrices=False)
@@ -72,5 +76,5 @@ class DampedLeastSquares(JacobianSolver):
         return squared + _SMALLEST_DAMPING_SQUARED
 
     def step(self, at: Linearization, kinematics: Kinematics) -> Array:
-        """`direction`, damped by the whole residual also where D_max shortens it."""
-        return self.direction(at.J, at.e, at.residual)
+        """`direction`, damped by the whole distance also where D_max shortens the pull."""
+        return self.direction(at.J, at.e, at.distance)

@@ -22,8 +22,8 @@ class PseudoInverse(JacobianSolver):
     r"""$\Delta q = J^\dagger e + (I - J^\dagger J)\,\varphi$ with
     $J^\dagger = \sum_{\sigma_i > \tau} \sigma_i^{-1} v_i u_i^\top$.
 
-    The shortest step that solves the linearised problem best. Singular values below τ = cutoff · σ₁ are dropped;
-    φ pulls towards a rest posture inside the null space, where it does not move the effector.
+    The shortest step that solves the linearised problem best. Singular values below τ = cutoff · σ₁ (and
+    1e-12) are dropped; φ pulls towards a rest posture inside the null space, where it does not move the effector.
 
     Source: thesis, §3.2, eqs. 3.2.2 and 3.4.5 (Whitney 1969; Liégeois 1977).
     """
@@ -36,14 +36,14 @@ class PseudoInverse(JacobianSolver):
     max_step: float = parameter(
         0.5, "largest change of one joint in one step", unit="rad or m", low=1e-6, unbounded=True
     )
-    cutoff: float = parameter(1e-3, "singular values below this part of the largest are dropped", low=0.0, high=1.0)
+    cutoff: float = parameter(1e-3, "singular values below this part of the largest are dropped", low=0.0, high=0.5)
     rest_posture: Mapping[str, float] = parameter({}, "joint angles to tend to in the null space", unit="rad or m")
     rest_gain: float = parameter(0.1, "part of the way to the rest posture taken in one step", low=0.0, high=1.0)
 
-    def direction(self, J: Array, e: Array, pull: Array | None = None) -> Array:
-        """J†e, and (I − J†J)·pull with a pull (nv,)."""
+    def direction(self, J: Array, e: Array, pull: Array | None = None, lightest: float = 1.0) -> Array:
+        """J†e, and (I − J†J)·pull with a pull (nv,); rows may be as light as the part `lightest` of the others."""
         left, sigma, right = np.linalg.svd(J, full_matrices=False)
-        rank = int((sigma > max(self.cutoff * sigma[0], 1e-12)).sum())
+        rank = int((sigma > max(self.cutoff * lightest * sigma[:1].sum(), 1e-12)).sum())
         basis = right[:rank]  # (rank, nv): the row space
         dq: Array = (left[:, :rank].T.dot(e) / sigma[:rank]).dot(basis)
         return dq if pull is None else dq + pull - basis.T.dot(basis.dot(pull))
@@ -51,10 +51,10 @@ class PseudoInverse(JacobianSolver):
     def step(self, at: Linearization, kinematics: Kinematics) -> Array:
         """`direction`, with the pull towards the rest posture where one is set."""
         if not self.rest_posture:
-            return self.direction(at.J, at.e)
+            return self.direction(at.J, at.e, None, kinematics.lightest)
         robot = kinematics.robot
         rest = at.q.copy()
         for name, angle in self.rest_posture.items():
             robot.settable_joint(name).set_angle(rest, angle)
         pull = self.rest_gain * pinocchio.difference(robot.model, at.q, rest) * at.free
-        return self.direction(at.J, at.e, pull)
+        return self.direction(at.J, at.e, pull, kinematics.lightest)
