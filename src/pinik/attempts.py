@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import time
-from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,7 +19,7 @@ from .solvers import Patience, Solver
 from .starts import random_start
 from .targets import Tolerance
 
-__all__ = ["Attempts"]
+__all__ = ["Attempts", "Settings"]
 
 Array = NDArray[np.float64]
 
@@ -27,9 +27,16 @@ Array = NDArray[np.float64]
 _RESTARTS_WHEN_UNREACHABLE = 8
 
 
-@dataclass
-class Attempts:
-    """The attempts of one solve: the first from the start given, the others from drawn ones."""
+class Settings(NamedTuple):
+    """What a solve was asked for, checked.
+
+    Attributes:
+        start: The first attempt's configuration (nq,).
+        max_iterations: Of one attempt.
+        iterations_to_the_end: Of the last run, which follows the best of the failed attempts.
+        deadline: On `time.perf_counter`'s clock [s].
+        target: The number of this problem among many; a key of the drawn starts.
+    """
 
     solver: Solver
     kinematics: Kinematics
@@ -41,117 +48,146 @@ class Attempts:
     iterations_to_the_end: int
     tolerance: Tolerance
     deadline: float
-    states: list[State] | None
     target: int = 0
-    iterations: int = 0
-    joint_updates: int = 0
-    best: State | None = None
+
+
+class Attempts:
+    """The attempts of one solve: the first from the start given, the others from drawn ones.
+
+    Attributes:
+        iterations, joint_updates: Of all attempts so far.
+        restarts: Drawn starts used so far.
+        best: The state inside the limits with the smallest residual so far.
+        states: Every state so far, where a trace is wanted.
+    """
+
+    def __init__(self, settings: Settings, *, trace: bool) -> None:
+        self.settings = settings
+        self.iterations = 0
+        self.joint_updates = 0
+        self.restarts = 0
+        self.best: State | None = None
+        self.states: list[State] | None = [] if trace else None
 
     def solution(self, began: float) -> Solution:
-        """Run them and judge the best."""
-        proof = shortfall(self.kinematics, self.limits)
-        if proof is not None and proof.distance <= self.tolerance.position:
+        """Run them and judge the best; `began` is when the solve did [s]."""
+        asked = self.settings
+        proof = shortfall(asked.kinematics, asked.limits)
+        if proof is not None and proof.distance <= asked.tolerance.position:
             proof = None
-        if not self.kinematics.free.any():
-            self.restarts = self.max_iterations = 0
-        restarts = self.restarts if proof is None else min(self.restarts, _RESTARTS_WHEN_UNREACHABLE)
-        patience = self.solver.patience if restarts else TO_THE_END
-        status, attempt = Status.STALLED, 0
-        for attempt in range(restarts + 1):
-            start = self.start if attempt == 0 else self._drawn_start(attempt)
-            if not self.restarts:  # the bare method, as `iterate` runs it
-                status = self._attempt(start, attempt, patience)
-            elif proof is None:
-                status = self._attempt(start, attempt, patience, judge_limits_at_end=True)
-            else:
-                status = self._attempt(start, attempt, patience, downhill=True)
-            if status in (Status.CONVERGED, Status.TIME_LIMIT):
-                break
-        assert self.best is not None
-        if status not in (Status.CONVERGED, Status.TIME_LIMIT) and self.restarts:
-            self.max_iterations = self.iterations_to_the_end
-            status = self._attempt(self.best.q, attempt, TO_THE_END, downhill=True)
-        return self._judged(status, proof, attempt, began)
+        if not asked.kinematics.free.any():
+            self._attempt(asked.start, TO_THE_END, 0)
+            status = Status.STALLED
+        elif asked.restarts == 0:  # the bare method, as `iterate` runs it
+            status = self._attempt(asked.start, TO_THE_END, asked.max_iterations)
+        else:
+            status = self._attempt_and_restart(proof)
+        return self._judged(status, proof, began)
 
-    def _drawn_start(self, attempt: int) -> Array:
+    def _attempt_and_restart(self, proof: Shortfall | None) -> Status:
+        asked = self.settings
+        most = asked.restarts if proof is None else min(asked.restarts, _RESTARTS_WHEN_UNREACHABLE)
+        for self.restarts in range(most + 1):
+            status = self._attempt(
+                asked.start if self.restarts == 0 else self._drawn_start(),
+                asked.solver.patience,
+                asked.max_iterations,
+                judge_limits_at_end=proof is None,
+                downhill=proof is not None,
+            )
+            if status in (Status.CONVERGED, Status.TIME_LIMIT):
+                return status
+        assert self.best is not None
+        return self._attempt(self.best.q, TO_THE_END, asked.iterations_to_the_end, downhill=True)
+
+    def _drawn_start(self) -> Array:
+        asked = self.settings
         return random_start(
-            self.kinematics, self.limits, self.start, seed=self.seed, target=self.target, attempt=attempt
+            asked.kinematics,
+            asked.limits,
+            asked.start,
+            seed=asked.seed,
+            target=asked.target,
+            attempt=self.restarts,
         )
 
     def _attempt(
         self,
         start: Array,
-        attempt: int,
         patience: Patience,
+        max_iterations: int,
         *,
         judge_limits_at_end: bool = False,
         downhill: bool = False,
     ) -> Status:
+        asked = self.settings
         states = run(
-            self.solver,
-            self.kinematics,
-            self.limits,
+            asked.solver,
+            asked.kinematics,
+            asked.limits,
             start,
-            self.max_iterations,
-            self.tolerance,
+            max_iterations,
+            asked.tolerance,
             patience,
             judge_limits_at_end=judge_limits_at_end,
             downhill=downhill,
-            attempt=attempt,
+            attempt=self.restarts,
         )
-        state = None
-        status = None
         for state in states:
             if self.states is not None:
                 self.states.append(state)
-            if (self.best is None or state.residual < self.best.residual) and self.limits.contains(state.q):
+            if (self.best is None or state.residual < self.best.residual) and asked.limits.contains(state.q):
                 self.best = state
-            if self.deadline < math.inf and time.perf_counter() > self.deadline and state.status is None:
+            status = state.status
+            if status is None and asked.deadline < math.inf and time.perf_counter() > asked.deadline:
                 status = Status.TIME_LIMIT
+            if status is not None:
                 break
-        assert state is not None
         self.iterations += state.iteration
         self.joint_updates += state.joint_updates
-        if state.status is Status.CONVERGED:
+        if status is Status.CONVERGED:
             self.best = state
-        elif self.best is None or not self.limits.contains(state.q):
+        elif not asked.limits.contains(state.q):
             self._consider_inside(state)
-        return status or state.status or Status.STALLED
+        assert status is not None  # a run's last state has one
+        return status
 
     def _consider_inside(self, state: State) -> None:
         """Take a state outside the limits for what it is worth inside."""
-        at = self.kinematics.linearize(self.limits.clip(self.limits.wrap(state.q)))
+        limits = self.settings.limits
+        at = self.settings.kinematics.linearize(limits.clip(limits.wrap(state.q)))
         if self.best is None or at.residual < self.best.residual:
             self.best = state._replace(q=at.q, errors=tuple(at.errors), residual=at.residual)
 
-    def _judged(self, status: Status, proof: Shortfall | None, attempt: int, began: float) -> Solution:
+    def _judged(self, status: Status, proof: Shortfall | None, began: float) -> Solution:
+        """The best state, measured by plain forward kinematics, which has the last word."""
         assert self.best is not None
-        robot, targets, q = self.kinematics.robot, self.kinematics.targets, self.best.q
+        asked, kinematics, q = self.settings, self.settings.kinematics, self.best.q
+        robot, targets = kinematics.robot, kinematics.targets
         errors = measure_errors(robot, targets, q)
-        if all(error.within(self.tolerance) for error in errors):
+        if all(error.within(asked.tolerance) for error in errors):
             status = Status.CONVERGED
         elif proof is not None:
             status = Status.UNREACHABLE
-        elif status is Status.CONVERGED or not self.kinematics.free.any():
+        elif status is Status.CONVERGED:
             status = Status.STALLED
-        active = {name: side for name, side in self.limits.active(q).items() if self._moves(name)}
+        sides = asked.limits.active(q)
+        active = {name: side for name, side in sides.items() if kinematics.free[robot.joint(name).idx_v]}
+        moves = bool(kinematics.free.any())
         return Solution(
             robot=robot,
             targets=targets,
             status=status,
-            message=explain(status, targets, errors, self.tolerance, active, proof, bool(self.kinematics.free.any())),
+            message=explain(status, targets, errors, asked.tolerance, active, proof, moves),
             q=q,
             errors=errors,
             iterations=self.iterations,
             joint_updates=self.joint_updates,
-            restarts=attempt,
+            restarts=self.restarts,
             time=time.perf_counter() - began,
             active_limits=tuple(active),
-            method=self.solver.name,
-            parameters=self.solver.parameters,
+            method=asked.solver.name,
+            parameters=asked.solver.parameters,
             engine="python",
             trace=None if self.states is None else tuple(self.states),
         )
-
-    def _moves(self, name: str) -> bool:
-        return bool(self.kinematics.free[self.kinematics.robot.joint(name).idx_v])

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from .attempts import Attempts
+from .attempts import Attempts, Settings
 from .checks import as_finite_number
 from .errors import EngineError, InputError, UnknownNameError
 from .kinematics import Kinematics
@@ -124,7 +124,7 @@ def solve(
     solver = make_solver(method, **solver_parameters)
     kinematics = _kinematics(robot, targets, solver, locked)
     box = Limits.of(robot, limits)
-    attempts = Attempts(
+    settings = Settings(
         solver,
         kinematics,
         box,
@@ -135,9 +135,8 @@ def solve(
         iterations_to_the_end=_TO_THE_END_AT_MOST if max_iterations is None else max_iterations,
         tolerance=Tolerance.of(tolerance),
         deadline=math.inf if time_limit is None else began + _seconds(time_limit),
-        states=[] if trace else None,
     )
-    return attempts.solution(began)
+    return Attempts(settings, trace=trace).solution(began)
 
 
 def solve_from_keywords(

@@ -8,7 +8,7 @@ from collections.abc import Generator, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from .kinematics import Kinematics
+from .kinematics import Kinematics, Linearization
 from .limits import Limits
 from .solution import State, Status
 from .solvers import JacobianSolver, Patience, Solver, SweepingSolver
@@ -47,25 +47,21 @@ def run(
     at = kinematics.linearize(start)
     milestone, since = at.residual, 0
     iteration, last, updates, scale = 0, max_iterations, 0, 1.0
+    status: Status | None
     while True:
-        status = None
-        if all([error.within(tolerance) for error in at.errors]):
-            if box is limits or limits.contains(at.q):
-                status = Status.CONVERGED
-            else:
-                q = limits.wrap(at.q)
-                box = limits
-                at = kinematics.linearize(limits.clip(q))
-                milestone, since = at.residual, 0
-                if all([error.within(tolerance) for error in at.errors]):
-                    status = Status.CONVERGED
-        if status is None:
-            if at.residual < milestone * (1.0 - patience.progress):
-                milestone, since = at.residual, 0
-            elif since >= patience.iterations:
-                status = Status.STALLED
-            if status is None and iteration >= last:
-                status = Status.MAX_ITERATIONS
+        reached = _reached(at, tolerance)
+        if reached and not limits.contains(at.q):  # only a run that steps freely gets there
+            box, at = limits, kinematics.linearize(limits.clip(limits.wrap(at.q)))
+            milestone, since = at.residual, 0
+            reached = _reached(at, tolerance)
+        if at.residual < milestone * (1.0 - patience.progress):
+            milestone, since = at.residual, 0
+        if reached:
+            status = Status.CONVERGED
+        elif since >= patience.iterations:
+            status = Status.STALLED
+        else:
+            status = Status.MAX_ITERATIONS if iteration >= last else None
         moved = yield State(at.q, iteration, updates, tuple(at.errors), at.residual, attempt, status)
         if moved is not None:
             kinematics.retarget(moved)
@@ -82,3 +78,7 @@ def run(
         else:
             scale /= 4.0
         iteration, updates, since = iteration + 1, updates + updated, since + 1
+
+
+def _reached(at: Linearization, tolerance: Tolerance) -> bool:
+    return all([error.within(tolerance) for error in at.errors])
