@@ -457,3 +457,12 @@ def test_a_frame_on_the_point_it_looks_at_looks_at_it(arm):
     s = arm.solve("tip", axis="x", at=M.translation + M.rotation @ [0, 0, 5e-10], restarts=0)
     assert s.success
     assert s.iterations == 0
+
+
+def test_a_yielded_configuration_cannot_be_spoiled_and_a_solutions_is_ones_own(arm):
+    state = next(pinik.iterate(arm, Target("tip", [0.4, 0.2, 0.8])))
+    with pytest.raises(ValueError, match="read-only"):
+        state.q[:] = math.nan
+    s = arm.solve("tip", position=[0.4, 0.2, 0.8])
+    s.q[0] = 0.5
+    assert s.q[0] == 0.5

@@ -162,7 +162,7 @@ class Attempts:
     def _judged(self, status: Status, proof: Shortfall | None, began: float) -> Solution:
         """The best state, measured by plain forward kinematics, which has the last word."""
         assert self.best is not None
-        asked, kinematics, q = self.settings, self.settings.kinematics, self.best.q
+        asked, kinematics, q = self.settings, self.settings.kinematics, self.best.q.copy()
         robot, targets = kinematics.robot, kinematics.targets
         errors = measure_errors(robot, targets, q)
         if all(error.within(asked.tolerance) for error in errors):

@@ -62,6 +62,7 @@ def run(
             status = Status.STALLED
         else:
             status = Status.MAX_ITERATIONS if iteration >= last else None
+        at.q.setflags(write=False)  # the next step starts from it
         moved = yield State(at.q, iteration, updates, tuple(at.errors), at.residual, attempt, status)
         if moved is not None:
             kinematics.retarget(moved)

@@ -39,7 +39,7 @@ class State(NamedTuple):
     """One iteration of a run.
 
     Attributes:
-        q: The configuration (nq,).
+        q: The configuration (nq,), read-only.
         iteration: 0 at the start, then 1 for each step (for CCD, each sweep).
         joint_updates: Single joints updated so far, for sweeping methods.
         errors: Each target's error.
