@@ -14,6 +14,8 @@ __all__ = ["as_finite_number", "as_point", "as_rotation", "as_se3", "as_unit_vec
 
 _FARTHEST = 1e9  # [m]: beyond, squares of distances lose all meaning
 
+_NO_NUMBERS = (str, bytes, bool, np.bool_)
+
 Array = NDArray[np.float64]
 
 
@@ -25,7 +27,7 @@ def as_finite_number(value: object, what: str) -> float:
         number = float(value)  # type: ignore[arg-type]
     except (TypeError, ValueError, OverflowError):
         raise InputError(f"{what} is a finite number; got {value!r}") from None
-    if isinstance(value, (str, bytes, bool, np.bool_)) or not math.isfinite(number):
+    if isinstance(value, _NO_NUMBERS) or not math.isfinite(number):
         raise InputError(f"{what} is a finite number; got {value!r}")
     return number
 
@@ -36,9 +38,11 @@ def as_array(value: ArrayLike, shape: tuple[int, ...], what: str, of: str = "") 
     expected = f"{size} finite numbers" + (f" ({of})" if of else "")
     try:
         numbers = np.asarray(value)
-        mixed = numbers.dtype.kind == "O" and any(isinstance(item, (str, bytes, bool)) for item in numbers.flat)
-        if mixed or numbers.dtype.kind not in "iufO":  # such as texts and truth values, which numpy would convert
-            raise TypeError
+        items = (
+            () if isinstance(value, np.ndarray) and numbers.dtype.kind != "O" else np.asarray(value, dtype=object).flat
+        )
+        if numbers.dtype.kind not in "iufO" or any(isinstance(item, _NO_NUMBERS) for item in items):
+            raise TypeError  # such as texts and truth values, which numpy would convert
         array = np.array(numbers, dtype=np.float64)
     except (TypeError, ValueError, OverflowError):
         raise InputError(f"{what} takes {expected}; got {value!r}") from None

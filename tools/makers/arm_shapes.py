@@ -92,23 +92,29 @@ def base(height: float, radius: float, rim: float) -> Surfaces:
 
 
 def gripper(length: float, radius: float, rim: float) -> Surfaces:
-    """The hand on its fork: a palm across x and two parallel fingers, the tip (`length` from the joint) between them."""
+    """The hand on its fork: a palm along z and two parallel fingers, the tip (`length` from the joint) between them."""
     root = FOOT * radius
     wrist = _flange(rim, root, 0.10 * rim)
     palm = plate(_rounded(0.100, 0.034, 0.014), root + 0.003, root + 0.046, 0.006).facing("y")
     rail = plate(_rectangle((-0.090, root + 0.040), (0.090, root + 0.053)), -0.020, 0.020, 0.002)
-    # Seen along z (x to the right, y up): the right finger, from its carriage on the rail to its end.
+    # Made across x, then turned. Seen along z (x to the right, y up): the right finger, from its carriage on the rail
+    # to its end.
     bottom, top = root + 0.047, length + 0.034
     carriage = plate(_rectangle((0.034, bottom), (0.088, bottom + 0.020)), -0.026, 0.026, 0.004)
     outline = [(GRIP + 0.007, bottom), (0.082, bottom), (0.082, bottom + 0.026), (0.064, top), (GRIP + 0.007, top)]
     finger = plate(outline, -0.018, 0.018, 0.004)
     pad = plate(_rectangle((GRIP, length - 0.028), (GRIP + 0.010, top - 0.003)), -0.015, 0.015, 0.002)
     return {
-        "silver": joined([fork("z", 1, radius), wrist, rail]),
-        "blue": palm,
-        "graphite": joined([finger, _other_side(finger), carriage, _other_side(carriage)]),
-        "orange": joined([pad, _other_side(pad)]),
+        "silver": joined([fork("z", 1, radius), wrist, _quarter(rail)]),
+        "blue": _quarter(palm),
+        "graphite": joined(_quarter(part) for part in (finger, _other_side(finger), carriage, _other_side(carriage))),
+        "orange": joined(_quarter(part) for part in (pad, _other_side(pad))),
     }
+
+
+def _quarter(shape: Mesh) -> Mesh:
+    """Turned about y, x to z."""
+    return Mesh(shape.vertices[:, [2, 1, 0]] * (-1.0, 1.0, 1.0), shape.faces)
 
 
 def _other_side(shape: Mesh) -> Mesh:

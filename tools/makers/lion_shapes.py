@@ -79,7 +79,7 @@ def trunk() -> dict[str, Surfaces]:
     """One skin, cut at the spine's joints; balls in the joints close the cuts when it bends."""
     skin = mesh(TRUNK, TRUNK_CELL)
     waist = mesh(ellipsoid(SPINE, (0.14, 0.146, 0.170)), 0.045)
-    ribs = mesh(ellipsoid(CHEST, (0.17, 0.175, 0.213)), 0.05)
+    ribs = mesh(ellipsoid(CHEST, (0.17, 0.168, 0.205)), 0.05)
 
     def piece(start: float, end: float, *joints: Mesh) -> Surfaces:
         part, _ = split(skin, half_space((1, 0, 0), end + OVERLAP))
@@ -129,7 +129,7 @@ def head() -> Surfaces:
     surfaces = painted(skin, "tawny", black=liner.field, nose=LIPS, pale=pale.field)
 
     normal = outward(solid, eye)
-    gaze = (normal[0] + 0.12, normal[1], normal[2])
+    gaze = (normal[0] + 0.25, normal[1], normal[2])
     length = math.sqrt(sum(c * c for c in gaze))
 
     def on_eye(s: float, radius: float, towards_gaze: float) -> Mesh:
@@ -168,11 +168,11 @@ def _fang(root: Point, along: Point, radius: float) -> Mesh:
 
 def jaw() -> Surfaces:
     bone = blend(
-        0.03,
+        0.02,
         *both(lambda s: limb((1.21, s * 0.075, 1.022), (1.42, s * 0.034, 1.004), 0.038, 0.030)),
-        ellipsoid((1.440, 0, 1.000), (0.056, 0.052, 0.050)),  # chin
+        ellipsoid((1.440, 0, 1.000), (0.052, 0.047, 0.043)),  # chin
         ellipsoid((1.32, 0, 0.998), (0.12, 0.060, 0.034)),
-        ellipsoid((1.425, 0, 0.962), (0.034, 0.036, 0.038), (0, 20, 0)),  # a short beard
+        ellipsoid((1.425, 0, 0.964), (0.024, 0.022, 0.020), (0, 15, 0)),  # a short beard
     )
     solid = carve(bone, lambda x, y, z: MOUTH(x, y, z) - 0.002, width=0.006)
     chin = ellipsoid((1.44, 0, 0.975), (0.11, 0.08, 0.055)).field
@@ -225,7 +225,11 @@ def _bib() -> Mesh:
     """Locks that lie on the breast, row over row, from the neck down to between the legs."""
     center = (0.84, 0.0, 0.80)
     locks = []
-    for count, half_width, top, bottom, lift in ((5, 26, -10, -66, 0.006), (7, 50, 14, -40, 0.016), (8, 62, 38, -8, 0.026)):
+    for count, half_width, top, bottom, lift in (
+        (5, 26, -10, -66, 0.006),
+        (7, 50, 14, -40, 0.016),
+        (8, 62, 38, -8, 0.026),
+    ):
         for k in range(count):
             across = 2.0 * k / (count - 1) - 1.0
             turn, down = math.radians(half_width * across), (0.0, 0.3, 0.6, 0.86, 1.0)
@@ -301,6 +305,16 @@ def _paw(at: Point, heel: Point, size: float) -> Surfaces:
     return {"tawny": mesh(_above_ground(pad), 0.0115), "nose": joined(claws)}
 
 
+def _grown_from_trunk(limb_: Solid) -> Solid:
+    """A limb with a fillet onto the trunk, which ends just under the trunk's skin."""
+    under = Solid(lambda x, y, z: TRUNK.field(x, y, z) + 0.009, TRUNK.low, TRUNK.high)
+    return Solid(
+        carve(blend(0.10, limb_, under), lambda x, y, z: limb_.field(x, y, z) - 0.055).field,
+        limb_.low - 0.06,
+        limb_.high + 0.06,
+    )
+
+
 def fore_leg() -> dict[str, Surfaces]:
     shoulder, elbow, wrist, toes, paw = (FORE_LEG[name] for name in ("shoulder", "elbow", "wrist", "toes", "paw"))
     upper = blend(
@@ -317,7 +331,7 @@ def fore_leg() -> dict[str, Surfaces]:
     )
     metacarpus = blend(0.04, limb(wrist, toes, 0.043, 0.048), limb(wrist, (0.722, 0.135, 0.145), 0.035, 0.028))
     return {
-        "upper_arm": {"tawny": mesh(upper, 0.023)},
+        "upper_arm": {"tawny": mesh(_grown_from_trunk(upper), 0.024)},
         "forearm": {"tawny": mesh(forearm, LEG_CELL)},
         "metacarpus": {"tawny": mesh(metacarpus, LEG_CELL)},
         "fore_toes": _paw(paw, toes, 1.18),
@@ -325,7 +339,7 @@ def fore_leg() -> dict[str, Surfaces]:
 
 
 def hind_leg() -> dict[str, Surfaces]:
-    hip, knee, hock, toes, paw = (HIND_LEG[name] for name in ("hip", "knee", "hock", "toes", "paw"))
+    knee, hock, toes, paw = (HIND_LEG[name] for name in ("knee", "hock", "toes", "paw"))
     thigh = blend(
         0.08,
         limb((0.0, 0.090, 0.80), (0.06, 0.120, 0.68), 0.095, 0.085),
@@ -341,7 +355,7 @@ def hind_leg() -> dict[str, Surfaces]:
     )
     metatarsus = blend(0.04, limb(hock, toes, 0.039, 0.0435), limb(hock, (-0.137, 0.135, 0.250), 0.034, 0.026))
     return {
-        "thigh": {"tawny": mesh(thigh, 0.024)},
+        "thigh": {"tawny": mesh(_grown_from_trunk(thigh), 0.025)},
         "shank": {"tawny": mesh(shank, LEG_CELL)},
         "metatarsus": {"tawny": mesh(metatarsus, LEG_CELL)},
         "hind_toes": _paw(paw, toes, 1.06),
