@@ -149,6 +149,34 @@ def test_the_panda_is_shown_in_its_own_colours_and_size():
     assert 1.0 < high[2] < 1.2
 
 
+def test_a_robot_brings_its_file_its_text_and_its_folders(tmp_path):
+    (tmp_path / "stuff").mkdir()
+    trimesh.creation.box((1, 2, 3)).export(tmp_path / "stuff" / "box.stl")
+    text = urdf_with(visual('<mesh filename="package://stuff/box.stl"/>'))
+    (tmp_path / "home.urdf").write_text(text)
+    for source in (text, tmp_path / "home.urdf"):
+        assert only(pinik.load(source, package_dirs=[tmp_path])).mesh.volume == pytest.approx(6)
+
+
+@pytest.mark.parametrize(
+    ("source", "error", "words"),
+    [
+        ("/no/such.urdf", pinik.RobotLoadError, "no such file"),
+        ("/", pinik.RobotLoadError, "directory"),
+        ("<sdf/>", pinik.RobotLoadError, "SDF"),
+        (3, pinik.InputError, "a Robot, a path or URDF text; got 3"),
+    ],
+)
+def test_what_is_no_robot_is_refused_in_words(source, error, words):
+    with pytest.raises(error, match=words):
+        load_shapes(source)
+
+
+def test_one_folder_for_a_list_is_refused_in_words():
+    with pytest.raises(pinik.InputError, match="a list of folders; got '/tmp'"):
+        load_shapes(URDF / "arm.urdf", "/tmp")
+
+
 @pytest.mark.parametrize("name", ["arm", "lion", "two_link"])
 def test_our_own_robots_are_whole(name):
     shapes, warnings = load_shapes(URDF / f"{name}.urdf")

@@ -625,6 +625,25 @@ class TestPoses:
                 assert (q >= robot.lower_q).all()
                 assert (q <= robot.upper_q).all()
 
+    def test_are_fresh_and_cannot_be_spoiled(self, arm):
+        poses = arm.poses
+        with pytest.raises(ValueError, match="read-only"):
+            poses["reach"][0] = 1.0
+        kept = poses.pop("reach").copy()
+        np.testing.assert_array_equal(arm.poses["reach"], kept)
+
+    @pytest.mark.parametrize(("name", "root"), [("romeo", "fixed"), ("romeo", "free_flyer"), ("panda", "planar")])
+    def test_are_those_that_pinocchio_reads_without_its_words(self, name, root, capfd):
+        robot = pickle.loads(pickle.dumps(load_quietly(name, root=root)))
+        capfd.readouterr()
+        poses = robot.poses
+        assert capfd.readouterr() == ("", "")
+        model = pinocchio.Model(robot.model)
+        pinocchio.loadReferenceConfigurations(model, str(pinik.robot_catalog.find(name).srdf), False)
+        expected = {entry.key(): pinocchio.normalize(model, entry.data()) for entry in model.referenceConfigurations}
+        assert set(poses) == set(expected)
+        assert all(np.array_equal(poses[pose], expected[pose]) for pose in expected)
+
     def test_without_an_srdf_are_none(self):
         assert load_quietly(ZOO).poses == {}
 

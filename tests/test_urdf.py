@@ -4,7 +4,6 @@ import contextlib
 import copy
 import math
 import os
-import threading
 from pathlib import Path
 from xml.etree import ElementTree
 
@@ -374,7 +373,7 @@ def test_a_file_that_is_no_urdf_is_named_with_the_cause(tmp_path: Path, content:
         ("a\0b", "null byte"),
         ("a" * 5000, "too long"),
         ("robot: arm\nlinks: 3", "no such file"),
-        ("/dev/zero", "too large"),
+        ("/dev/zero", "a pipe or a device"),
     ],
 )
 def test_a_path_that_is_no_file_is_refused_in_words(path: str, cause: str) -> None:
@@ -391,14 +390,45 @@ def test_a_chain_of_thousands_of_mimics_is_composed_without_recursion() -> None:
     assert description.joints[0].mimic == Mimic("j4999", 1.0, 0.0)
 
 
-def test_pipes_are_read_like_files(tmp_path: Path) -> None:
-    pipe = tmp_path / "pipe"
-    os.mkfifo(pipe)
-    writer = threading.Thread(target=pipe.write_text, args=(robot(link("a")),))
-    writer.start()
-    description = urdf.read(pipe)
-    writer.join()
-    assert description.links == ("a",)
+def test_a_pipe_that_is_open_already_is_read_like_a_file() -> None:
+    ours, theirs = os.pipe()
+    os.write(theirs, robot(link("a")).encode())
+    os.close(theirs)
+    try:
+        assert urdf.read(f"/dev/fd/{ours}").links == ("a",)
+    finally:
+        os.close(ours)
+
+
+def test_a_named_pipe_is_refused_in_words_and_nobody_waits_for_its_other_end(tmp_path: Path) -> None:
+    os.mkfifo(tmp_path / "pipe.urdf")
+    with pytest.raises(RobotLoadError, match="a pipe or a device, not a URDF file"):
+        urdf.read(tmp_path / "pipe.urdf")
+
+
+@pytest.mark.parametrize(
+    "inside",
+    [
+        '<xi:include href="other.urdf"/>',
+        '<x:include xmlns:x="http://www.w3.org/2001/XInclude" href="other.urdf"/>',
+        '<include xmlns="http://www.w3.org/2001/XInclude" href="other.urdf"/>',
+        '<link name="b"><x:fallback xmlns:x="http://www.w3.org/2001/XInclude"/></link>',
+    ],
+)
+def test_xinclude_is_refused_as_an_external_reference(inside: str) -> None:
+    with pytest.raises(RobotLoadError, match=r"external references \(XInclude\) are refused"):
+        urdf.read(robot(link("a"), inside))
+
+
+def test_an_include_of_another_kind_is_none_of_our_business() -> None:
+    assert urdf.read(robot(link("a"), '<include xmlns:x="urn:x"/><x:include xmlns:x="urn:x"/>')).links == ("a",)
+
+
+def test_the_description_keeps_what_was_read(tmp_path: Path) -> None:
+    text = robot(link("a", '<visual><geometry><box size="1 1 1"/></geometry></visual>'))
+    assert urdf.read(text).document == text.encode()
+    (tmp_path / "r.urdf").write_text(text)
+    assert urdf.read(tmp_path / "r.urdf").document == text.encode()
 
 
 SEED = robot(

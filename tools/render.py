@@ -1,7 +1,7 @@
 """Render robots to a PNG: `python tools/render.py ROBOT [--pose NAME | --angles JSON] [--out FILE.png]`.
 
-Shapes come import pinik
-from pinik.geometry, placements from Pinocchio, the picture from meshcat's three.js in Debian's chromium.
+Shapes come from pinik.geometry, placements from Pinocchio, the picture from meshcat's three.js in Debian's chromium.
+It needs the dev extras (`make lint` installs them) and `apt install chromium`.
 docs/images/robots.png is made by tools/hero.py.
 """
 
@@ -10,6 +10,7 @@ from __future__ import annotations
 import argparse
 import base64
 import json
+import sys
 import tempfile
 from collections.abc import Sequence
 from dataclasses import dataclass, field
@@ -48,9 +49,9 @@ class Scene:
 
     def add_robot(self, robot: pinik.Robot, q: Matrix, at: Matrix | None = None) -> None:
         """A robot in configuration `q`, its world placed at `at`."""
-        shapes, warnings = load_shapes(robot.description.path, robot.package_dirs)
+        shapes, warnings = load_shapes(robot)
         for warning in warnings:
-            print(warning)
+            print(warning, file=sys.stderr)
         world = np.eye(4) if at is None else at
         for shape in shapes:
             placement = world @ robot.placement(shape.link, q).homogeneous @ shape.placement
@@ -114,6 +115,7 @@ def render(
             browser = playwright.chromium.launch(executable_path=CHROMIUM, args=FLAGS)
             width, height = size
             page = browser.new_page(viewport={"width": width, "height": height}, device_scale_factor=scale)
+            print(f"rendering {out}, {frames} frames …", file=sys.stderr, flush=True)
             page.goto(html.as_uri(), timeout=600_000)
             page.wait_for_function("document.title != ''", timeout=600_000)
             if page.title() != "drawn":

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -34,7 +35,7 @@ class Coordinate:
     index: int
     movers: tuple[tuple[Joint, float], ...]
 
-    @property
+    @cached_property
     def slides(self) -> bool:
         """Whether the first mover slides along its line instead of turning about it."""
         kind = self.movers[0][0].kind

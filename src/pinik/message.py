@@ -101,9 +101,11 @@ def _length(metres: float) -> str:
         return f"{100.0 * metres:.3g} cm"
     if metres >= 1e-5:
         return f"{1000.0 * metres:.2g} mm"
-    return f"{1e6 * metres:.2g} µm"
+    return f"{1e6 * metres:.2g} µm" if metres >= 1e-7 else f"{1e6 * metres:.2f} µm"
 
 
 def _angle(radians: float) -> str:
     degrees = math.degrees(radians)
-    return f"{degrees:.0f}°" if degrees >= 10.0 else f"{degrees:.2g}°"
+    if degrees >= 10.0:
+        return f"{degrees:.0f}°"
+    return f"{degrees:.2g}°" if degrees >= 0.001 else f"{degrees:.4f}°"

@@ -68,7 +68,7 @@ class SecondOpinion:
             return f"yourdfpy gives no second opinion: {self.unread}"
         verdict = f"disagrees about {_listed(self.disagreeing)}" if self.disagreeing else "agrees"
         compared = f"{self.links} links at {self.configurations} configurations"
-        apart = f"at most {self.position_difference_m:.2g} m and {self.rotation_difference_rad:.2g} rad apart"
+        apart = f"at most {_apart(self.position_difference_m)} m and {_apart(self.rotation_difference_rad)} rad apart"
         unmoved = f"; it cannot move {_listed(self.unmoved)}, which stayed neutral" if self.unmoved else ""
         return f"yourdfpy {verdict}: {compared}, {apart}{unmoved}"
 
@@ -98,6 +98,11 @@ def ask_yourdfpy(robot: Robot, path: str | Path) -> SecondOpinion:
         cause = " ".join(str(fault).split())[:200]
         return SecondOpinion(unread=f"it could not read the file ({type(fault).__name__}: {cause})")
     return _compared(robot, [_our_links(robot, q) for q in configurations], theirs)
+
+
+def _apart(difference: float | None) -> str:
+    """A difference without the noise of rounding."""
+    return "nan" if difference is None else f"{max(difference, 1e-12):.2g}"
 
 
 def _listed(names: Sequence[str]) -> str:

@@ -43,6 +43,16 @@ def test_a_fault_names_element_and_cause_and_is_status_3(run, urdf):
     assert f"fault: joint 'j': {fault['message']}" in person.out.splitlines()
 
 
+def test_one_of_a_kind_is_singular(run, urdf):
+    assert run("check", urdf('<link name="a"/>')).out.splitlines()[-1] == "1 link, 0 joints, 0 meshes, 0 shapes"
+
+
+def test_a_file_that_is_a_robot_of_the_catalogue_suggests_it(run):
+    result = run("check", "somewhere/panda.urdf")
+    assert result.status == 3
+    assert "the catalogue has a robot 'panda'" in result.out
+
+
 def test_no_such_file_is_a_fault(run, tmp_path):
     result = run("check", tmp_path / "none.urdf")
     assert result.status == 3

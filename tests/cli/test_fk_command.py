@@ -72,6 +72,28 @@ def test_the_table_shows_the_frames(run):
     assert abs(pitch) == pytest.approx(30.0, abs=1e-3)
 
 
+def test_a_value_outside_the_limits_is_said_and_taken(run):
+    result = run("fk", "arm", "--frame", "tip", "--set", "bone1_x=2", "--json")
+    assert result.err == "note: --set bone1_x=2 lies outside its limits -0.78540 … 0.78540 rad; taken as it is\n"
+    assert result.json["angles"]["bone1_x"] == 2.0
+
+
+def test_a_joints_name_may_hold_an_equals_sign(run, tmp_path):
+    limit = '<limit lower="-1" upper="1" effort="1" velocity="1"/>'
+    ends = '<parent link="a"/><child link="b"/><axis xyz="0 0 1"/>'
+    file = tmp_path / "r.urdf"
+    file.write_text(
+        '<robot name="r"><link name="a"/><link name="b"/>'
+        f'<joint name="q=1" type="revolute">{ends}{limit}</joint></robot>'
+    )
+    assert run("fk", file, "--set", "q=1=0.5", "--json").json["angles"] == {"q=1": 0.5}
+
+
+def test_minus_zero_is_zero(run):
+    out = run("fk", "arm", "--set", "bone1_x=-0.0", "--json").out
+    assert not any(f"-0.0{end}" in out for end in ",]}")
+
+
 @pytest.mark.parametrize(
     ("arguments", "words"),
     [

@@ -33,6 +33,29 @@ def test_every_example_in_the_help_works(run, environment, command):
         assert done.returncode == 0, done.stderr.decode()
 
 
+@pytest.mark.parametrize("command", ["", *COMMANDS])
+def test_examples_keep_their_indent(run, command):
+    lines = run(*filter(None, [command]), "--help").out.splitlines()
+    title = next(line for line in lines if line.strip() in ("Example:", "Examples:"))
+    shown = [line for line in lines if line.strip().startswith(("pinik ", "echo "))]
+    indent = len(title) - len(title.lstrip()) + 2
+    assert all(line.startswith(" " * indent) for line in shown)
+
+
+def test_no_hyphen_in_a_text_is_painted(environment):
+    done = subprocess.run(
+        [sys.executable, "-m", "pinik", "solve", "--help"],
+        env=environment | {"FORCE_COLOR": "1", "TERM": "xterm-256color", "COLUMNS": "200"},
+        capture_output=True,
+        timeout=30,
+        check=True,
+    )
+    text = done.stdout.decode()
+    assert "\x1b[1;36m--frame" in text
+    assert "-0.3 0.2 0.5 --rpy 180" in text
+    assert "(-x, -y, -z too)" in text
+
+
 def test_the_front_page_lists_every_command(run):
     text = run("--help").out
     assert all(command in text for command in COMMANDS)

@@ -1,7 +1,12 @@
 from __future__ import annotations
 
+import importlib
 import json
 import math
+import shutil
+import subprocess
+import sys
+import sysconfig
 from pathlib import Path
 
 import numpy as np
@@ -195,17 +200,24 @@ def test_a_joint_at_its_limit_is_marked(run):
 
 
 WRONG = {
-    "nothing asked for": ((*ARM,), "nothing is asked for"),
+    "nothing asked for": ((*ARM,), "nothing is asked for; give --position, --rpy"),
     "no frame": (("solve", "arm", "--position", 0, 0, 1), "--frame"),
     "unknown frame": (("solve", "arm", "--frame", "tipp", "--position", 0, 0, 1), "no frame 'tipp'; near: 'tip'"),
     "NaN": ((*ARM, "--position", "nan", 0, 1), "finite"),
-    "infinity": ((*ARM, "--position", "inf", 0, 1), "finite"),
-    "a word": ((*ARM, "--position", "a", 0, 1), "--position"),
-    "two numbers": ((*ARM, "--position", 0, 1), "--position"),
+    "infinity": ((*ARM, "--position", "inf", 0, 1), "error: --position takes 3 finite numbers"),
+    "a word": ((*ARM, "--position", "a", 0, 1), "'a' is not a number; see 'pinik solve --help'"),
+    "two numbers": ((*ARM, "--position", 0, 1), "'--position' requires 3 arguments; see 'pinik solve --help'"),
     "a zero direction": ((*ARM, "--axis", "x", "--direction", 0, 0, 0), "direction"),
     "an unknown axis": ((*ARM, "--axis", "w", "--direction", 0, 0, 1), "axis"),
-    "an axis without direction": ((*ARM, "--axis", "x"), "direction"),
-    "two orientations": ((*ARM, "--rpy", 0, 0, 0, "--quat-xyzw", 0, 0, 0, 1), "rpy"),
+    "an axis without direction": ((*ARM, "--axis", "x"), "--axis goes with --direction or --at"),
+    "a direction without axis": ((*ARM, "--direction", 0, 0, 1), "--axis goes with --direction or --at"),
+    "two directions": ((*ARM, "--axis", "x", "--direction", 0, 0, 1, "--at", 0, 0, 1), "--direction or --at, not both"),
+    "half a seed": ((*ARM, "--position", 0, 0, 1, "--seed", "0.5"), "'0.5' is not a whole number"),
+    "no such folder": (
+        (*ARM, "--position", 0, 0, 1, "--package-dir", "/no/such"),
+        "--package-dir /no/such: there is no",
+    ),
+    "two orientations": ((*ARM, "--rpy", 0, 0, 0, "--quat-xyzw", 0, 0, 0, 1), "got --rpy and --quat-xyzw"),
     "an unknown method": ((*ARM, "--position", 0, 0, 1, "--method", "dsl"), "no method 'dsl'; near: 'dls'"),
     "an unknown parameter": ((*ARM, "--position", 0, 0, 1, "--param", "dampin=1"), "near: 'damping'"),
     "a parameter out of range": ((*ARM, "--position", 0, 0, 1, "--param", "damping=-1"), "damping"),
@@ -227,10 +239,10 @@ WRONG = {
     "an unknown root": ((*ARM, "--position", 0, 0, 1, "--root", "free"), "root"),
     "an unknown engine": ((*ARM, "--position", 0, 0, 1, "--engine", "nativ"), "no engine 'nativ'"),
     "a negative tolerance": ((*ARM, "--position", 0, 0, 1, "--tolerance", -1, 1), "tolerance"),
-    "no iterations": ((*ARM, "--position", 0, 0, 1, "--max-iterations", 0), "max_iterations"),
-    "negative restarts": ((*ARM, "--position", 0, 0, 1, "--restarts", -1), "restarts"),
-    "no time": ((*ARM, "--position", 0, 0, 1, "--time-limit", 0), "time_limit"),
-    "NaN seconds": ((*ARM, "--position", 0, 0, 1, "--time-limit", "nan"), "time_limit"),
+    "no iterations": ((*ARM, "--position", 0, 0, 1, "--max-iterations", 0), "--max-iterations is"),
+    "negative restarts": ((*ARM, "--position", 0, 0, 1, "--restarts", -1), "--restarts is"),
+    "no time": ((*ARM, "--position", 0, 0, 1, "--time-limit", 0), "--time-limit is"),
+    "NaN seconds": ((*ARM, "--position", 0, 0, 1, "--time-limit", "nan"), "--time-limit is"),
     "an unknown option": ((*ARM, "--postion", 0, 0, 1), "--position"),
     "a file and a target": ((*ARM, "--targets", "-"), "--frame belongs into it"),
     "no robot": (("solve",), "ROBOT"),
@@ -248,6 +260,9 @@ def test_wrong_input_is_one_line_on_stderr_and_status_2(run, case):
 
 
 BAD_TARGETS = {
+    "a key twice": ('[{"frame": "tip", "frame": "base", "position": [0, 0, 1]}]', "the key 'frame' is there twice"),
+    "hundreds": ("[" + ", ".join(['{"frame": "tip", "position": [0, 0, 1]}'] * 101) + "]", "101 targets; at most 100"),
+    "a truth value": ('[{"frame": "tip", "position": [0, 0, true]}]', "target 0: target 'tip': position"),
     "no JSON": ("[", "not JSON"),
     "empty": ("", "not JSON"),
     "too deep": ("[" * 100_000, "not JSON"),
@@ -280,6 +295,77 @@ def test_a_bad_target_is_named_by_file_index_and_key(run, tmp_path, case):
     assert result.err.startswith(f"error: {file}: {words}" if words.startswith("target") else f"error: {file}: ")
     assert words in result.err
     assert result.err.count("\n") == 1
+
+
+@pytest.mark.skipif(not Path("/dev/zero").exists(), reason="needs /dev/zero")
+def test_an_endless_targets_file_is_refused_in_words(run):
+    result = run("solve", "arm", "--targets", "/dev/zero")
+    assert (result.status, result.out) == (2, "")
+    assert result.err == "error: /dev/zero: larger than 16 MB, too large for a list of targets\n"
+
+
+def test_a_start_outside_the_limits_is_said_and_moved_inside(run):
+    options = ("--position", 0.3, 0.1, 0.8, "--start", "bone1_x=90", "--deg")
+    inside = run(*ARM, *options, "--json")
+    assert inside.err == "note: --start bone1_x=90 lies outside its limits -45.000 … 45.000 deg; moved inside\n"
+    assert inside.status == 0
+    assert run(*ARM, *options, "--no-limits").err == ""
+
+
+def write_solver(folder: Path, body: str, before: str = "") -> None:
+    """my_solver.py, whose class has this in `direction`."""
+    (folder / "my_solver.py").write_text(
+        f"{before}\nfrom dataclasses import dataclass\nimport pinik\n\n"
+        "@dataclass(frozen=True, kw_only=True)\nclass Mine(pinik.JacobianSolver):\n"
+        f"    name = 'mine'\n    def direction(self, J, e):\n        {body}\n"
+    )
+
+
+@pytest.mark.parametrize("command", [["pinik"], [sys.executable, "-m", "pinik"]], ids=["script", "module"])
+def test_a_method_is_found_in_the_current_directory(environment, tmp_path, command):
+    write_solver(tmp_path, "return 0.5 * J.T @ e")
+    program = shutil.which(command[0], path=sysconfig.get_path("scripts")) or command[0]
+    done = subprocess.run(
+        [program, *command[1:], *ARM, "--position", "0.2", "0.1", "1.0", "--method", "my_solver:Mine", "--json"],
+        cwd=tmp_path,
+        env=environment,
+        capture_output=True,
+        timeout=60,
+        check=False,
+    )
+    assert done.stderr == b""
+    assert json.loads(done.stdout)["method"] == "mine"
+
+
+@pytest.mark.parametrize(
+    ("body", "before", "words"),
+    [
+        ("return 1 / 0", "", "the solver failed: ZeroDivisionError: division by zero"),
+        ("raise SystemExit(0)", "", "the solver failed: SystemExit: 0"),
+        ("return 0", "raise OSError('no\\nlicence')", "its module cannot be imported: OSError: no licence"),
+        ("return 0", "raise SystemExit(0)", "its module cannot be imported: SystemExit: 0"),
+        ("return 0 +", "", "its module cannot be imported: SyntaxError: "),
+    ],
+)
+def test_whatever_a_users_solver_raises_is_one_sentence(run, tmp_path, monkeypatch, body, before, words):
+    write_solver(tmp_path, body, before)
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr(sys, "path", [*sys.path])
+    importlib.invalidate_caches()
+    result = run(*ARM, "--position", 0.3, 0.1, 0.8, "--method", "my_solver:Mine")
+    sys.modules.pop("my_solver", None)
+    assert (result.status, result.out) == (2, "")
+    assert result.err.startswith(f"error: --method my_solver:Mine: {words}")
+    assert result.err.count("\n") == 1
+
+
+def test_what_nobody_foresaw_is_one_sentence_too(run, monkeypatch):
+    def fail(*_: object, **__: object) -> None:
+        raise ZeroDivisionError("oh\nno")
+
+    monkeypatch.setattr(sys.modules["pinik.cli.solve"], "solve_targets", fail)
+    result = run(*ARM, "--position", 0.3, 0.1, 0.8)
+    assert result == (2, "", "error: unforeseen, please report it: ZeroDivisionError: oh no\n")
 
 
 def test_a_missing_targets_file_is_bad_input(run, tmp_path):

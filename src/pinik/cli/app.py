@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Sequence
-from typing import Annotated
+from typing import Annotated, Any
 
 import typer
 
@@ -102,7 +102,7 @@ def _wrong_usage(error: typer.TyperException, words: Sequence[str]) -> ExitStatu
         names = {info.name for info in _app.registered_commands}
         command = " ".join(["pinik", *[word for word in words if word in names][:1]])
     message = error.format_message().rstrip(".")
-    faults = getattr(error.__cause__, "errors", list)()
+    faults: list[Any] = getattr(error.__cause__, "errors", list)()
     if faults and isinstance(error, typer.BadParameter):
         kind = "a whole number" if "int" in faults[0]["type"] else "a number"
         message = message.removesuffix(error.message.rstrip(".")) + f"{faults[0]['input']!r} is not {kind}"

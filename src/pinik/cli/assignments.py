@@ -62,7 +62,10 @@ def configuration(
         lower, upper = float(robot.lower[index]), float(robot.upper[index])
         if beyond_limits and not lower <= angle <= upper:
             low, high = units.show_limits(lower, upper, joint)
-            say(f"note: {option} {name}={text} lies outside its limits {low} … {high} {units.of(joint)}; {beyond_limits}")
+            say(
+                f"note: {option} {name}={text} lies outside its limits {low} … {high} {units.of(joint)}; "
+                f"{beyond_limits}"
+            )
     return q
 
 

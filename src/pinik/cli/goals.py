@@ -45,7 +45,9 @@ def target_from_options(frame: str | None, wanted: Mapping[str, Any]) -> Target:
     if len(orientations) > 1:
         raise CommandError(f"give the orientation once; got {' and '.join(orientations)}")
     if not orientations and "position" not in given:
-        raise CommandError("nothing is asked for; give --position, --rpy, --quat-xyzw, or --axis with --direction or --at")
+        raise CommandError(
+            "nothing is asked for; give --position, --rpy, --quat-xyzw, or --axis with --direction or --at"
+        )
     try:
         return Target(frame, **wanted)
     except InputError as error:
@@ -57,7 +59,7 @@ def as_options(sentence: str, names: Iterable[str]) -> str:
     word = re.match(r"\w+", sentence)
     if word is None or word[0] not in names:
         return sentence
-    return f"--{word[0].replace('_', '-')}{sentence[word.end():]}"
+    return f"--{word[0].replace('_', '-')}{sentence[word.end() :]}"
 
 
 def targets_from_file(path: str) -> list[Target]:
@@ -112,8 +114,8 @@ def _items(document: Any, label: str) -> list[Any]:
         raise CommandError(f"{label}: {_FORM} is expected; got {json.dumps(document)[:60]}")
     if len(document) > _MOST_TARGETS:
         raise CommandError(
-            f"{label}: {len(document):,} targets; at most {_MOST_TARGETS} are taken, because they are solved together, by "
-            "one configuration; to solve many one after the other, which is a batch, run one command for each"
+            f"{label}: {len(document):,} targets; at most {_MOST_TARGETS} are taken, because they are solved together, "
+            "by one configuration; to solve many one after the other, which is a batch, run one command for each"
         )
     if not document:
         raise CommandError(f"{label}: there are no targets")

@@ -106,7 +106,7 @@ def _emit(robot: Robot, units: Units) -> None:
     output.emit(f"{robot.name}  {description.source}")
     output.emit(f"root      {description.root}, {robot.root}")
     output.emit(
-        f"size      {counted(len(robot.joint_names), "joint")} to set, {counted(len(robot.frame_names), "frame")}, "
+        f"size      {counted(len(robot.joint_names), 'joint')} to set, {counted(len(robot.frame_names), 'frame')}, "
         f"nq {model.nq}, nv {model.nv}"
     )
     output.emit(f"engine    {_ENGINE}, pinik {_version()}, Pinocchio {pinocchio.__version__}")

@@ -61,7 +61,7 @@ def _together(kind: tuple[str, str], members: list[tuple[str, str]]) -> str:
     if len(members) == 1:
         return members[0][1]
     owner, cause = kind
-    names = ", ".join(name for name, _ in members)
+    names = ", ".join([*(name for name, _ in members[:6]), *(["…"] if len(members) > 6 else [])])
     if "comes after it" in cause:
         return f"{len(members)} mimic joints come before their leaders and are left free: {names}"
     return f"{len(members)} {owner}s: {cause}: {names}"

@@ -191,7 +191,7 @@ def solve(
         raise CommandError(goals.as_options(str(error), options)) from None
     except PinikError:
         raise
-    except Exception as error:
+    except (Exception, SystemExit) as error:
         if method in SOLVERS:
             raise
         # The solver is the user's, and may raise whatever it likes.
