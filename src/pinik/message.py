@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 
 from .reach import Shortfall
 from .solution import Status
-from .targets import Target, TargetError, Tolerance
+from .targets import Target, TargetError, Tolerance, largest_of
 
 __all__ = ["explain"]
 
@@ -33,15 +33,10 @@ def explain(
         anything_moves: Whether any free joint moves any of the frames.
     """
     if status is Status.CONVERGED:
-        largest = [
-            max((e.position for e in errors if e.position is not None), default=None),
-            max((e.orientation for e in errors if e.orientation is not None), default=None),
-        ]
-        words = [
-            _length(largest[0]) if largest[0] is not None else "",
-            _angle(largest[1]) if largest[1] is not None else "",
-        ]
-        return f"converged, {' and '.join(filter(None, words))} off"
+        position, orientation = largest_of(errors)
+        words = [] if position is None else [_length(position)]
+        words += [] if orientation is None else [_angle(orientation)]
+        return f"converged, {' and '.join(words)} off"
     missed = _missed(targets, errors, tolerance)
     if not anything_moves:
         return f"no free joint moves {_frames(targets)}; {missed}"

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from .errors import SolveError
 from .robot import Robot
-from .targets import NO_DIRECTION, Target, TargetError
+from .targets import NO_DIRECTION, Target, TargetError, largest_of
 
 __all__ = ["Solution", "State", "Status", "measure_errors"]
 
@@ -59,12 +59,12 @@ class State(NamedTuple):
     @property
     def position_error(self) -> float | None:
         """The largest of the targets' [m]."""
-        return _largest(error.position for error in self.errors)
+        return largest_of(self.errors).position
 
     @property
     def orientation_error(self) -> float | None:
         """The largest of the targets' [rad]."""
-        return _largest(error.orientation for error in self.errors)
+        return largest_of(self.errors).orientation
 
 
 @dataclass(frozen=True, eq=False)
@@ -129,12 +129,12 @@ class Solution:
     @property
     def position_error(self) -> float | None:
         """The largest of the targets' [m]; None where no position was asked for."""
-        return _largest(error.position for error in self.errors)
+        return largest_of(self.errors).position
 
     @property
     def orientation_error(self) -> float | None:
         """The largest of the targets' [rad]; None where no orientation was asked for."""
-        return _largest(error.orientation for error in self.errors)
+        return largest_of(self.errors).orientation
 
     def raise_for_status(self) -> None:
         """Do nothing on success.
@@ -196,10 +196,6 @@ def _measure(robot: Robot, target: Target, q: Array) -> TargetError:
             return TargetError(position, 0.0)
         orientation = math.atan2(float(np.linalg.norm(np.cross(axis, direction))), float(axis @ direction))
     return TargetError(position, orientation)
-
-
-def _largest(values: Any) -> float | None:
-    return max((value for value in values if value is not None), default=None)
 
 
 def _jsonable(value: Any) -> Any:

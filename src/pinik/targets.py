@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 from .checks import as_finite_number, as_point, as_rotation, as_se3, as_unit_vector, as_vector
 from .errors import InputError, UnknownNameError
 
-__all__ = ["NO_DIRECTION", "Target", "TargetError", "Tolerance", "as_targets"]
+__all__ = ["NO_DIRECTION", "Target", "TargetError", "Tolerance", "as_targets", "largest_of"]
 
 Array = NDArray[np.float64]
 
@@ -66,6 +66,15 @@ class TargetError(NamedTuple):
         return (self.position is None or self.position <= tolerance.position) and (
             self.orientation is None or self.orientation <= tolerance.orientation
         )
+
+
+def largest_of(errors: Iterable[TargetError]) -> TargetError:
+    """The largest position error and the largest orientation error of several targets, None where none has one."""
+    errors = tuple(errors)
+    return TargetError(
+        max((error.position for error in errors if error.position is not None), default=None),
+        max((error.orientation for error in errors if error.orientation is not None), default=None),
+    )
 
 
 @dataclass(frozen=True, eq=False, init=False)

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from ..limits import Limits
     from ..targets import Tolerance
 
-__all__ = ["JacobianSolver", "Patience", "Solver", "SweepingSolver", "parameter"]
+__all__ = ["JacobianSolver", "Patience", "Solver", "SweepingSolver", "max_step_parameter", "parameter"]
 
 Array = NDArray[np.float64]
 
@@ -61,6 +61,12 @@ def parameter(
     return dataclasses.field(default=default, metadata=metadata)
 
 
+def max_step_parameter(default: float) -> Any:
+    """The clamp on a step, which methods set differently."""
+    help_ = "largest change of one joint in one step"
+    return parameter(default, help_, unit="rad or m", low=1e-6, unbounded=True)
+
+
 @dataclass(frozen=True)
 class Patience:
     """When a run has stalled: fewer than `progress` of the residual gone within `iterations`."""
@@ -85,9 +91,7 @@ class Solver:
     patience: ClassVar[Patience] = Patience(5, 0.05)
     """When an attempt counts as stalled."""
 
-    max_step: float = parameter(
-        math.inf, "largest change of one joint in one step", unit="rad or m", low=1e-6, unbounded=True
-    )
+    max_step: float = max_step_parameter(math.inf)
     max_residual: float = parameter(
         math.inf, "D_max: the part of a position residual used", unit="m", low=1e-6, unbounded=True
     )

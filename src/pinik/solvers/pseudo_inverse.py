@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import pinocchio
 
-from .base import Array, JacobianSolver, Patience, parameter
+from .base import Array, JacobianSolver, Patience, max_step_parameter, parameter
 
 if TYPE_CHECKING:
     from ..kinematics import Kinematics, Linearization
@@ -33,9 +33,7 @@ class PseudoInverse(JacobianSolver):
     restarts = 60
     patience = Patience(6, 0.05)
 
-    max_step: float = parameter(
-        0.5, "largest change of one joint in one step", unit="rad or m", low=1e-6, unbounded=True
-    )
+    max_step: float = max_step_parameter(0.5)
     cutoff: float = parameter(1e-3, "singular values below this part of the largest are dropped", low=0.0, high=0.5)
     rest_posture: Mapping[str, float] = parameter({}, "joint angles to tend to in the null space", unit="rad or m")
     rest_gain: float = parameter(0.1, "part of the way to the rest posture taken in one step", low=0.0, high=1.0)

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from .base import Array, JacobianSolver, Patience, parameter
+from .base import Array, JacobianSolver, Patience, max_step_parameter, parameter
 
 __all__ = ["JacobianTranspose"]
 
@@ -26,9 +26,7 @@ class JacobianTranspose(JacobianSolver):
     restarts = 20
     patience = Patience(50, 0.02)
 
-    max_step: float = parameter(
-        0.5, "largest change of one joint in one step", unit="rad or m", low=1e-6, unbounded=True
-    )
+    max_step: float = max_step_parameter(0.5)
     alpha: float | None = parameter(
         None, "α; None takes the optimal one in every step", low=1e-6, high=1e3, optional=True
     )
