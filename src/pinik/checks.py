@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterable
 
 import numpy as np
 import pinocchio
@@ -10,7 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from .errors import InputError
 
-__all__ = ["as_finite_number", "as_point", "as_rotation", "as_se3", "as_unit_vector", "as_vector"]
+__all__ = ["as_finite_number", "as_names", "as_point", "as_rotation", "as_se3", "as_unit_vector", "as_vector"]
 
 _FARTHEST = 1e9  # [m]: beyond, squares of distances lose all meaning
 
@@ -64,6 +65,13 @@ def as_point(value: ArrayLike, what: str) -> Array:
     if np.abs(point).max() > _FARTHEST:
         raise InputError(f"{what} is a point in metres, at most {_FARTHEST:g} away; got {point.tolist()}")
     return point
+
+
+def as_names(value: Iterable[str], what: str) -> tuple[str, ...]:
+    """`value` as a tuple; InputError for a single string, and for what is no list at all."""
+    if isinstance(value, str) or not isinstance(value, Iterable):
+        raise InputError(f"{what} takes a list of joint names; got {value!r}")
+    return tuple(value)
 
 
 def as_unit_vector(value: ArrayLike, what: str) -> Array:

@@ -45,12 +45,7 @@ class Coordinate:
         """(unit axis (3,), a point on it (3,)) of the first mover in the world, from `data.oMi`."""
         mover = self.movers[0][0]
         placement = data.oMi[mover.id]
-        if mover.has_one_axis:
-            axis: Any = mover.axis
-        elif mover.kind == "floating":
-            axis = _UNIT_VECTORS[self.index % 3]
-        else:
-            axis = _UNIT_VECTORS[self.index]
+        axis: Any = mover.axis if mover.has_one_axis else _UNIT_VECTORS[self.index % 3]
         return placement.rotation.dot(axis), placement.translation
 
     def room(self, q: Array, limits: Limits) -> tuple[float, float]:

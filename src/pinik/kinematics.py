@@ -10,8 +10,8 @@ import numpy as np
 import pinocchio
 from numpy.typing import NDArray
 
+from .checks import as_names
 from .coordinates import Coordinate
-from .errors import InputError
 from .robot import Robot
 from .target_term import TargetTerm
 from .targets import Target, TargetError, as_targets
@@ -56,11 +56,11 @@ class Kinematics:
         data: The `pinocchio.Data` of the last evaluation.
         targets: What is asked for.
         terms: The targets, compiled: see `TargetTerm`.
-        coordinates: The free ones among them one by one, distal joints first, as CCD visits them.
         lightest: The smallest weight as a part of the largest.
         size_of_chain: The longest of the targets' chains [m].
         held_entries: The entries of q that stay, where nq and nv differ; else None.
         free: (nv,) whether a tangent coordinate moves a target and is not locked.
+        coordinates: The free ones one by one, distal joints first, as CCD visits them.
         locked: Joints that hold still.
         size: Number of residual rows m.
         evaluations: How many times a residual was computed.
@@ -69,7 +69,7 @@ class Kinematics:
     def __init__(
         self,
         robot: Robot,
-        targets: Sequence[Target],
+        targets: Target | Sequence[Target],
         *,
         locked: Iterable[str] = (),
         target_jacobian: bool = False,
@@ -86,10 +86,8 @@ class Kinematics:
             UnknownNameError: No such frame or joint.
             InputError: No target, or a locked joint that follows another.
         """
-        if isinstance(locked, str) or not isinstance(locked, Iterable):
-            raise InputError(f"locked takes a list of joint names; got {locked!r}")
         self.robot = robot
-        self.locked = tuple(robot.settable_joint(name) for name in locked)
+        self.locked = tuple(robot.settable_joint(name) for name in as_names(locked, "locked"))
         self.target_jacobian = target_jacobian
         self.evaluations = 0
         self.retarget(targets)

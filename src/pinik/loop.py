@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from .attempts import Attempts, Settings
-from .checks import as_finite_number
+from .checks import as_finite_number, as_names
 from .errors import EngineError, InputError, UnknownNameError
 from .kinematics import Kinematics
 from .limits import Limits
@@ -19,7 +19,7 @@ from .robot import Robot
 from .run import TO_THE_END, run
 from .solution import Solution, State
 from .solvers import JacobianSolver, Solver, make_solver
-from .targets import Target, Tolerance, as_targets
+from .targets import TARGET_KEYWORDS, Target, Tolerance
 
 __all__ = ["iterate", "solve"]
 
@@ -149,27 +149,20 @@ def solve_from_keywords(
     """`Robot.solve`: sort the keywords into those of one Target and those of `solve`."""
     options = dict(options)
     if not isinstance(targets, str):
-        if position is not None or any(name in options for name in _TARGET_KEYWORDS):
+        if position is not None or any(name in options for name in TARGET_KEYWORDS):
             raise InputError("with Target objects the target's keywords belong into Target(...)")
         return solve(robot, targets, method, **options)
-    fields = {name: options.pop(name) for name in _TARGET_KEYWORDS if name in options}
+    fields = {name: options.pop(name) for name in TARGET_KEYWORDS if name in options}
     return solve(robot, Target(targets, position, **fields), method, **options)
-
-
-_TARGET_KEYWORDS = (
-    "rotation", "rpy", "quat_xyzw", "quat_wxyz", "placement", "axis", "direction", "at", "tool", "relative_to",
-    "weight",
-)  # fmt: skip
 
 
 def _kinematics(robot: Robot, targets: Target | Sequence[Target], solver: Solver, locked: Iterable[str]) -> Kinematics:
     if not isinstance(robot, Robot):
         raise InputError(f"robot is what pinik.load returns; got {robot!r}")
-    if isinstance(locked, str) or not isinstance(locked, Iterable):
-        raise InputError(f"locked takes a list of joint names; got {locked!r}")
     at_target = isinstance(solver, JacobianSolver) and solver.target_jacobian
     _check_joint_names(robot, solver)
-    return Kinematics(robot, as_targets(targets), locked=(*locked, *solver.held), target_jacobian=at_target)
+    held = (*as_names(locked, "locked"), *solver.held)
+    return Kinematics(robot, targets, locked=held, target_jacobian=at_target)
 
 
 def _check_joint_names(robot: Robot, solver: Solver) -> None:

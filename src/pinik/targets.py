@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 from .checks import as_finite_number, as_point, as_rotation, as_se3, as_unit_vector, as_vector
 from .errors import InputError, UnknownNameError
 
-__all__ = ["NO_DIRECTION", "Target", "TargetError", "Tolerance", "as_targets", "largest_of"]
+__all__ = ["NO_DIRECTION", "TARGET_KEYWORDS", "Target", "TargetError", "Tolerance", "as_targets", "largest_of"]
 
 Array = NDArray[np.float64]
 
@@ -203,9 +203,10 @@ class Target:
         """
         if not isinstance(fields, Mapping):
             raise InputError(f'a target is an object such as {{"frame": …, "position": [x, y, z]}}; got {fields!r}')
+        keywords = ("frame", "position", *TARGET_KEYWORDS)
         for key in fields:
-            if key not in _KEYWORDS:
-                raise UnknownNameError("target keyword", key, _KEYWORDS)
+            if key not in keywords:
+                raise UnknownNameError("target keyword", key, keywords)
         if "frame" not in fields:
             raise InputError(f"a target names its frame; got only {', '.join(fields) or 'nothing'}")
         return cls(**fields)
@@ -246,10 +247,11 @@ def as_targets(targets: Target | Iterable[Target]) -> tuple[Target, ...]:
 
 
 _LIGHTEST, _HEAVIEST = 1e-3, 1e3
-_KEYWORDS = (
-    "frame", "position", "rotation", "rpy", "quat_xyzw", "quat_wxyz", "placement", "axis", "direction", "at", "tool",
-    "relative_to", "weight",
+TARGET_KEYWORDS = (
+    "rotation", "rpy", "quat_xyzw", "quat_wxyz", "placement", "axis", "direction", "at", "tool", "relative_to",
+    "weight",
 )  # fmt: skip
+"""What `Target` takes beside frame and position."""
 
 
 def _rotation(

@@ -49,9 +49,12 @@ def test_any_encoding_of_stdout_is_good_enough(run_process, encoding):
     assert run_process("info", "double_pendulum_continuous", PYTHONIOENCODING=encoding).status == 0
 
 
-def test_a_reader_that_leaves_ends_nothing_noisily(environment):
+@pytest.mark.parametrize(
+    ("arguments", "status"), [([*SOLVE, "2.8"], 1), (["solve", "--help"], 0)], ids=["an answer", "the help"]
+)
+def test_a_reader_that_leaves_ends_nothing_noisily(environment, arguments, status):
     process = subprocess.Popen(
-        [sys.executable, "-m", "pinik", *SOLVE, "2.8"],
+        [sys.executable, "-m", "pinik", *arguments],
         stdout=subprocess.PIPE,
         stderr=subprocess.PIPE,
         env=environment,
@@ -59,20 +62,7 @@ def test_a_reader_that_leaves_ends_nothing_noisily(environment):
     process.stdout.close()
     err = process.stderr.read()
     process.stderr.close()
-    assert (process.wait(timeout=30), err) == (1, b"")
-
-
-def test_a_reader_of_the_help_that_leaves_ends_nothing_noisily(environment):
-    process = subprocess.Popen(
-        [sys.executable, "-m", "pinik", "solve", "--help"],
-        stdout=subprocess.PIPE,
-        stderr=subprocess.PIPE,
-        env=environment,
-    )
-    process.stdout.close()
-    err = process.stderr.read()
-    process.stderr.close()
-    assert (process.wait(timeout=30), err) == (0, b"")
+    assert (process.wait(timeout=30), err) == (status, b"")
 
 
 @pytest.mark.skipif(not os.path.exists("/dev/full"), reason="needs /dev/full")
