@@ -46,10 +46,6 @@ class Tolerance(NamedTuple):
         return cls(float(pair[0]), float(pair[1]))
 
 
-NO_DIRECTION = 1e-9
-"""[m] A frame nearer than this to the point that its axis should point at counts as pointing at it."""
-
-
 class TargetError(NamedTuple):
     """How far one target is missed; None for what it does not ask for.
 
@@ -193,6 +189,12 @@ class Target:
         """Whether a rotation, or an axis's direction, is wanted."""
         return self.rotation is not None or self.axis is not None
 
+    @property
+    def shape(self) -> tuple[object, ...]:
+        """What is asked of which frame, without the numbers that say where: equal where only these differ."""
+        parts = (self.position is not None, self.rotation is not None, self.axis is not None, self.at is not None)
+        return self.frame, self.relative_to, self.weight, self.tool, parts
+
     @classmethod
     def from_dict(cls, fields: Mapping[str, Any]) -> Target:
         """A target from its JSON form: `Target`'s own keywords, `frame` among them.
@@ -246,7 +248,6 @@ def as_targets(targets: Target | Iterable[Target]) -> tuple[Target, ...]:
     return checked
 
 
-_LIGHTEST, _HEAVIEST = 1e-3, 1e3
 TARGET_KEYWORDS = (
     "rotation", "rpy", "quat_xyzw", "quat_wxyz", "placement", "axis", "direction", "at", "tool", "relative_to",
     "weight",
