@@ -20,7 +20,7 @@ ROOT = Path(__file__).parents[1]
 SOURCE = ROOT / "src" / "pinik"
 
 # Imports against the order; each is allowed inside a function only.
-FRONTS = {("robot", "loop")}
+FRONTS = {("robot", "loop"), ("viewer", "pinik"), ("viewer", "viewer.live_view")}
 # Package → the modules that alone may import it.
 ONLY_THERE = {
     "yourdfpy": {"second_opinion"},

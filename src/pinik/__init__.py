@@ -33,6 +33,7 @@ from .solvers import (
     parameter,
 )
 from .targets import Target, TargetError, Tolerance
+from .viewer import live
 
 __version__ = "0.1.0"
 
@@ -65,6 +66,7 @@ __all__ = [
     "UrdfWarning",
     "catalog",
     "iterate",
+    "live",
     "load",
     "parameter",
     "solve",

@@ -90,13 +90,14 @@ class Kinematics:
         self.locked = tuple(robot.settable_joint(name) for name in as_names(locked, "locked"))
         self.target_jacobian = target_jacobian
         self.evaluations = 0
+        self.targets: tuple[Target, ...] = ()
         self.terms: list[TargetTerm] = []
         self.retarget(targets)
 
     def retarget(self, targets: Target | Sequence[Target]) -> None:
         """Ask for other targets; where only the places wanted differ, what was compiled is kept."""
         asked = as_targets(targets)
-        if self.terms and [t.shape for t in asked] == [t.shape for t in self.targets]:
+        if [t.shape for t in asked] == [t.shape for t in self.targets]:
             self.targets = asked
             for term, target in zip(self.terms, asked, strict=True):
                 term.target = target

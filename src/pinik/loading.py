@@ -11,7 +11,7 @@ from . import packages, robot_catalog, urdf
 from .errors import InputError, RobotLoadError, UrdfWarning
 from .robot import Robot
 
-__all__ = ["load", "locate"]
+__all__ = ["load", "load_in_silence", "locate"]
 
 
 def load(
@@ -37,6 +37,20 @@ def load(
     Warns:
         UrdfWarning: For whatever was mended or left out, and for meshes that were not found.
     """
+    robot = load_in_silence(source, root=root, package_dirs=package_dirs, mimic=mimic)
+    for words in robot.warnings:
+        warnings.warn(f"{robot.name}: {words}", UrdfWarning, stacklevel=2)
+    return robot
+
+
+def load_in_silence(
+    source: str | os.PathLike[str],
+    *,
+    root: str = "fixed",
+    package_dirs: Iterable[str | os.PathLike[str]] = (),
+    mimic: bool = True,
+) -> Robot:
+    """`load` for whoever shows `Robot.warnings` in a way of his own."""
     if isinstance(package_dirs, (str, os.PathLike)) or not isinstance(package_dirs, Iterable):
         raise InputError(f"package_dirs takes a list of folders; got {package_dirs!r}")
     folders = tuple(package_dirs)
@@ -53,8 +67,6 @@ def load(
         robot.warnings += (
             f"{count} not found ({missing[0]}{', …' if len(missing) > 1 else ''}); kinematics needs none",
         )
-    for words in robot.warnings:
-        warnings.warn(f"{robot.name}: {words}", UrdfWarning, stacklevel=2)
     return robot
 
 

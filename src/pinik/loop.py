@@ -21,7 +21,7 @@ from .solution import Solution, State
 from .solvers import JacobianSolver, Solver, make_solver
 from .targets import TARGET_KEYWORDS, Target, Tolerance
 
-__all__ = ["iterate", "solve"]
+__all__ = ["check_joint_names", "iterate", "solve"]
 
 Array = NDArray[np.float64]
 
@@ -160,12 +160,13 @@ def _kinematics(robot: Robot, targets: Target | Sequence[Target], solver: Solver
     if not isinstance(robot, Robot):
         raise InputError(f"robot is what pinik.load returns; got {robot!r}")
     at_target = isinstance(solver, JacobianSolver) and solver.target_jacobian
-    _check_joint_names(robot, solver)
+    check_joint_names(robot, solver)
     held = (*as_names(locked, "locked"), *solver.held)
     return Kinematics(robot, targets, locked=held, target_jacobian=at_target)
 
 
-def _check_joint_names(robot: Robot, solver: Solver) -> None:
+def check_joint_names(robot: Robot, solver: Solver) -> None:
+    """See that the joints which a solver's parameters name are there and can be set."""
     for value in solver.parameters.values():
         if isinstance(value, Mapping):
             for name in value:

@@ -99,6 +99,11 @@ class Robot:
         build = partial(Robot, name=self.name, root=self.root, package_dirs=self.package_dirs)
         return partial(build, mimic=self._mimic, srdf=self._srdf), (self.description,), {"warnings": self.warnings}
 
+    def with_root(self, root: str) -> Robot:
+        """The same robot, hung in the world otherwise: "fixed", "free_flyer" or "planar"."""
+        settings: dict[str, Any] = {"package_dirs": self.package_dirs, "mimic": self._mimic, "srdf": self._srdf}
+        return Robot(self.description, name=self.name, root=root, **settings)
+
     @property
     def data(self) -> Any:
         """This thread's `pinocchio.Data`, used by `placement` and `jacobian`."""

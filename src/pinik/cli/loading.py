@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 import re
-import warnings
 from collections.abc import Iterable, Sequence
 from pathlib import Path
 
-from ..errors import RobotLoadError, UnknownNameError, UrdfWarning
-from ..loading import load
+from ..errors import RobotLoadError, UnknownNameError
+from ..loading import load_in_silence
 from ..robot import Robot
 from . import output
 from .exits import CommandError, ExitStatus
@@ -25,9 +24,7 @@ def load_robot(source: str, *, root: str = "fixed", package_dirs: Sequence[Path]
     """
     check_folders(package_dirs)
     try:
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore", UrdfWarning)  # they are in robot.warnings, too
-            robot = load(source, root=root, package_dirs=package_dirs or ())
+        robot = load_in_silence(source, root=root, package_dirs=package_dirs or ())
     except (RobotLoadError, UnknownNameError, OSError) as error:
         raise CommandError(str(error), ExitStatus.NO_ROBOT) from None
     for words in one_line_a_kind(robot.warnings):

@@ -32,6 +32,7 @@ def parameter(
     unit: str = "",
     low: float | None = None,
     high: float | None = None,
+    slider: tuple[float, float] | None = None,
     choices: tuple[str, ...] = (),
     optional: bool = False,
     unbounded: bool = False,
@@ -43,6 +44,7 @@ def parameter(
         help: One line.
         unit: Such as "rad".
         low, high: The range, ends included.
+        slider: The part of the range worth trying, which a slider offers; the whole range when None.
         choices: The words allowed, for a choice.
         optional: Whether None is allowed and means something of its own.
         unbounded: Whether infinity is allowed; None stands for it, as JSON has none.
@@ -52,6 +54,7 @@ def parameter(
         "unit": unit,
         "low": low,
         "high": high,
+        "slider": slider,
         "choices": choices,
         "optional": optional,
         "unbounded": unbounded,
@@ -64,7 +67,7 @@ def parameter(
 def max_step_parameter(default: float) -> Any:
     """The clamp on a step, which methods set differently."""
     help_ = "largest change of one joint in one step"
-    return parameter(default, help_, unit="rad or m", low=1e-6, unbounded=True)
+    return parameter(default, help_, unit="rad or m", low=1e-6, slider=(0.01, 3.2), unbounded=True)
 
 
 @dataclass(frozen=True)
@@ -84,6 +87,10 @@ class Solver:
 
     name: ClassVar[str] = ""
     """Its short name in tables, on the command line and in `pinik.SOLVERS`."""
+    title: ClassVar[str] = ""
+    """Its name in full; the short one where it has none."""
+    about: ClassVar[str] = ""
+    """What it is good for, in one line."""
     max_iterations: ClassVar[int] = 100
     """Iterations of one attempt, unless `solve` is told otherwise."""
     restarts: ClassVar[int] = 30
@@ -93,7 +100,12 @@ class Solver:
 
     max_step: float = max_step_parameter(math.inf)
     max_residual: float = parameter(
-        math.inf, "D_max: the part of a position residual used", unit="m", low=1e-6, unbounded=True
+        math.inf,
+        "D_max: the part of a position residual used",
+        unit="m",
+        low=1e-6,
+        slider=(0.01, 1.0),
+        unbounded=True,
     )
 
     def __init_subclass__(cls) -> None:
@@ -101,6 +113,8 @@ class Solver:
         super().__init_subclass__()
         if not cls.name and "name" not in vars(cls):
             cls.name = cls.__name__
+        if "name" in vars(cls) and "title" not in vars(cls):
+            cls.title, cls.about = cls.name, ""
 
     def __post_init__(self) -> None:
         """Check every parameter against its field's range.
@@ -142,7 +156,9 @@ class JacobianSolver(Solver, ABC):
 
     name = ""
 
-    step_size: float = parameter(1.0, "factor on the step, after its clamp (the thesis's α)", low=1e-6, high=2.0)
+    step_size: float = parameter(
+        1.0, "factor on the step, after its clamp (the thesis's α)", low=1e-6, high=2.0, slider=(0.01, 2.0)
+    )
     target_jacobian: bool = parameter(False, "take the Jacobian at the target instead of the effector (eq. 3.9)")
 
     @abstractmethod

@@ -49,6 +49,8 @@ class CCD(SweepingSolver):
     """
 
     name = "ccd"
+    title = "Cyclic coordinate descent"
+    about = "joint after joint, each to its own optimum; leaves straight arms that stop the others"
     max_iterations = 2000
     restarts = 30
     patience = Patience(30, 0.05)
@@ -61,9 +63,12 @@ class CCD(SweepingSolver):
         "ω: factor on every joint's best change; None: 1, or 1.7 for poses",
         low=0.01,
         high=1.99,
+        slider=(0.1, 1.99),
         optional=True,
     )
-    position_weight: float = parameter(15.0, "k: weight of position against orientation", low=1e-6, high=1e6)
+    position_weight: float = parameter(
+        15.0, "k: weight of position against orientation", low=1e-6, high=1e6, slider=(0.1, 1e3)
+    )
     scaling: str = parameter(
         "area",
         "α = k/W² (area), so that scale does not matter, or k/W (printed)",

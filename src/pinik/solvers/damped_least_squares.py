@@ -40,17 +40,21 @@ class DampedLeastSquares(JacobianSolver):
     """
 
     name = "dls"
+    title = "Damped least squares"
+    about = "the default; careful near singular configurations"
     max_iterations = 200
     restarts = 60
     patience = Patience(3, 0.05)
 
-    damping: float = parameter(math.sqrt(0.5), "λ, or what the rule makes λ from", low=1e-9, high=100.0)
+    damping: float = parameter(
+        math.sqrt(0.5), "λ, or what the rule makes λ from", low=1e-9, high=100.0, slider=(1e-3, 10.0)
+    )
     rule: str = parameter(
         "residual",
         "how λ follows the situation",
         choices=("constant", "residual", "sugihara", "manipulability"),
     )
-    manipulability: float = parameter(0.05, "w₀ of the manipulability rule", low=1e-9)
+    manipulability: float = parameter(0.05, "w₀ of the manipulability rule", low=1e-9, slider=(1e-3, 1.0))
     factorization: str = parameter("ldlt", "how the system is solved", choices=("ldlt", "svd"))
 
     def direction(self, J: Array, e: Array, residual: float | None = None) -> Array:

@@ -29,12 +29,16 @@ class PseudoInverse(JacobianSolver):
     """
 
     name = "pinv"
+    title = "Pseudo-inverse"
+    about = "few steps away from singular configurations, wild near them"
     max_iterations = 200
     restarts = 60
     patience = Patience(6, 0.05)
 
     max_step: float = max_step_parameter(0.5)
-    cutoff: float = parameter(1e-3, "singular values below this part of the largest are dropped", low=0.0, high=0.5)
+    cutoff: float = parameter(
+        1e-3, "singular values below this part of the largest are dropped", low=0.0, high=0.5, slider=(0.0, 0.2)
+    )
     rest_posture: Mapping[str, float] = parameter({}, "joint angles to tend to in the null space", unit="rad or m")
     rest_gain: float = parameter(0.1, "part of the way to the rest posture taken in one step", low=0.0, high=1.0)
 

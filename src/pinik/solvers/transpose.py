@@ -22,13 +22,15 @@ class JacobianTranspose(JacobianSolver):
     """
 
     name = "jt"
+    title = "Jacobian transpose"
+    about = "the cheapest step, no system to solve; needs many of them"
     max_iterations = 1000
     restarts = 20
     patience = Patience(50, 0.02)
 
     max_step: float = max_step_parameter(0.5)
     alpha: float | None = parameter(
-        None, "α; None takes the optimal one in every step", low=1e-6, high=1e3, optional=True
+        None, "α; None takes the optimal one in every step", low=1e-6, high=1e3, slider=(1e-2, 10.0), optional=True
     )
 
     def direction(self, J: Array, e: Array) -> Array:

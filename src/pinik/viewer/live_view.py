@@ -1,0 +1,213 @@
+"""The handle of a live view: a server in a thread of this process, for scripts, notebooks and the command line."""
+
+from __future__ import annotations
+
+import asyncio
+import html
+import json
+import os
+import socket
+import threading
+import webbrowser
+from collections.abc import Callable, Iterable
+from concurrent.futures import Future, ThreadPoolExecutor
+from pathlib import Path
+from types import TracebackType
+from typing import Any, TypeVar
+
+import tornado.httpserver
+import tornado.ioloop
+import tornado.netutil
+from numpy.typing import ArrayLike, NDArray
+
+from .. import errors
+from ..robot import Robot
+from ..solvers import Solver
+from .server import later_in_threads, make_application
+from .session import STEPS_PER_SECOND, Session
+from .show import Show
+
+__all__ = ["LiveView"]
+
+T = TypeVar("T")
+
+_PORTS = range(7007, 7027)
+_NOTEBOOK_HEIGHT = 640  # pixels
+
+
+class LiveView:
+    """A running live view. A context manager: leaving it frees the port.
+
+    In a notebook it shows itself as a frame. What the page can change, `send` can: every row of the table in
+    docs/live-protocol.md is a message, as in `view.send("motion", motion="random")`.
+
+    Attributes:
+        url: Where the page is.
+        port: The port it listens on.
+    """
+
+    def __init__(
+        self,
+        robot: Robot,
+        methods: Iterable[str | type[Solver] | Solver],
+        *,
+        view: int | None,
+        port: int | None,
+        host: str,
+        motion: str,
+        running: bool,
+        version: str,
+    ) -> None:
+        """Start the server; `pinik.live` explains the arguments."""
+        session = Session(robot, methods, view=view)
+        session.set_motion(motion)
+        session.running = running
+        sockets = _bind(host, port)
+        self.port: int = sockets[0].getsockname()[1]
+        self.url = f"http://{_addressed(host)}:{self.port}/"
+        self._workers = ThreadPoolExecutor(2, thread_name_prefix="pinik-live-worker")
+        self._closed = threading.Event()
+        ready: Future[tuple[tornado.ioloop.IOLoop, Show]] = Future()
+        arguments = (session, host, sockets, version, ready)
+        self._thread = threading.Thread(target=self._serve, args=arguments, name="pinik-live", daemon=True)
+        self._thread.start()
+        self._loop, self._show = ready.result()
+
+    def _serve(
+        self, session: Session, host: str, sockets: list[socket.socket], version: str, ready: Future[Any]
+    ) -> None:
+        """The thread: everything that touches the session happens here, one thing after another."""
+        asyncio.set_event_loop(asyncio.new_event_loop())
+        loop = tornado.ioloop.IOLoop.current()
+        try:
+            show = Show(session, later_in_threads(loop, self._workers), version)
+            server = tornado.httpserver.HTTPServer(make_application(show, host))
+        except BaseException as error:
+            for listening in sockets:
+                listening.close()
+            ready.set_exception(error)
+            return
+        server.add_sockets(sockets)
+        clock = tornado.ioloop.PeriodicCallback(show.tick, 1000.0 / STEPS_PER_SECOND)
+        clock.start()
+        loop.add_callback(ready.set_result, (loop, show))
+        loop.start()
+        clock.stop()
+        server.stop()
+        loop.run_sync(server.close_all_connections, timeout=2.0)
+        loop.close(all_fds=True)
+
+    def __repr__(self) -> str:
+        return f"<LiveView of {self._show.session.robot.name!r}: {'closed' if self._closed.is_set() else self.url}>"
+
+    def __enter__(self) -> LiveView:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, where: TracebackType | None
+    ) -> None:
+        self.close()
+
+    def _repr_html_(self) -> str:
+        """What a notebook shows: the page in a frame."""
+        if self._closed.is_set():
+            return html.escape(repr(self))
+        style = f"width: 100%; height: {_NOTEBOOK_HEIGHT}px; border: 0"
+        return f'<iframe src="{self.url}" title="pinik live view" style="{style}"></iframe>'
+
+    def close(self) -> None:
+        """Stop the server and free the port; a second time does nothing."""
+        if self._closed.is_set():
+            return
+        self._closed.set()
+        self._loop.add_callback(self._loop.stop)
+        self._thread.join()
+        self._workers.shutdown(wait=False, cancel_futures=True)
+
+    def wait(self) -> None:
+        """Block until the view is closed, or until Ctrl-C."""
+        self._thread.join()
+
+    def open(self) -> bool:
+        """Show the page in the browser; False where there is none."""
+        return webbrowser.open(self.url)
+
+    def send(self, type: str, **fields: Any) -> None:
+        """Ask what a page could ask, such as `send("method", instance=0, method="ccd")`.
+
+        Raises:
+            InputError, UnknownNameError: As a page would be told.
+        """
+        message = json.loads(json.dumps({"type": type, **fields}, default=_plain))
+        self._do(lambda: self._show.do(message))
+
+    def move_ball(self, position: ArrayLike, index: int = 0) -> None:
+        """Put a ball at a point (3,) [m] of the robot's world; from then on balls move by hand."""
+        self.send("ball", index=index, position=list(map(float, position)))  # type: ignore[arg-type]
+
+    @property
+    def robot(self) -> Robot:
+        """The robot that is shown."""
+        return self._show.session.robot
+
+    @property
+    def state(self) -> dict[str, Any]:
+        """What `GET /api/state` answers; docs/live-protocol.md explains the fields."""
+        return self._do(self._show.state)
+
+    @property
+    def configurations(self) -> list[NDArray[Any]]:
+        """q (nq,) of each instance that is seen."""
+        return self._do(lambda: [instance.q for instance in self._show.session.seen])
+
+    def save_animation(self, path: str | os.PathLike[str]) -> None:
+        """Write the last 20 seconds as one HTML file, which plays without a server."""
+        Path(path).write_text(self._do(self._show.animation), "utf-8")
+
+    def _do(self, work: Callable[[], T]) -> T:
+        """Do it in the server's thread, between two steps, and wait for it."""
+        if self._closed.is_set():
+            raise errors.InputError("this live view is closed; pinik.live(...) opens another")
+        done: Future[T] = Future()
+
+        def run() -> None:
+            try:
+                done.set_result(work())
+            except BaseException as error:
+                done.set_exception(error)
+
+        self._loop.add_callback(run)
+        return done.result()
+
+
+def _plain(value: Any) -> Any:
+    """Arrays and numpy's numbers as JSON has them."""
+    if hasattr(value, "tolist"):
+        return value.tolist()
+    raise errors.InputError(f"a message holds plain numbers, texts and lists; got {value!r}")
+
+
+def _addressed(host: str) -> str:
+    """How a browser on this machine addresses a server that listens on `host`."""
+    if host in ("", "0.0.0.0", "::"):
+        return "127.0.0.1"
+    return f"[{host}]" if ":" in host else host
+
+
+def _bind(host: str, port: int | None) -> list[socket.socket]:
+    """Listen on a port, or on the first free one of ours when None.
+
+    Raises:
+        InputError: The port is taken, is none, or there is no such address here.
+    """
+    if port is not None and not 0 <= port <= 65535:
+        raise errors.InputError(f"a port is a number from 0 to 65535; got {port}")
+    for candidate in (*_PORTS, 0) if port is None else (port,):
+        try:
+            sockets = tornado.netutil.bind_sockets(candidate, address=host)
+        except OSError as error:
+            fault = error
+            continue
+        return sockets
+    hint = "; leave the port out and pinik finds a free one" if port else ""
+    raise errors.InputError(f"cannot listen on {host}, port {port}: {fault.strerror or fault}{hint}")

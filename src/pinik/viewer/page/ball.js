@@ -1,0 +1,95 @@
+/** One copy of a ball: a glossy sphere that is chased, or a pin where a frame is held. */
+
+import { THREE } from "pinik/three.js";
+
+const SPHERE = new THREE.SphereGeometry(1, 40, 28);
+const NEEDLE = new THREE.ConeGeometry(0.22, 2, 20).rotateX(-Math.PI / 2).translate(0, 0, 1); // its tip at the origin
+const HEAD = new THREE.SphereGeometry(0.8, 32, 20).translate(0, 0, 2.3);
+const AXIS = new THREE.CylinderGeometry(0.13, 0.13, 3, 12).translate(0, 1.5, 0);
+const ARROW = new THREE.ConeGeometry(0.34, 0.8, 16).translate(0, 3.2, 0);
+// The arms are drawn along y; these turns about z and x [rad] make x and z of two of them.
+const AXES = [
+    { color: "#e5484d", z: -Math.PI / 2, x: 0 },
+    { color: "#3d9a50", z: 0, x: 0 },
+    { color: "#3b7ddd", z: 0, x: Math.PI / 2 },
+];
+
+export class Ball {
+    constructor(radius) {
+        this.group = new THREE.Group();
+        this.group.scale.setScalar(radius);
+        this._skin = new THREE.MeshPhongMaterial({ shininess: 110, specular: 0x666666 });
+        this._pinSkin = new THREE.MeshPhongMaterial({ shininess: 90, specular: 0x555555 });
+        this._sphere = mesh(SPHERE, this._skin);
+        this._pin = new THREE.Group();
+        this._pin.add(mesh(NEEDLE, this._pinSkin), mesh(HEAD, this._pinSkin));
+        this._triad = triad();
+        this._halo = halo();
+        this.group.add(this._sphere, this._pin, this._triad, this._halo);
+    }
+
+    /** @param ball of the state; `selected` and `near` (under the pointer) as well */
+    show({ mode, oriented }, selected, near) {
+        this.group.visible = mode !== "off";
+        this._sphere.visible = mode === "on";
+        this._pin.visible = mode === "pinned";
+        this._triad.visible = oriented;
+        this._halo.visible = selected || near;
+        this._halo.material.opacity = near ? 1 : 0.75;
+    }
+
+    paint(theme) {
+        this._skin.color.set(theme.color("ball")).convertSRGBToLinear();
+        this._pinSkin.color.set(theme.color("pin")).convertSRGBToLinear();
+        this._halo.material.color.set(theme.color("halo")).convertSRGBToLinear();
+    }
+
+    place(x, y, z, quaternion) {
+        this.group.position.set(x, y, z);
+        this._triad.quaternion.copy(quaternion);
+    }
+
+    dispose() {
+        this.group.parent?.remove(this.group);
+        this._skin.dispose();
+        this._pinSkin.dispose();
+        this._halo.material.dispose();
+    }
+}
+
+function mesh(geometry, material) {
+    const made = new THREE.Mesh(geometry, material);
+    made.castShadow = true;
+    return made;
+}
+
+function triad() {
+    const group = new THREE.Group();
+    for (const { color, x, z } of AXES) {
+        const material = new THREE.MeshLambertMaterial({ color: new THREE.Color(color).convertSRGBToLinear() });
+        const arm = new THREE.Group();
+        arm.add(mesh(AXIS, material), mesh(ARROW, material));
+        arm.rotation.set(x, 0, z);
+        group.add(arm);
+    }
+    return group;
+}
+
+let ringMap = null;
+
+function halo() {
+    if (!ringMap) {
+        const canvas = Object.assign(document.createElement("canvas"), { width: 128, height: 128 });
+        const pen = canvas.getContext("2d");
+        pen.lineWidth = 7;
+        pen.strokeStyle = "#fff";
+        pen.beginPath();
+        pen.arc(64, 64, 56, 0, 2 * Math.PI);
+        pen.stroke();
+        ringMap = new THREE.CanvasTexture(canvas);
+    }
+    const sprite = new THREE.Sprite(new THREE.SpriteMaterial({ map: ringMap, depthTest: false, depthWrite: false, transparent: true }));
+    sprite.scale.setScalar(3.4);
+    sprite.renderOrder = 6;
+    return sprite;
+}

@@ -1,0 +1,55 @@
+/** Where the balls are: where the session has them, or where the visitor's hand holds them meanwhile. */
+
+import { THREE } from "pinik/three.js";
+
+const HOLD = 250; // [ms] after the hand let go in which the session catches up
+
+export class Balls {
+    constructor() {
+        this._places = [];
+        this._held = new Map();
+    }
+
+    get count() {
+        return this._places.length;
+    }
+
+    /** Take them from a frame, but for those in a hand. */
+    take(frame) {
+        while (this._places.length < frame.balls) {
+            this._places.push({ position: new THREE.Vector3(), quaternion: new THREE.Quaternion() });
+        }
+        this._places.length = frame.balls;
+        this._places.forEach(({ position, quaternion }, k) => {
+            const numbers = frame.ball(k);
+            quaternion.fromArray(numbers, 3);
+            if (!this._isHeld(k)) position.fromArray(numbers);
+        });
+    }
+
+    get places() {
+        return this._places;
+    }
+
+    _isHeld(k) {
+        const until = this._held.get(k);
+        if (until === undefined) return false;
+        if (performance.now() < until) return true;
+        this._held.delete(k);
+        return false;
+    }
+
+    /** Put one somewhere; frames do not move it until it was let go of. */
+    hold(k, position) {
+        this._held.set(k, Infinity);
+        this._places[k]?.position.copy(position);
+    }
+
+    letGo(k) {
+        if (this._held.has(k)) this._held.set(k, performance.now() + HOLD);
+    }
+
+    forget() {
+        this._held.clear();
+    }
+}

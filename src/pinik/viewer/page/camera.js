@@ -1,0 +1,118 @@
+/** The camera: presets, a view of everything, and smooth ways between them. */
+
+import { axesOf } from "pinik/framing.js";
+import { arrange } from "pinik/layout.js";
+import { THREE } from "pinik/three.js";
+
+export const PRESETS = {
+    iso: { title: "Angle", azimuth: -0.6, elevation: 0.28 },
+    front: { title: "Front", azimuth: 0, elevation: 0.12 },
+    side: { title: "Side", azimuth: -Math.PI / 2, elevation: 0.12 },
+    top: { title: "Top", azimuth: 0, elevation: Math.PI / 2 - 0.01 },
+};
+
+const GLIDE = 480; // [ms]
+const MARGIN = { left: 20, right: 20, top: 52, bottom: 64 }; // [px] for buttons and labels
+
+export class Camera extends EventTarget {
+    constructor(stage) {
+        super();
+        this._stage = stage;
+        this._glide = null;
+        this.preset = "iso";
+        this.moved = false;
+        this.offsets = [];
+        this._calm = matchMedia("(prefers-reduced-motion: reduce)");
+        stage.viewer.controls.addEventListener("start", () => {
+            this._glide = null;
+            this.moved = true;
+        });
+        stage.onTick((now) => this._advance(now));
+    }
+
+    get _lens() {
+        const { width, height, viewer } = this._stage;
+        const half = Math.tan((viewer.camera.fov * Math.PI) / 360);
+        const scale = (2 * half) / height; // tangent a pixel
+        const part = (size, margin) => Math.max(size / 2 - Math.min(margin, size / 5), 10) * scale;
+        return {
+            left: part(width, MARGIN.left),
+            right: part(width, MARGIN.right),
+            top: part(height, MARGIN.top),
+            bottom: part(height, MARGIN.bottom),
+        };
+    }
+
+    /** Arrange `count` instances of points (of one instance, Vector3s) and look at them all. */
+    frame(points, count, preset = this.preset, smoothly = true) {
+        if (!points.length || !this._stage.width) return;
+        this.preset = preset;
+        this.moved = false;
+        const arranged = arrange(points, count, PRESETS[preset], this._lens);
+        const sphere = new THREE.Sphere().setFromPoints(arranged.everything);
+        this._stage.lights.aim(sphere.center, 1.05 * sphere.radius, arranged.view.azimuth);
+        this.sphere = sphere;
+        const goal = { ...arranged.view, target: arranged.camera.target, distance: arranged.camera.distance, offsets: arranged.offsets };
+        const began = smoothly && !this._calm.matches && this.offsets.length === count ? performance.now() : -Infinity;
+        this._glide = { from: this._now(), to: goal, began };
+        this.dispatchEvent(new Event("framed"));
+        this._stage.touch();
+    }
+
+    /** Where the camera is, in the scene's axes. */
+    _now() {
+        const { camera, controls } = this._stage.viewer;
+        const back = zUp(camera.position).sub(zUp(controls.target));
+        const distance = back.length();
+        return {
+            azimuth: Math.atan2(back.y, back.x),
+            elevation: Math.asin(Math.min(1, back.z / distance)),
+            distance,
+            target: zUp(controls.target),
+            offsets: this.offsets,
+        };
+    }
+
+    _advance(now) {
+        if (!this._glide) return;
+        const { from, to, began } = this._glide;
+        const part = Math.min(1, Math.max(0, (now - began) / GLIDE));
+        const eased = part === 1 ? 1 : 1 - (1 - part) ** 3;
+        const mix = (a, b) => a + (b - a) * eased;
+        const turn = ((((to.azimuth - from.azimuth) % (2 * Math.PI)) + 3 * Math.PI) % (2 * Math.PI)) - Math.PI;
+        this._put({
+            azimuth: from.azimuth + turn * eased,
+            elevation: mix(from.elevation, to.elevation),
+            distance: Math.exp(mix(Math.log(from.distance), Math.log(to.distance))),
+            target: from.target.clone().lerp(to.target, eased),
+        });
+        this.offsets = to.offsets.map((offset, k) => (from.offsets[k] ?? offset).clone().lerp(offset, eased));
+        this.dispatchEvent(new Event("offsets"));
+        if (part === 1) this._glide = null;
+    }
+
+    _put({ azimuth, elevation, distance, target }) {
+        const { camera, controls } = this._stage.viewer;
+        const { ahead } = axesOf({ azimuth, elevation });
+        controls.target.copy(yUp(target));
+        camera.position.copy(yUp(target.clone().addScaledVector(ahead, -distance)));
+        this._stage.touch();
+    }
+
+    /** The world's axes nearest to the picture's right and away from the viewer, as unit vectors, z up. */
+    get levelAxes() {
+        const { azimuth } = this._now();
+        const snapped = Math.round(azimuth / (Math.PI / 2)) * (Math.PI / 2);
+        const round = (x, y) => [Math.round(x), Math.round(y), 0];
+        return { right: round(-Math.sin(snapped), Math.cos(snapped)), away: round(-Math.cos(snapped), -Math.sin(snapped)) };
+    }
+}
+
+/** The camera lives in a world with y up, the robots in one with z up. */
+function zUp({ x, y, z }) {
+    return new THREE.Vector3(x, -z, y);
+}
+
+function yUp({ x, y, z }) {
+    return new THREE.Vector3(x, z, -y);
+}

@@ -1,0 +1,58 @@
+/** The websocket to the server: comes back by itself, and sends no more than the newest of what changes quickly. */
+
+const FIRST_DELAY = 300; // [ms]
+const LONGEST_DELAY = 4000;
+
+export class Connection {
+    /** @param handlers onText(message), onBinary(ArrayBuffer), onOpen(), onClose() */
+    constructor(handlers) {
+        this._handlers = handlers;
+        this._delay = FIRST_DELAY;
+        this._waiting = new Map();
+        this._connect();
+    }
+
+    get open() {
+        return this._socket.readyState === WebSocket.OPEN;
+    }
+
+    _connect() {
+        const scheme = location.protocol === "https:" ? "wss" : "ws";
+        const socket = new WebSocket(`${scheme}://${location.host}/ws`);
+        socket.binaryType = "arraybuffer";
+        socket.onopen = () => {
+            this._delay = FIRST_DELAY;
+            this._handlers.onOpen();
+        };
+        socket.onmessage = ({ data }) => {
+            if (typeof data === "string") this._handlers.onText(JSON.parse(data));
+            else this._handlers.onBinary(data);
+        };
+        socket.onclose = () => {
+            this._handlers.onClose();
+            setTimeout(() => this._connect(), this._delay);
+            this._delay = Math.min(2 * this._delay, LONGEST_DELAY);
+        };
+        this._socket = socket;
+    }
+
+    /** Send now; what cannot be sent is dropped, since the server says anew how things are when it is back. */
+    send(message) {
+        if (this.open) this._socket.send(JSON.stringify(message));
+    }
+
+    /** Send the first at once and, of those that follow within a frame, the last. */
+    sendNewest(key, message) {
+        if (this._waiting.has(key)) {
+            this._waiting.set(key, message);
+            return;
+        }
+        this.send(message);
+        this._waiting.set(key, null);
+        requestAnimationFrame(() => {
+            const last = this._waiting.get(key);
+            this._waiting.delete(key);
+            if (last) this.sendNewest(key, last);
+        });
+    }
+}

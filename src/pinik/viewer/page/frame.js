@@ -1,0 +1,64 @@
+/** One frame of the session, as docs/live-protocol.md lays it out; views into its numbers, no copies. */
+
+const MAGIC = [0x50, 0x4e, 0x4b, 0x46]; // "PNKF"
+const HEAD = 5;
+const PLACEMENT = 7;
+const FIGURES = 8;
+
+/** Whether binary data is a frame and not a command of meshcat. */
+export function isFrame(bytes) {
+    return MAGIC.every((byte, k) => bytes[k] === byte);
+}
+
+export class Frame {
+    /** @param {ArrayBuffer} buffer with or without the four bytes in front */
+    constructor(buffer) {
+        const start = isFrame(new Uint8Array(buffer, 0, 4)) ? 4 : 0;
+        const numbers = new Float32Array(buffer, start);
+        [this.generation, this.step, this.instances, this.joints, this.balls] = numbers;
+        this.numbers = numbers;
+        this._first = HEAD + PLACEMENT * this.balls;
+        this._stride = FIGURES + (PLACEMENT + 1) * this.joints + 3 * this.balls;
+    }
+
+    _part(instance, offset, size) {
+        const start = this._first + instance * this._stride + offset;
+        return this.numbers.subarray(start, start + size);
+    }
+
+    /** x, y, z, qx, qy, qz, qw of a ball. */
+    ball(k) {
+        return this.numbers.subarray(HEAD + PLACEMENT * k, HEAD + PLACEMENT * (k + 1));
+    }
+
+    figures(instance) {
+        const [status, positionError, orientationError, seconds, iterations, jointUpdates, jump, counted] =
+            this._part(instance, 0, FIGURES);
+        return { status, positionError, orientationError, seconds, iterations, jointUpdates, jump, counted: counted > 0 };
+    }
+
+    /** Seven numbers a joint, in the world. */
+    placements(instance) {
+        return this._part(instance, FIGURES, PLACEMENT * this.joints);
+    }
+
+    /** −1, 0, +1 a joint, or 2 where it has only one value. */
+    sides(instance) {
+        return this._part(instance, FIGURES + PLACEMENT * this.joints, this.joints);
+    }
+
+    /** Where the frames are that chase the balls, three numbers a ball. */
+    points(instance) {
+        return this._part(instance, FIGURES + (PLACEMENT + 1) * this.joints, 3 * this.balls);
+    }
+
+    /** Whether both show the same picture, whatever their step. */
+    looksLike(other) {
+        if (!other || other.numbers.length !== this.numbers.length) return false;
+        const same = (a, b) => a === b || (Number.isNaN(a) && Number.isNaN(b));
+        for (let k = 0; k < this.numbers.length; k++) {
+            if (k !== 1 && !same(this.numbers[k], other.numbers[k])) return false;
+        }
+        return true;
+    }
+}

@@ -1,0 +1,112 @@
+/** Dragging a ball with the mouse or a finger: in the picture's plane, with Shift level with the ground. */
+
+import { THREE } from "pinik/three.js";
+
+const REACH = { mouse: 18, pen: 22, touch: 34 }; // [px] around a ball's middle, on top of its radius
+
+export class Grab {
+    /**
+     * @param show the scene
+     * @param handlers onGrab(k), onMove(k, [x, y, z]), onHover(k or null)
+     */
+    constructor(show, handlers) {
+        this._show = show;
+        this._handlers = handlers;
+        this._held = null;
+        const { element } = show.stage;
+        const capture = { capture: true };
+        element.addEventListener("pointerdown", (event) => this._down(event), capture);
+        element.addEventListener("pointermove", (event) => this._move(event), capture);
+        for (const name of ["pointerup", "pointercancel", "lostpointercapture"]) {
+            element.addEventListener(name, (event) => this._up(event), capture);
+        }
+        element.addEventListener("pointerleave", () => this._hover(null));
+    }
+
+    get holding() {
+        return this._held !== null;
+    }
+
+    /** The nearest ball's copy within reach of a pointer: {k, instance}, or null. */
+    _find(event) {
+        const { x, y } = this._local(event);
+        let found = null;
+        for (const { k, instance, at, radius } of this._show.ballsOnScreen()) {
+            const away = Math.hypot(at.x - x, at.y - y);
+            const reach = radius + (REACH[event.pointerType] ?? REACH.mouse);
+            if (!at.behind && away < reach && (!found || away < found.away)) found = { k, instance, away };
+        }
+        return found;
+    }
+
+    _local(event) {
+        const box = this._show.stage.element.getBoundingClientRect();
+        return { x: event.clientX - box.left, y: event.clientY - box.top, width: box.width, height: box.height };
+    }
+
+    _down(event) {
+        if (event.button !== 0 || this._held || event.target !== this._show.stage.canvas) return;
+        const found = this._find(event);
+        if (!found) return;
+        event.stopPropagation();
+        event.preventDefault();
+        const start = this._show.ballInWorld(found.k, found.instance);
+        this._held = { ...found, pointer: event.pointerId, start, shift: null, position: start.clone() };
+        // meshcat's camera must not turn while a ball is in the hand.
+        this._show.stage.viewer.controls.enabled = false;
+        this._show.stage.element.setPointerCapture(event.pointerId);
+        this._show.stage.element.classList.add("grabbing");
+        this._handlers.onGrab(found.k);
+    }
+
+    _move(event) {
+        if (!this._held) {
+            if (event.buttons === 0) this._hover(this._find(event)?.k ?? null);
+            return;
+        }
+        if (event.pointerId !== this._held.pointer) return;
+        event.stopPropagation();
+        const position = this._dragged(event);
+        if (!position) return;
+        this._held.position = position;
+        const inRobot = position.clone().sub(this._show.offset(this._held.instance));
+        this._show.holdBall(this._held.k, inRobot);
+        this._handlers.onMove(this._held.k, inRobot.toArray());
+    }
+
+    /** Where the pointer's ray meets the plane that the ball is dragged in; the scene's axes, z up. */
+    _dragged(event) {
+        const held = this._held;
+        const { camera, scene } = this._show.stage.viewer;
+        const { x, y, width, height } = this._local(event);
+        const pointer = new THREE.Vector2((2 * x) / width - 1, 1 - (2 * y) / height);
+        const inverse = scene.matrixWorld.clone().invert();
+        if (held.shift !== event.shiftKey) {
+            // The plane goes through the ball and the ray keeps its distance to it, so that nothing jumps.
+            held.shift = event.shiftKey;
+            const at = this._show.stage.project(held.position);
+            held.slip = new THREE.Vector2((2 * at.x) / width - 1, 1 - (2 * at.y) / height).sub(pointer);
+            const normal = event.shiftKey ? new THREE.Vector3(0, 0, 1) : camera.getWorldDirection(new THREE.Vector3()).transformDirection(inverse);
+            held.plane = new THREE.Plane().setFromNormalAndCoplanarPoint(normal, held.position);
+        }
+        const caster = new THREE.Raycaster();
+        caster.setFromCamera(pointer.add(held.slip), camera);
+        const met = caster.ray.applyMatrix4(inverse).intersectPlane(held.plane, new THREE.Vector3());
+        const limit = 4 * this._show.camera.sphere.radius;
+        return met && met.distanceTo(this._show.camera.sphere.center) < limit ? met : null;
+    }
+
+    _up(event) {
+        if (!this._held || event.pointerId !== this._held.pointer) return;
+        const { k } = this._held;
+        this._held = null;
+        this._show.stage.viewer.controls.enabled = true;
+        this._show.stage.element.classList.remove("grabbing");
+        this._show.letGoOfBall(k);
+    }
+
+    _hover(k) {
+        this._show.stage.element.classList.toggle("over-ball", k !== null);
+        this._handlers.onHover(k);
+    }
+}

@@ -1,0 +1,120 @@
+/** One of the robots side by side, with its copies of the balls and curves and its effectors' trails. */
+
+import { Ball } from "pinik/ball.js";
+import { Ribbon } from "pinik/ribbon.js";
+import { Robot } from "pinik/robot.js";
+import { THREE } from "pinik/three.js";
+import { Trail } from "pinik/trail.js";
+
+const CURVE_POINTS = 129;
+
+export class Instance {
+    constructor(scene, index, theme) {
+        this.group = new THREE.Group();
+        this._index = index;
+        this._theme = theme;
+        this._sets = [];
+        this._limited = new Set();
+        this.robot = null;
+        scene.add(this.group);
+    }
+
+    /** Another robot, or its shapes at last. */
+    setRobot(robot, parts) {
+        this.robot?.dispose();
+        this.robot = new Robot(robot, parts, this._theme.color(`instance-${this._index}`));
+        this._size = robot.size;
+        this._joints = robot.joints.length;
+        this.group.add(this.robot.group);
+    }
+
+    /** As many balls as the state has, shown as it says. */
+    setState(state, radius, selected, near) {
+        const { balls } = state;
+        this._limited = new Set(state.instances[this._index]?.active_limits);
+        this._tolerance = state.tolerance.position;
+        if (this._sets.length !== balls.length || this._radius !== radius) {
+            this._clearBalls();
+            this._radius = radius;
+            this._sets = balls.map(() => this._makeSet(radius));
+            this.paint();
+        }
+        balls.forEach((ball, k) => {
+            const set = this._sets[k];
+            set.mode = ball.mode;
+            set.ball.show(ball, k === selected, k === near);
+            this._layCurve(set, ball.curve);
+        });
+    }
+
+    _makeSet(radius) {
+        const set = {
+            ball: new Ball(radius),
+            curve: new Ribbon({ capacity: CURVE_POINTS, width: 2.6, opacity: 0.75 }),
+            gap: new Ribbon({ capacity: 2, width: 2.2, opacity: 0.8 }),
+            trail: new Trail(),
+            laid: "",
+        };
+        this.group.add(set.ball.group, set.curve.mesh, set.gap.mesh, set.trail.mesh);
+        return set;
+    }
+
+    _layCurve(set, curve) {
+        const laid = [curve.length, ...(curve[0] ?? []), ...(curve[1] ?? []), ...(curve[40] ?? [])].join();
+        if (laid === set.laid) return;
+        set.laid = laid;
+        const closed = curve.length ? [...curve, curve[0]].slice(0, CURVE_POINTS) : [];
+        set.curve.set(closed.flat(), closed.length);
+    }
+
+    paint() {
+        const own = this._theme.color(`instance-${this._index}`);
+        for (const { ball, curve, gap, trail } of this._sets) {
+            ball.paint(this._theme);
+            curve.color = this._theme.color("curve");
+            gap.color = own;
+            trail.color = own;
+        }
+    }
+
+    /** @param places for each ball {position: Vector3, quaternion: Quaternion} */
+    update(frame, places) {
+        if (this.robot && frame.joints === this._joints) this.robot.update(frame, this._index, this._limited);
+        const points = frame.points(this._index);
+        this._sets.forEach(({ ball, gap, trail, mode }, k) => {
+            const { position, quaternion } = places[k];
+            const [x, y, z] = points.subarray(3 * k, 3 * k + 3);
+            ball.place(position.x, position.y, position.z, quaternion);
+            if (mode === "off") {
+                trail.clear();
+                gap.set([], 0);
+                return;
+            }
+            trail.add(x, y, z);
+            const away = Math.hypot(position.x - x, position.y - y, position.z - z);
+            const visible = away > Math.max(1.1 * this._radius, this._tolerance);
+            gap.set([x, y, z, position.x, position.y, position.z], visible ? 2 : 0);
+        });
+    }
+
+    get fading() {
+        return this._sets.some(({ trail }) => trail.fading);
+    }
+
+    clearTrails() {
+        for (const { trail } of this._sets) trail.clear();
+    }
+
+    _clearBalls() {
+        for (const { ball, curve, gap, trail } of this._sets) {
+            for (const part of [ball, curve, gap, trail]) part.dispose();
+        }
+        this._sets = [];
+    }
+
+    dispose() {
+        this._clearBalls();
+        this.robot?.dispose();
+        this.group.parent.remove(this.group);
+    }
+}

@@ -1,0 +1,44 @@
+/** Where the instances stand: in a row, or two by two, whichever shows them larger. */
+
+import { axesOf, fit } from "pinik/framing.js";
+import { THREE } from "pinik/three.js";
+
+const GAP = 0.12; // between neighbours, of their width
+const OVERLAP = 0.55; // of its height that a robot of the front row may hide behind it
+
+/** Arrange `count` copies of points (Vector3s) seen in a view: {offsets, view, camera}, camera as `fit` returns it. */
+export function arrange(points, count, view, lens) {
+    const grids = count === 4 ? [[4, view], [2, { ...view, elevation: Math.max(view.elevation, 0.5) }]] : [[count, view]];
+    if (count === 2) grids.push([1, { ...view, elevation: Math.max(view.elevation, 0.5) }]);
+    const [best] = grids
+        .map(([columns, seen]) => candidate(points, count, columns, seen, lens))
+        .sort((a, b) => a.camera.distance - b.camera.distance);
+    return best;
+}
+
+function candidate(points, count, columns, view, lens) {
+    const offsets = grid(points, count, columns, view);
+    const everything = offsets.flatMap((offset) => points.map((point) => point.clone().add(offset)));
+    return { offsets, view, camera: fit(everything, view, lens), everything };
+}
+
+function grid(points, count, columns, view) {
+    const { right, up, ahead } = axesOf(view);
+    const level = new THREE.Vector3(-Math.cos(view.azimuth), -Math.sin(view.azimuth), 0);
+    const column = (1 + GAP) * extent(points, right);
+    // Seen from above, a row further back is as much higher as the ground rises in the picture.
+    const rise = Math.max(level.dot(up), 0.2);
+    const row = Math.max(OVERLAP * (extent(points, up) / rise), 0.8 * extent(points, level));
+    const rows = Math.ceil(count / columns);
+    return Array.from({ length: count }, (_, k) => {
+        const [i, j] = [k % columns, Math.floor(k / columns)];
+        return new THREE.Vector3()
+            .addScaledVector(right, (i - (columns - 1) / 2) * column)
+            .addScaledVector(level, ((rows - 1) / 2 - j) * row);
+    });
+}
+
+function extent(points, axis) {
+    const along = points.map((point) => point.dot(axis));
+    return Math.max(...along) - Math.min(...along);
+}

@@ -1,0 +1,66 @@
+/** What shows that a joint sits at its limit: an amber ring at the joint, and amber on what it carries. */
+
+import { THREE } from "pinik/three.js";
+
+const AMBER = new THREE.Color(0xffb000).convertSRGBToLinear();
+const GLOW = 0.22;
+const SIZE = 0.085; // of the robot's size
+
+export class LimitMarks {
+    /**
+     * @param robot the `robot` message
+     * @param carried for each joint the materials of the parts that it moves first
+     */
+    constructor(robot, carried) {
+        this.group = new THREE.Group();
+        this._names = robot.joints.map((joint) => joint.name);
+        this._carried = carried;
+        this._size = SIZE * robot.size;
+        this._rings = new Map();
+    }
+
+    /** Mark those of the joints at a limit that matter to the targets, by name. */
+    update(sides, names, joints) {
+        const tinted = new Set();
+        this._names.forEach((name, j) => {
+            const marked = Math.abs(sides[j]) === 1 && names.has(name);
+            const ring = this._rings.get(j) ?? (marked ? this._addRing(j) : null);
+            if (!ring) return;
+            ring.visible = marked;
+            ring.position.copy(joints[j].position);
+            for (const material of this._carried[j]) {
+                if (marked) tinted.add(material);
+                else if (!tinted.has(material)) material.emissive.setRGB(0, 0, 0);
+            }
+        });
+        for (const material of tinted) material.emissive.copy(AMBER).multiplyScalar(GLOW);
+    }
+
+    _addRing(j) {
+        const ring = new THREE.Sprite(ringMaterial());
+        ring.scale.setScalar(this._size);
+        ring.renderOrder = 5;
+        this._rings.set(j, ring);
+        this.group.add(ring);
+        return ring;
+    }
+}
+
+let shared = null;
+
+function ringMaterial() {
+    if (shared) return shared;
+    const canvas = Object.assign(document.createElement("canvas"), { width: 128, height: 128 });
+    const pen = canvas.getContext("2d");
+    for (const [width, color] of [[18, "rgba(30, 20, 0, 0.55)"], [11, "#ffb000"]]) {
+        pen.lineWidth = width;
+        pen.strokeStyle = color;
+        pen.beginPath();
+        pen.arc(64, 64, 50, 0, 2 * Math.PI);
+        pen.stroke();
+    }
+    const map = new THREE.CanvasTexture(canvas);
+    map.encoding = THREE.sRGBEncoding;
+    shared = new THREE.SpriteMaterial({ map, depthTest: false, depthWrite: false });
+    return shared;
+}

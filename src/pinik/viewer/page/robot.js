@@ -1,0 +1,86 @@
+/** One instance of the robot in the scene: its shapes or its skeleton, moved joint by joint. */
+
+import { LimitMarks } from "pinik/limit_marks.js";
+import { Skeleton } from "pinik/skeleton.js";
+import { THREE } from "pinik/three.js";
+
+export class Robot {
+    /**
+     * @param robot the `robot` message
+     * @param parts what `Shapes.parts` gave, or null while there are none
+     * @param color CSS colour of the instance
+     */
+    constructor(robot, parts, color) {
+        this.group = new THREE.Group();
+        this._materials = [];
+        this._joints = robot.joints.map(() => new THREE.Group());
+        this._links = robot.links.map((link) => {
+            const group = new THREE.Group();
+            place(group, link.placement, 0);
+            this._joints[link.joint].add(group);
+            return group;
+        });
+        const materials = robot.links.map(() => []);
+        for (const part of parts ?? []) {
+            const mesh = new THREE.Mesh(part.geometry, part.material.clone());
+            mesh.castShadow = mesh.receiveShadow = true;
+            this._links[part.link].add(mesh);
+            this._materials.push(mesh.material);
+            materials[part.link].push(mesh.material);
+        }
+        this._marks = new LimitMarks(robot, carriedBy(robot, materials));
+        this.group.add(...this._joints, this._marks.group);
+        this._skeleton = parts?.length ? null : new Skeleton(robot, new THREE.Color(color).convertSRGBToLinear());
+        if (this._skeleton) this.group.add(this._skeleton.group);
+    }
+
+    /** Stand as instance `i` of a frame does; `limited` names the joints whose limits matter. */
+    update(frame, i, limited) {
+        const placements = frame.placements(i);
+        this._joints.forEach((joint, j) => place(joint, placements, 7 * j));
+        this._skeleton?.update(this._joints);
+        this._marks.update(frame.sides(i), limited, this._joints);
+    }
+
+    /** The corners of the boxes around its parts, in its own world: Vector3s. */
+    corners() {
+        const inverse = new THREE.Matrix4();
+        this.group.updateWorldMatrix(true, true);
+        inverse.copy(this.group.matrixWorld).invert();
+        const points = this._joints.slice(1).map((joint) => joint.position.clone());
+        for (const link of this._links) {
+            for (const mesh of link.children) {
+                if (!mesh.geometry.boundingBox) mesh.geometry.computeBoundingBox();
+                const { min, max } = mesh.geometry.boundingBox;
+                const toRobot = inverse.clone().multiply(mesh.matrixWorld);
+                for (let k = 0; k < 8; k++) {
+                    const corner = new THREE.Vector3(k & 1 ? max.x : min.x, k & 2 ? max.y : min.y, k & 4 ? max.z : min.z);
+                    points.push(corner.applyMatrix4(toRobot));
+                }
+            }
+        }
+        return points;
+    }
+
+    dispose() {
+        this.group.parent?.remove(this.group);
+        this._skeleton?.dispose();
+        for (const material of this._materials) material.dispose();
+    }
+}
+
+function place(object, numbers, k) {
+    object.position.set(numbers[k], numbers[k + 1], numbers[k + 2]);
+    object.quaternion.set(numbers[k + 3], numbers[k + 4], numbers[k + 5], numbers[k + 6]);
+}
+
+/** For each joint the materials of its links, or where these have no shape, of the joints it carries. */
+function carriedBy(robot, materials) {
+    const own = robot.joints.map((_, j) => robot.links.flatMap((link, k) => (link.joint === j ? materials[k] : [])));
+    const carried = [...own];
+    for (let j = robot.joints.length - 1; j > 0; j--) {
+        const children = robot.joints.map((joint, k) => (k > j && joint.parent === j ? k : null)).filter(Boolean);
+        if (!carried[j].length) carried[j] = children.flatMap((k) => carried[k]);
+    }
+    return carried;
+}

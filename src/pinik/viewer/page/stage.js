@@ -1,0 +1,140 @@
+/** The canvas: meshcat's viewer with light, ground and drawing loop of pinik's own. */
+
+import { Ground } from "pinik/ground.js";
+import { Lights } from "pinik/lights.js";
+import { Quality } from "pinik/quality.js";
+import { THREE, Viewer } from "pinik/three.js";
+
+const FIELD_OF_VIEW = 32; // [deg], narrow: little distortion, instances of equal size
+const SETTLE = 250; // [ms] without a change after which a still picture is drawn as finely as possible
+
+export class Stage {
+    constructor(element, theme) {
+        this.element = element;
+        this.theme = theme;
+        this.frames = 0;
+        this._tickers = [];
+        this._last = 0;
+        this._settled = false;
+        this._quality = new Quality();
+        this._setUpViewer();
+        this.ground = new Ground();
+        this.lights = new Lights();
+        this.viewer.scene.add(this.ground.group, this.lights.group);
+        this._paint();
+        theme.addEventListener("change", () => this._paint());
+        new ResizeObserver(() => this._resize()).observe(element);
+        requestAnimationFrame((now) => this._tick(now));
+    }
+
+    _setUpViewer() {
+        const renderer = new THREE.WebGLRenderer({ antialias: true, alpha: true });
+        renderer.outputEncoding = THREE.sRGBEncoding;
+        renderer.shadowMap.enabled = true;
+        renderer.shadowMap.type = THREE.PCFSoftShadowMap;
+        renderer.shadowMap.autoUpdate = false;
+        this.element.append(renderer.domElement);
+        const viewer = new Viewer(this.element, false, renderer);
+        viewer.gui.domElement.remove();
+        for (const name of ["Lights", "Grid", "Axes"]) viewer.delete_path([name]);
+        viewer.set_property(["Background"], "visible", false);
+        // meshcat sizes itself by the window; here the layout decides.
+        viewer.set_3d_pane_size = () => this._resize();
+        viewer.camera.fov = FIELD_OF_VIEW;
+        viewer.controls.zoomSpeed = 0.8;
+        this.viewer = viewer;
+    }
+
+    get canvas() {
+        return this.viewer.renderer.domElement;
+    }
+
+    get width() {
+        return this.element.clientWidth;
+    }
+
+    get height() {
+        return this.element.clientHeight;
+    }
+
+    /** What the robots' world is drawn in; z is up. */
+    get scene() {
+        return this.viewer.scene;
+    }
+
+    /** Call a function before each picture that the screen could show; it gets the time [ms]. */
+    onTick(ticker) {
+        this._tickers.push(ticker);
+    }
+
+    /** Something changed: draw again. */
+    touch() {
+        this.viewer.set_dirty();
+    }
+
+    _paint() {
+        this.ground.paint(this.theme);
+        this.lights.paint(this.theme);
+        this.touch();
+    }
+
+    _resize() {
+        if (this.width === 0 || this.height === 0) return;
+        this._setRatio(this._quality.ratio);
+        this.viewer.camera.aspect = this.width / this.height;
+        this.onResize?.();
+    }
+
+    _setRatio(ratio) {
+        const { renderer } = this.viewer;
+        this._ratio = ratio;
+        renderer.setPixelRatio(ratio);
+        renderer.setSize(this.width, this.height);
+        this.touch();
+    }
+
+    _tick(now) {
+        requestAnimationFrame((next) => this._tick(next));
+        for (const ticker of this._tickers) ticker(now);
+        if (this.viewer.needs_render) {
+            this._draw(now);
+        } else if (!this._settled && now - this._last > SETTLE) {
+            this._settle();
+        }
+    }
+
+    _draw(now) {
+        const ratio = this._quality.ratio;
+        if (this._settled && this._ratio !== ratio) this._setRatio(ratio);
+        if (!this._settled && this._quality.note(now - this._last)) this._setRatio(this._quality.ratio);
+        this._settled = false;
+        this._last = now;
+        this._render(this._quality.shadows(this.frames));
+    }
+
+    _settle() {
+        this._settled = true;
+        if (this._ratio !== this._quality.finest) this._setRatio(this._quality.finest);
+        this._render(true);
+    }
+
+    _render(shadows) {
+        const { camera, controls, renderer } = this.viewer;
+        const distance = camera.position.distanceTo(controls.target);
+        camera.near = distance / 200;
+        camera.far = distance * 50;
+        renderer.shadowMap.needsUpdate = shadows;
+        this.viewer.render();
+        this.frames += 1;
+        this.onDrawn?.();
+    }
+
+    /** Where a point of the scene (z up) is on the canvas [CSS px]; `behind` where the camera does not look. */
+    project(point) {
+        const { camera, scene } = this.viewer;
+        scene.updateMatrixWorld();
+        camera.updateMatrixWorld();
+        const seen = point.clone().applyMatrix4(scene.matrixWorld).project(camera);
+        return { x: ((seen.x + 1) / 2) * this.width, y: ((1 - seen.y) / 2) * this.height, behind: seen.z > 1 };
+    }
+}

@@ -1,0 +1,63 @@
+/** Numbers with their units, and where an instance stands, in a few words. */
+
+const NOTHING = "–";
+
+function significant(value, digits = 3) {
+    const decimals = Math.max(0, digits - 1 - Math.floor(Math.log10(Math.max(Math.abs(value), 1e-9))));
+    return value.toFixed(Math.min(decimals, 3));
+}
+
+/** A length [m] in the unit that people would say it in. */
+export function length(metres) {
+    if (metres === null || !Number.isFinite(metres)) return NOTHING;
+    const size = Math.abs(metres);
+    if (size >= 1) return `${significant(metres)} m`;
+    if (size >= 0.01) return `${(metres * 100).toFixed(1)} cm`;
+    if (size >= 0.0001) return `${significant(metres * 1000, 2)} mm`;
+    if (size >= 1e-6) return `${(metres * 1000).toFixed(3)} mm`;
+    return "0 mm";
+}
+
+export function degrees(radians) {
+    if (radians === null || !Number.isFinite(radians)) return NOTHING;
+    const value = (radians * 180) / Math.PI;
+    return `${Math.abs(value) >= 10 ? value.toFixed(1) : value.toFixed(2)}°`;
+}
+
+export function milliseconds(seconds) {
+    if (seconds === null || !Number.isFinite(seconds)) return NOTHING;
+    return `${significant(seconds * 1000)} ms`;
+}
+
+export function count(value) {
+    if (value === null || !Number.isFinite(value)) return NOTHING;
+    return value >= 100 ? value.toFixed(0) : value.toFixed(1);
+}
+
+export function percent(part) {
+    if (part === null || !Number.isFinite(part)) return NOTHING;
+    return `${(part * 100).toFixed(part < 0.9995 ? 1 : 0)} %`;
+}
+
+/** A number for an input: no more digits than it has. */
+export function plain(value, decimals) {
+    return String(Number(decimals === undefined ? value.toPrecision(6) : value.toFixed(decimals)));
+}
+
+/** "free_flyer" as "free flyer". */
+export function spaced(name) {
+    return name.replaceAll("_", " ");
+}
+
+/** Where an instance stands: "reached", "4.1 cm short", …; errors in metres and radians, not finite where not asked. */
+export function verdict(status, positionError, orientationError, tolerance) {
+    if (status === "FAILED") return "solver failed";
+    if (status === "IDLE") return "idle";
+    if (status === "CONVERGED") return "reached";
+    const away = Number.isFinite(positionError) && positionError > tolerance.position;
+    const turned = Number.isFinite(orientationError) && orientationError > tolerance.orientation;
+    if (away && status === "UNREACHABLE") return `out of reach, ${length(positionError)} short`;
+    if (away) return `${length(positionError)} short`;
+    if (turned) return `${degrees(orientationError)} turned away`;
+    return "reached";
+}

@@ -1,0 +1,88 @@
+"""What an instance did over its last thousand steps."""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Callable
+from typing import NamedTuple
+
+__all__ = ["WINDOW", "Statistics", "StepFigures", "Summary"]
+
+WINDOW = 1000
+"""Steps that count, the thesis's own number."""
+
+
+class StepFigures(NamedTuple):
+    """One simulation step of one instance.
+
+    Attributes:
+        time: Seconds that the solver took.
+        iterations: Iterations taken; sweeps for CCD.
+        joint_updates: Single joints updated, for CCD.
+        reached: Whether every target was within tolerance at the end.
+        error: The largest position error at the end [m]; None where no position was asked for.
+        jump: The largest change of one joint [rad or m].
+    """
+
+    time: float
+    iterations: int
+    joint_updates: int
+    reached: bool
+    error: float | None
+    jump: float
+
+
+class Summary(NamedTuple):
+    """Means over the window; None where there is nothing to tell.
+
+    Attributes:
+        steps: How many steps they cover.
+        mean_time: Seconds a step.
+        mean_iterations, mean_joint_updates: Of a step.
+        efficiency: The share of steps that ended with every target reached, from 0 to 1.
+        mean_error: Metres.
+        largest_jump: The largest change of one joint in one step [rad or m].
+    """
+
+    steps: int
+    mean_time: float | None
+    mean_iterations: float | None
+    mean_joint_updates: float | None
+    efficiency: float | None
+    mean_error: float | None
+    largest_jump: float | None
+
+
+class Statistics:
+    """The last `WINDOW` steps of one instance."""
+
+    def __init__(self) -> None:
+        self._steps: deque[StepFigures] = deque(maxlen=WINDOW)
+
+    def add(self, figures: StepFigures) -> None:
+        """Count one more step; the oldest falls out when there are too many."""
+        self._steps.append(figures)
+
+    def clear(self) -> None:
+        """Forget everything."""
+        self._steps.clear()
+
+    def summary(self) -> Summary:
+        """The means as they stand."""
+        steps = self._steps
+        if not steps:
+            return Summary(0, None, None, None, None, None, None)
+
+        def mean(of: Callable[[StepFigures], float]) -> float:
+            return sum(map(of, steps)) / len(steps)
+
+        errors = [step.error for step in steps if step.error is not None]
+        return Summary(
+            steps=len(steps),
+            mean_time=mean(lambda step: step.time),
+            mean_iterations=mean(lambda step: step.iterations),
+            mean_joint_updates=mean(lambda step: step.joint_updates),
+            efficiency=mean(lambda step: step.reached),
+            mean_error=sum(errors) / len(errors) if errors else None,
+            largest_jump=max(step.jump for step in steps),
+        )
