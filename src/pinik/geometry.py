@@ -217,9 +217,17 @@ def _joined(meshes: Iterable[trimesh.Trimesh], *, keep_normals: bool) -> trimesh
         faces.append(mesh.faces + count)
         normals.append(mesh.vertex_normals)
         count += len(mesh.vertices)
-    if keep_normals:
-        return trimesh.Trimesh(np.vstack(vertices), np.vstack(faces), vertex_normals=np.vstack(normals), process=False)
-    return _creased(trimesh.Trimesh(np.vstack(vertices), np.vstack(faces)))
+    joined = trimesh.Trimesh(np.vstack(vertices), np.vstack(faces), vertex_normals=np.vstack(normals), process=False)
+    if keep_normals and not _is_faceted(joined):
+        return joined
+    return _creased(trimesh.Trimesh(joined.vertices, joined.faces))
+
+
+def _is_faceted(mesh: trimesh.Trimesh) -> bool:
+    """Whether each face has its own normal at all its corners, as exporters write that know of no smooth ones."""
+    along = np.einsum("fkc,fc->fk", mesh.vertex_normals[mesh.faces], mesh.face_normals).min(axis=1)
+    has_area = mesh.face_normals.any(axis=1)
+    return bool((along[has_area] > 1.0 - 1e-3).all())
 
 
 def _creased(mesh: trimesh.Trimesh) -> trimesh.Trimesh:

@@ -14,7 +14,9 @@ import pytest
 
 from pinik.viewer import recording as recording_module
 from pinik.viewer.recording import Recording, animation_page
-from pinik.viewer.scene import InstanceBlock, Shapes, make_shapes, meshcat_script, pack_frame, robot_message
+from pinik.viewer.scene import InstanceBlock, Shapes, make_shapes, pack_frame, robot_message
+from pinik.viewer.session import Session
+from pinik.viewer.show import Show
 
 CHROMIUM = Path("/usr/bin/chromium")
 FLAGS = [
@@ -90,8 +92,8 @@ def steps(recording):
 
 def recorded(frames):
     recording = Recording()
-    for each in frames:
-        recording.add(each)
+    for number, each in enumerate(frames):
+        recording.add(each, number / 60)
     return recording
 
 
@@ -122,7 +124,7 @@ def test_what_was_cleared_is_gone_and_the_next_frame_kept():
     recording = recorded(frame(k) for k in range(3))
     recording.clear()
     assert (len(recording), recording.frames, recording.frame_bytes) == (0, b"", 0)
-    recording.add(frame(3))
+    recording.add(frame(3), 1.0)
     assert steps(recording) == [3]
 
 
@@ -214,29 +216,37 @@ def test_numbers_that_are_no_json_are_refused(two_link, page):
         animation_page(hello, robot, Shapes((), (), ()), state, Recording(), page)
 
 
-@pytest.mark.skipif(not CHROMIUM.exists(), reason="there is no /usr/bin/chromium")
-def test_a_browser_plays_the_file_with_meshcats_own_viewer(panda, page, tmp_path):
+@pytest.fixture
+def tab():
+    """A page of a browser; its `faults` are errors, and whatever it asked a server for."""
+    if not CHROMIUM.exists():
+        pytest.skip(f"there is no {CHROMIUM}")
     sync_api = pytest.importorskip("playwright.sync_api")
+    with sync_api.sync_playwright() as playwright:
+        browser = playwright.chromium.launch(executable_path=CHROMIUM, args=FLAGS)
+        opened = browser.new_page()
+        opened.faults = []
+        opened.on("pageerror", lambda error: opened.faults.append(str(error)))
+        opened.on("console", lambda line: opened.faults.append(line.text) if line.type == "error" else None)
+        opened.on("request", lambda request: opened.faults.append(request.url) if is_fetched(request.url) else None)
+        yield opened
+        browser.close()
+
+
+def is_fetched(url):
+    return not url.startswith(("file:", "data:", "blob:"))
+
+
+def test_a_browser_plays_the_file_with_meshcats_own_viewer(panda, page, tmp_path, tab):
     hello, robot, state = messages(panda)
     shapes = make_shapes(panda)
     recording = recorded(frame(k, generation=5, joints=10) for k in range(4))
     file = tmp_path / "animation.html"
     file.write_text(animation_page(hello, robot, shapes, state, recording, page), "utf-8")
-    faults = []
-    with sync_api.sync_playwright() as playwright:
-        browser = playwright.chromium.launch(executable_path=CHROMIUM, args=FLAGS)
-        tab = browser.new_page()
-        tab.on("pageerror", lambda error: faults.append(str(error)))
-        tab.on("console", lambda line: faults.append(line.text) if line.type == "error" else None)
-        tab.on(
-            "request",
-            lambda request: None if request.url.startswith(("file:", "data:")) else faults.append(request.url),
-        )
-        tab.goto(file.as_uri())
-        tab.wait_for_function("document.title.startsWith('{')", timeout=60_000)
-        told = json.loads(tab.title())
-        browser.close()
-    assert faults == []
+    tab.goto(file.as_uri())
+    tab.wait_for_function("document.title.startsWith('{')", timeout=60_000)
+    told = json.loads(tab.title())
+    assert tab.faults == []
     assert (told["name"], told["frames"]) == ("panda", 2 * len(frame(0, joints=10)))
     assert [each["link"] for each in told["found"]] == [link for link, _ in shapes.parts]
     assert sum(each["triangles"] for each in told["found"]) > 100_000
@@ -247,3 +257,23 @@ def test_a_browser_plays_the_file_with_meshcats_own_viewer(panda, page, tmp_path
         assert each["material"] == "MeshStandardMaterial"
         assert (each["opacity"], each["transparent"], each["vertexColors"]) == (1, False, False)
     assert len({each["color"] for each in told["found"]}) >= 4
+
+
+def test_a_saved_session_plays_without_a_server(two_link, tmp_path, monkeypatch, tab):
+    monkeypatch.setenv("PINIK_CACHE_DIR", str(tmp_path / "cache"))
+    session = Session(two_link, view=2)
+    session.set_motion("curve")
+    session.running = True
+    now = 0.0
+    show = Show(session, later=lambda work, then: then(work()), clock=lambda: now)
+    for step in range(60):
+        now = step / 60
+        show.tick()
+    file = tmp_path / "animation.html"
+    file.write_text(show.animation(), "utf-8")
+    tab.goto(file.as_uri())
+    clock = "document.getElementById('clock').textContent"
+    tab.wait_for_function(f"/^0\\.[1-9] s of 1\\.0 s$/.test({clock})", timeout=60_000)
+    assert tab.title().startswith("two_link")
+    assert tab.faults == []
+    assert len(tab.locator("#canvas canvas").screenshot()) > 10_000  # a PNG of one colour would be smaller

@@ -32,7 +32,7 @@ def _circle(phase: float) -> tuple[float, float, float]:
 
 
 def _eight(phase: float) -> tuple[float, float, float]:
-    """Bernoulli's lemniscate."""
+    """Bernoulli's lemniscate, √2 times as high."""
     t = 2.0 * math.pi * phase
     size = 1.0 / (1.0 + math.sin(t) ** 2)
     return size * math.cos(t), size * math.sin(t) * math.cos(t) * math.sqrt(2.0), 0.0

@@ -109,7 +109,7 @@ def curve_axes(robot: Robot, frame: str, q: Array, center: Array, curve: Curve) 
     """The rows u, v, w (3, 3) [m] that a curve about `center` is drawn along, as large as the chain follows well.
 
     To the side is the world's y, up its z, towards the viewer its x; a chain that moves in a plane gets the plane's
-    own axes. The size starts at a quarter of the chain's length and is halved while the chain cannot follow.
+    own axes. The size starts at a quarter of the chain's length and shrinks while the chain cannot follow.
     """
     kinematics = Kinematics(robot, Target(frame, center))
     axes = np.roll(np.eye(3), -1, axis=0) * (0.25 * kinematics.size_of_chain)

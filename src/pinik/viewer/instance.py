@@ -113,13 +113,14 @@ class Instance:
     def put(self, q: Array) -> None:
         """Start again from `q` (nq,), with nothing in the statistics."""
         self.q = q
-        self.last: StepFigures | None = None
-        self.status = "IDLE"
-        self.counted = False
         self.statistics.clear()
         self._forget_run()
 
-    def _forget_run(self) -> None:
+    def _forget_run(self, why: str = "no step was made yet") -> None:
+        self.last: StepFigures | None = None
+        self.status = "IDLE"
+        self.counted = False
+        self._idle = why
         self._states: Generator[State, Target | Sequence[Target] | None, None] | None = None
         self._state: State | None = None
         self._kinematics: Kinematics | None = None
@@ -132,11 +133,13 @@ class Instance:
         A step that begins with every target reached, and none moved, has nothing to do and does not count.
         """
         asked = tuple(targets)
+        if not asked:
+            self._forget_run("nothing is asked for")
+            return
         moved = len(asked) != len(self._targets) or any(a is not b for a, b in zip(asked, self._targets, strict=True))
         self._targets = asked
-        self.counted = bool(asked) and (moved or self.status != Status.CONVERGED.name)
+        self.counted = moved or self.status != Status.CONVERGED.name
         if not self.counted:
-            self.status = self.status if asked else "IDLE"
             self.last = self.last._replace(time=0.0, iterations=0, joint_updates=0, jump=0.0) if self.last else None
             return
         began, before, former = self._clock(), self.q, self._state
@@ -146,7 +149,7 @@ class Instance:
             self._fail(error)
             return
         spent = self._clock() - began
-        self._state, self.q = state, state.q
+        self._state, self.q, self._failure = state, state.q, ""
         self.status = (state.status or Status.TIME_LIMIT).name
         off = largest_of(state.errors)
         self.last = StepFigures(
@@ -197,7 +200,7 @@ class Instance:
         if self._failure:
             return Verdict("FAILED", self._failure, None, None, ())
         if self._kinematics is None or not self._targets:
-            return Verdict("IDLE", "nothing is asked for", None, None, ())
+            return Verdict("IDLE", self._idle, None, None, ())
         kinematics, tolerance = self._kinematics, self._chase.tolerance
         errors = measure_errors(self.robot, self._targets, self.q)
         off = largest_of(errors)

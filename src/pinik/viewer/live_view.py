@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import concurrent.futures
 import html
 import json
 import os
@@ -85,6 +86,8 @@ class LiveView:
         except BaseException as error:
             for listening in sockets:
                 listening.close()
+            self._workers.shutdown(wait=False)
+            loop.close()
             ready.set_exception(error)
             return
         server.add_sockets(sockets)
@@ -143,7 +146,7 @@ class LiveView:
 
     def move_ball(self, position: ArrayLike, index: int = 0) -> None:
         """Put a ball at a point (3,) [m] of the robot's world; from then on balls move by hand."""
-        self.send("ball", index=index, position=list(map(float, position)))  # type: ignore[arg-type]
+        self.send("ball", index=index, position=position)
 
     @property
     def robot(self) -> Robot:
@@ -158,7 +161,7 @@ class LiveView:
     @property
     def configurations(self) -> list[NDArray[Any]]:
         """q (nq,) of each instance that is seen."""
-        return self._do(lambda: [instance.q for instance in self._show.session.seen])
+        return self._do(lambda: [instance.q.copy() for instance in self._show.session.seen])
 
     def save_animation(self, path: str | os.PathLike[str]) -> None:
         """Write the last 20 seconds as one HTML file, which plays without a server."""
@@ -177,6 +180,9 @@ class LiveView:
                 done.set_exception(error)
 
         self._loop.add_callback(run)
+        while not concurrent.futures.wait([done], timeout=0.5).done:
+            if not self._thread.is_alive():  # it was closed just now, by another thread
+                raise errors.InputError("this live view is closed; pinik.live(...) opens another")
         return done.result()
 
 
@@ -200,14 +206,16 @@ def _bind(host: str, port: int | None) -> list[socket.socket]:
     Raises:
         InputError: The port is taken, is none, or there is no such address here.
     """
-    if port is not None and not 0 <= port <= 65535:
-        raise errors.InputError(f"a port is a number from 0 to 65535; got {port}")
+    if port is not None and not (type(port) is int and 0 <= port <= 65535):
+        raise errors.InputError(f"a port is a number from 0 to 65535; got {port!r}")
+    if not isinstance(host, str) or not host:
+        raise errors.InputError(f"a host is an address of this machine, such as '127.0.0.1'; got {host!r}")
     for candidate in (*_PORTS, 0) if port is None else (port,):
         try:
             sockets = tornado.netutil.bind_sockets(candidate, address=host)
-        except OSError as error:
-            fault = error
+        except (OSError, UnicodeError) as error:
+            fault = getattr(error, "strerror", None) or str(error)
             continue
         return sockets
     hint = "; leave the port out and pinik finds a free one" if port else ""
-    raise errors.InputError(f"cannot listen on {host}, port {port}: {fault.strerror or fault}{hint}")
+    raise errors.InputError(f"cannot listen on {host}, port {port}: {fault}{hint}")

@@ -4,14 +4,14 @@ from __future__ import annotations
 
 import dataclasses
 import json
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from typing import Any
 
 from ..checks import as_finite_number, as_vector
 from ..errors import InputError, UnknownNameError
 from .session import Session
 
-__all__ = ["FARTHEST", "RANGES", "apply", "parse"]
+__all__ = ["FARTHEST", "RANGES", "apply", "parse", "read_json"]
 
 RANGES: dict[str, tuple[float, float]] = {
     "speed": (0.1, 100.0),
@@ -23,6 +23,7 @@ RANGES: dict[str, tuple[float, float]] = {
 FARTHEST = 100.0
 """[m] A ball stays within this of the world's origin."""
 _LONGEST_NAME = 200
+_DEEPEST = 8
 
 Check = Callable[[str, Any], Any]
 
@@ -34,16 +35,39 @@ def parse(text: str) -> dict[str, Any]:
         InputError: It is something else.
     """
 
-    def refuse(word: str) -> None:
-        raise ValueError(f"{word} is no JSON number")
-
     try:
-        message = json.loads(text, parse_constant=refuse)
-    except (ValueError, RecursionError) as error:
+        message = read_json(text)
+    except ValueError as error:
         raise InputError(f"a message is a JSON object; this is none: {error}") from None
     if not isinstance(message, dict) or not isinstance(message.get("type"), str):
         raise InputError('a message is a JSON object with a "type"')
     return message
+
+
+def read_json(text: str) -> Any:
+    """A JSON value that nests no deeper than anything here does: what is wrong with it can be shown in words.
+
+    Raises:
+        ValueError: It is none, or holds NaN or an infinity by name.
+    """
+
+    def refuse(word: str) -> None:
+        raise ValueError(f"{word} is no JSON number")
+
+    try:
+        value = json.loads(text, parse_constant=refuse)
+    except RecursionError:
+        raise ValueError("it nests too deeply") from None
+    level = [value]
+    for _ in range(_DEEPEST):
+        level = [inner for outer in level if isinstance(outer, (list, dict)) for inner in _parts(outer)]
+    if level:
+        raise ValueError("it nests too deeply")
+    return value
+
+
+def _parts(outer: list[Any] | dict[str, Any]) -> Iterable[Any]:
+    return outer.values() if isinstance(outer, dict) else outer
 
 
 def apply(session: Session, message: Mapping[str, Any]) -> None:

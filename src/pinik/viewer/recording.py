@@ -5,6 +5,7 @@ from __future__ import annotations
 import base64
 import html
 import json
+import math
 import re
 from collections import deque
 from collections.abc import Mapping
@@ -18,14 +19,14 @@ __all__ = ["FRAMES_PER_SECOND", "SECONDS", "Recording", "animation_page"]
 SECONDS = 20
 FRAMES_PER_SECOND = 30
 
-_EVERY = 2  # frames come 60 times a second
+_PERIOD = 1.0 / FRAMES_PER_SECOND - 1e-6  # [s]; less than two steps by a little, whatever rounding makes of them
 _STEP = slice(8, 12)  # the bytes of a frame message that differ between frames of one size; see `scene.pack_frame`
 _HEADER = 24
 _PAGE = Path(__file__).with_name("page")
 
 
 class Recording:
-    """The frame messages of the last 20 s, every second one of 60 a second.
+    """The frame messages of the last 20 s, at most 30 of a second.
 
     All of them are of one robot, one number of instances and one of balls: a frame that differs starts anew.
     """
@@ -33,7 +34,7 @@ class Recording:
     def __init__(self) -> None:
         self._frames: deque[bytes] = deque(maxlen=SECONDS * FRAMES_PER_SECOND)
         self._layout = b""
-        self._skip = 0
+        self._due = -math.inf
 
     def __len__(self) -> int:
         return len(self._frames)
@@ -48,20 +49,21 @@ class Recording:
         """The length of one frame message; 0 while there is none."""
         return len(self._frames[0]) if self._frames else 0
 
-    def add(self, frame: bytes) -> None:
-        """One more frame message; to be called with each of them."""
+    def add(self, frame: bytes, now: float) -> None:
+        """One more frame message, of the time `now` [s]; to be called with each of them."""
         layout = frame[: _STEP.start] + frame[_STEP.stop : _HEADER]
         if layout != self._layout:
             self.clear()
             self._layout = layout
-        if self._skip == 0:
+        if now >= self._due:
+            # After the time that was due, so that no frame's delay slows the pace; after a pause from now.
+            self._due = max(self._due + _PERIOD, now) if self._frames else now + _PERIOD
             self._frames.append(frame)
-        self._skip = (self._skip + 1) % _EVERY
 
     def clear(self) -> None:
         """Forget everything; the next frame is kept."""
         self._frames.clear()
-        self._skip = 0
+        self._due = -math.inf
 
 
 def animation_page(

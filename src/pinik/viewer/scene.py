@@ -151,8 +151,7 @@ def _merged(shapes: Sequence[Shape]) -> tuple[NDArray[np.float32], NDArray[np.ui
         vertices.append(corners)
         faces.append(np.asarray(shape.mesh.faces) + count)
         count += len(corners)
-    # Adding 0 turns −0 into 0: as bytes they would differ.
-    rows = np.ascontiguousarray(np.vstack(vertices), dtype="<f4") + np.float32(0.0)
+    rows = np.vstack(vertices).astype("<f4")
     as_bytes = rows.view(np.dtype((np.void, rows.strides[0]))).ravel()
     _, first, inverse = np.unique(as_bytes, return_index=True, return_inverse=True)
     return rows[first], inverse[np.vstack(faces)].astype("<u4")

@@ -67,7 +67,7 @@ class Session:
             clock: Seconds that pass, for the statistics and for steps that would take too long.
 
         Raises:
-            UnknownNameError: No such method.
+            UnknownNameError: No such method, or a joint in its parameters that the robot does not have.
             InputError: More than four methods, none, or another view.
         """
         solvers = [make_solver(method) for method in methods]
@@ -77,15 +77,18 @@ class Session:
             view = next(count for count in VIEWS if count >= len(solvers))
         self.methods: dict[str, type[Solver]] = {**SOLVERS, **{s.name: type(s) for s in solvers}}
         others = [name for name in self.methods if name not in {s.name for s in solvers}]
-        solvers += [make_solver(self.methods[name]) for name in (*others, *self.methods)]
+        solvers += [make_solver(self.methods[name]) for name in others[: VIEWS[-1] - len(solvers)]]
+        for solver in solvers:
+            check_joint_names(robot, solver)
         self.robot = robot
         self.running = False
         self.steps = 0
         self.chase = Chase()
         self.motion = Motion(robot, seed)
+        self._seed = seed
         self._clock = clock
         self._home = home_configuration(robot)
-        self.instances = [Instance(robot, s, self._home, self.chase, clock) for s in solvers[: VIEWS[-1]]]
+        self.instances = [Instance(robot, s, self._home, self.chase, clock) for s in solvers]
         self.balls: list[Ball] = []
         for frame in principal_frames(robot):
             self._place_ball(frame, "pinned" if self._is_planted(frame) else "off")
@@ -96,7 +99,7 @@ class Session:
     def with_robot(self, robot: Robot) -> Session:
         """A session with another robot and the same settings; what names joints that it does not have is dropped."""
         solvers = [_fitting(instance.solver, robot) for instance in self.instances]
-        other = Session(robot, solvers, view=self.view, clock=self._clock)
+        other = Session(robot, solvers, view=self.view, seed=self._seed, clock=self._clock)
         other.methods = self.methods
         other.running = self.running
         other.set_chase(self.chase)
@@ -143,7 +146,7 @@ class Session:
 
     def set_view(self, count: int) -> None:
         """Let 1, 2 or 4 instances be seen."""
-        if count not in VIEWS:
+        if type(count) is not int or count not in VIEWS:
             raise InputError(f"a view has 1, 2 or 4 instances; got {count!r}")
         self.view = count
 

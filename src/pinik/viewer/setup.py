@@ -8,8 +8,9 @@ from typing import Any
 from urllib.parse import parse_qsl, quote, urlencode
 
 from ..errors import InputError, UnknownNameError
+from ..targets import Tolerance
 from .instance import Chase
-from .messages import apply
+from .messages import apply, read_json
 from .parameters import changed_parameters
 from .session import Session
 
@@ -37,13 +38,13 @@ def write_setup(session: Session) -> str:
     if motion.kind == "curve":
         setup["curve"] = motion.curve
     if motion.speed != 1.0:
-        setup["speed"] = f"{motion.speed:g}"
+        setup["speed"] = _short(motion.speed)
     if chase.limits != default.limits:
         setup["limits"] = "off"
     if not chase.until_reached:
         setup["iterations"] = str(chase.at_most)
     if chase.tolerance != default.tolerance:
-        setup["tolerance"] = ",".join(f"{value:g}" for value in chase.tolerance)
+        setup["tolerance"] = ",".join(map(_short, chase.tolerance))
     setup["balls"] = _compact([_ball(session, index) for index in range(len(session.balls))])
     if session.running:
         setup["run"] = "on"
@@ -60,6 +61,11 @@ def _ball(session: Session, index: int) -> list[Any]:
     while parts[-1] is None:
         parts.pop()
     return parts
+
+
+def _short(number: float) -> str:
+    """As few digits as say exactly this number."""
+    return repr(float(number)).removesuffix(".0")
 
 
 def _compact(value: Any) -> str:
@@ -101,8 +107,11 @@ def _messages(session: Session, setup: Setup) -> Iterator[dict[str, Any]]:
         yield {"type": "view", "count": _whole("view", setup["view"])}
     if "methods" in setup:
         changed = _parsed("parameters", setup.get("parameters", "{}"), dict)
-        for index, method in enumerate(setup["methods"].split(",")):
-            if index < len(session.instances) and session.instances[index].solver.name != method:
+        methods = setup["methods"].split(",")
+        if len(methods) > len(session.instances):
+            raise InputError(f"set-up: there are {len(session.instances)} methods at most; got {len(methods)}")
+        for index, method in enumerate(methods):
+            if session.instances[index].solver.name != method:
                 yield {"type": "method", "instance": index, "method": method}
             wanted = changed.get(str(index), {})
             if not isinstance(wanted, dict):
@@ -112,15 +121,14 @@ def _messages(session: Session, setup: Setup) -> Iterator[dict[str, Any]]:
             for name, value in {**{name: defaults[name] for name in stale}, **wanted}.items():
                 yield {"type": "parameter", "instance": index, "name": name, "value": value}
     chase = session.chase
-    yield {"type": "limits", "on": setup.get("limits") != "off"}
+    yield {"type": "limits", "on": _on("limits", setup.get("limits", "on"))}
     yield {
         "type": "iterations",
         "until_reached": "iterations" not in setup,
         "at_most": _whole("iterations", setup["iterations"]) if "iterations" in setup else chase.at_most,
     }
-    if "tolerance" in setup:
-        position, orientation = _numbers("tolerance", setup["tolerance"], 2)
-        yield {"type": "tolerance", "position": position, "orientation": orientation}
+    tolerance = _numbers("tolerance", setup["tolerance"], 2) if "tolerance" in setup else Tolerance()
+    yield {"type": "tolerance", "position": tolerance[0], "orientation": tolerance[1]}
     if "curve" in setup:
         yield {"type": "curve", "curve": setup["curve"]}
     yield {"type": "speed", "value": _numbers("speed", setup["speed"], 1)[0] if "speed" in setup else 1.0}
@@ -129,7 +137,7 @@ def _messages(session: Session, setup: Setup) -> Iterator[dict[str, Any]]:
     if "motion" in setup:
         yield {"type": "motion", "motion": setup["motion"]}
     if "run" in setup:
-        yield {"type": "run", "on": setup["run"] == "on"}
+        yield {"type": "run", "on": _on("run", setup["run"])}
 
 
 def _ball_messages(session: Session, balls: list[Any]) -> Iterator[dict[str, Any]]:
@@ -137,12 +145,15 @@ def _ball_messages(session: Session, balls: list[Any]) -> Iterator[dict[str, Any
     for ball in balls:
         if not (isinstance(ball, list) and 2 <= len(ball) <= 4):
             raise InputError(f"set-up: a ball is [frame, mode, position, rpy]; got {ball!r}")
-        if ball[0] not in [other.frame for other in session.balls]:
-            yield {"type": "add_effector", "frame": ball[0]}
     wanted = [ball[0] for ball in balls]
-    for index in reversed(range(len(session.balls))):
-        if session.balls[index].frame not in wanted:
-            yield {"type": "remove_effector", "index": index}
+    if not wanted:
+        raise InputError("set-up: balls are at least one")
+    yield from _removals(session, wanted)
+    for frame in wanted:
+        if frame not in [ball.frame for ball in session.balls]:
+            yield {"type": "add_effector", "frame": frame}
+    yield from _removals(session, wanted)
+    session.balls.sort(key=lambda ball: wanted.index(ball.frame))
     for frame, mode, position, rpy in ([*ball, None, None][:4] for ball in balls):
         index = [ball.frame for ball in session.balls].index(frame)
         here = session.balls[index]
@@ -150,15 +161,28 @@ def _ball_messages(session: Session, balls: list[Any]) -> Iterator[dict[str, Any
             yield {"type": "effector", "index": index, "mode": mode}
         if position is not None and position != [round(float(x), 4) for x in here.position]:
             yield {"type": "ball", "index": index, "position": position}
-        if (rpy is not None) != here.oriented or rpy is not None:
+        if (rpy is not None) != here.oriented or rpy not in (None, [round(float(x), 4) for x in here.rpy]):
             angles = here.rpy.tolist() if rpy is None else rpy
             yield {"type": "orientation", "index": index, "on": rpy is not None, "rpy": angles}
 
 
+def _removals(session: Session, wanted: list[Any]) -> Iterator[dict[str, Any]]:
+    """All balls whose frame is not wanted; the last ball stays."""
+    for index in reversed(range(len(session.balls))):
+        if session.balls[index].frame not in wanted and len(session.balls) > 1:
+            yield {"type": "remove_effector", "index": index}
+
+
+def _on(name: str, text: str) -> bool:
+    if text not in ("on", "off"):
+        raise InputError(f"set-up: {name} is on or off; got {text[:60]!r}")
+    return text == "on"
+
+
 def _parsed(name: str, text: str, kind: type) -> Any:
     try:
-        value = json.loads(text)
-    except (ValueError, RecursionError):
+        value = read_json(text)
+    except ValueError:
         value = None
     if not isinstance(value, kind):
         raise InputError(f"set-up: {name} is JSON; got {text[:60]!r}")

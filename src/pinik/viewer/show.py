@@ -79,6 +79,7 @@ class Show:
         self._hello = hello_message(version, session.methods, self._menu.own_names)
         self._generation = 0
         self._loading: str | None = None
+        self._request = 0  # the newest that asked for a robot
         self._ticks: deque[float] = deque(maxlen=61)
         self._change_session(session)
 
@@ -91,11 +92,13 @@ class Show:
         self._maker = FrameMaker(session.robot, generation)
         self._start_anew()
         self._broadcast(json.dumps(self._robot))
+        self._send_state()
         self._later(lambda: shapes_of(session.robot), lambda shapes: self._take_shapes(generation, shapes))
 
     def _start_anew(self) -> None:
         """The frames so far tell of other instances."""
         self.recording.clear()
+        self._recorded_step = -1
         self._frame = self._maker.frame(self.session)
         self._frame_due = self._state_due = True
         self._state_sent = self._clock()
@@ -133,6 +136,7 @@ class Show:
         try:
             message = parse(message_text)
             if message["type"] == "drawn":
+                checked("drawn", message, {"step": _number})
                 self._drawn(tab)
             else:
                 self.do(message)
@@ -172,6 +176,8 @@ class Show:
         if self.session.tick():
             self._ticks.append(self._clock())
             self._frame_due = True
+        else:
+            self._ticks.clear()
         if self._frame_due:
             self._send_frame()
         often_enough = self._clock() - self._state_sent >= 1.0 / _STATES_PER_SECOND
@@ -181,7 +187,9 @@ class Show:
     def _send_frame(self) -> None:
         self._frame_due = False
         self._frame = self._maker.frame(self.session)
-        self.recording.add(self._frame)
+        if self.session.steps != self._recorded_step:  # a ball moved between two steps is none of its own
+            self._recorded_step = self.session.steps
+            self.recording.add(self._frame, self._clock())
         for tab, seat in self._seats.items():
             self._offer_frame(tab, seat)
 
@@ -221,7 +229,8 @@ class Show:
 
     def _set_up(self, setup: Setup) -> None:
         robot = self.session.robot
-        name, root = setup.get("robot", robot.name), setup.get("root", "fixed")
+        name = setup.get("robot", robot.name)
+        root = setup.get("root", "fixed" if "robot" in setup else robot.root)
         if (name, root) == (robot.name, robot.root):
             self._apply_setup(setup)
         else:
@@ -237,10 +246,12 @@ class Show:
         self._menu.check(name, root)
         self._loading = name
         self._state_due = True
-        self._later(lambda: self._menu.load(name, root), lambda robot: self._take_robot(name, robot, setup))
+        self._request += 1
+        request = self._request
+        self._later(lambda: self._menu.load(name, root), lambda robot: self._take_robot(request, name, robot, setup))
 
-    def _take_robot(self, name: str, robot: Robot | BaseException, setup: Setup) -> None:
-        if name != self._loading:  # somebody asked for another one meanwhile
+    def _take_robot(self, request: int, name: str, robot: Robot | BaseException, setup: Setup) -> None:
+        if request != self._request:  # somebody asked for another one meanwhile
             return
         self._loading = None
         self._state_due = True
@@ -248,9 +259,11 @@ class Show:
             if isinstance(robot, BaseException):
                 raise InputError(f"{name} cannot be loaded: {robot}")
             session = self.session.with_robot(robot)
-            self._change_session(session)
-            if setup:
-                self._apply_setup(setup)
+            try:
+                if setup:
+                    apply_setup(session, setup)
+            finally:
+                self._change_session(session)
         except PinikError as error:
             self._broadcast(json.dumps({"type": "error", "message": str(error)}))
 
@@ -294,6 +307,12 @@ class Show:
         """The last seconds as a page of its own, which plays without a server."""
         shapes = self._shapes or Shapes((), (), ())
         return animation_page(self._hello, self._robot, shapes, self.state(), self.recording)
+
+
+def _number(what: str, value: Any) -> int:
+    if isinstance(value, bool) or not isinstance(value, int):
+        raise InputError(f"{what} is a whole number; got {value!r}")
+    return value
 
 
 def _long_text(what: str, value: Any) -> str:

@@ -48,7 +48,9 @@ export class Ground {
         const disc = new THREE.CircleGeometry(1, 64);
         this._floor = new THREE.Mesh(disc, this._material);
         this._floor.renderOrder = -2;
-        this._shadow = new THREE.Mesh(disc, new THREE.ShadowMaterial({ transparent: true, depthWrite: false }));
+        const shadow = () => new THREE.ShadowMaterial({ transparent: true, depthWrite: false });
+        this._shadows = { fine: shadow(), coarse: shadow() };
+        this._shadow = new THREE.Mesh(disc, this._shadows.fine);
         this._shadow.receiveShadow = true;
         this._shadow.renderOrder = -1;
         this.group.add(this._floor, this._shadow);
@@ -59,14 +61,20 @@ export class Ground {
         floorColor.value.set(theme.color("floor"));
         lineColor.value.set(theme.color("floor-line"));
         lineStrength.value = theme.number("floor-line-strength");
-        this._shadow.material.opacity = theme.number("shadow");
+        for (const material of Object.values(this._shadows)) material.opacity = theme.number("shadow");
+    }
+
+    refine(fine) {
+        this._shadow.material = fine ? this._shadows.fine : this._shadows.coarse;
     }
 
     /** Lie at a height [m], about a place, under something of a size [m]. */
     lay(height, x, y, size, robotSize) {
         const radius = 6 * size;
         this.group.position.set(x, y, height);
-        this.group.scale.set(radius, radius, 1);
+        this._floor.scale.set(radius, radius, 1);
+        // No shadow falls farther than this; elsewhere nothing need be looked up.
+        this._shadow.scale.set(1.6 * size, 1.6 * size, 1);
         const uniforms = this._material.uniforms;
         uniforms.center.value.set(x, -y); // the shader's place is in the y-up world
         uniforms.radius.value = radius;

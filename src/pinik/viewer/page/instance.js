@@ -20,9 +20,10 @@ export class Instance {
     }
 
     /** Another robot, or its shapes at last. */
-    setRobot(robot, parts) {
+    setRobot(robot, parts, fine) {
         this.robot?.dispose();
         this.robot = new Robot(robot, parts, this._theme.color(`instance-${this._index}`));
+        this.robot.refine(fine);
         this._size = robot.size;
         this._joints = robot.joints.length;
         this.group.add(this.robot.group);
@@ -42,7 +43,7 @@ export class Instance {
         balls.forEach((ball, k) => {
             const set = this._sets[k];
             set.mode = ball.mode;
-            set.ball.show(ball, k === selected, k === near);
+            set.ball.show(ball, k === selected && balls.length > 1, k === near);
             this._layCurve(set, ball.curve);
         });
     }
@@ -95,6 +96,12 @@ export class Instance {
             const visible = away > Math.max(1.1 * this._radius, this._tolerance);
             gap.set([x, y, z, position.x, position.y, position.z], visible ? 2 : 0);
         });
+    }
+
+    /** Where its effectors have been, without moving it. */
+    addToTrails(frame) {
+        const points = frame.points(this._index);
+        this._sets.forEach(({ trail }, k) => trail.add(...points.subarray(3 * k, 3 * k + 3)));
     }
 
     get fading() {

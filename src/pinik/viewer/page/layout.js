@@ -1,19 +1,19 @@
-/** Where the instances stand: in a row, or two by two, whichever shows them larger. */
+/** Where the instances stand: in a row, or in two where that shows them much larger. */
 
 import { axesOf, fit } from "pinik/framing.js";
 import { THREE } from "pinik/three.js";
 
 const GAP = 0.12; // between neighbours, of their width
-const OVERLAP = 0.55; // of its height that a robot of the front row may hide behind it
+const WORTH = 1.5; // how much nearer the camera must come for two rows: one is easier to compare
+const STEEP = 0.5; // [rad] from how high two rows are seen at least
+const STEP_BACK = 0.85; // between two rows, of what keeps one clear of the other
 
 /** Arrange `count` copies of points (Vector3s) seen in a view: {offsets, view, camera}, camera as `fit` returns it. */
 export function arrange(points, count, view, lens) {
-    const grids = count === 4 ? [[4, view], [2, { ...view, elevation: Math.max(view.elevation, 0.5) }]] : [[count, view]];
-    if (count === 2) grids.push([1, { ...view, elevation: Math.max(view.elevation, 0.5) }]);
-    const [best] = grids
-        .map(([columns, seen]) => candidate(points, count, columns, seen, lens))
-        .sort((a, b) => a.camera.distance - b.camera.distance);
-    return best;
+    const row = candidate(points, count, count, view, lens);
+    if (count === 1) return row;
+    const rows = candidate(points, count, count / 2, { ...view, elevation: Math.max(view.elevation, STEEP) }, lens);
+    return row.camera.distance > WORTH * rows.camera.distance ? rows : row;
 }
 
 function candidate(points, count, columns, view, lens) {
@@ -28,7 +28,7 @@ function grid(points, count, columns, view) {
     const column = (1 + GAP) * extent(points, right);
     // Seen from above, a row further back is as much higher as the ground rises in the picture.
     const rise = Math.max(level.dot(up), 0.2);
-    const row = Math.max(OVERLAP * (extent(points, up) / rise), 0.8 * extent(points, level));
+    const row = Math.max(STEP_BACK * (extent(points, up) / rise), 0.8 * extent(points, level));
     const rows = Math.ceil(count / columns);
     return Array.from({ length: count }, (_, k) => {
         const [i, j] = [k % columns, Math.floor(k / columns)];

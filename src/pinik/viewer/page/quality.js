@@ -2,35 +2,30 @@
 
 const SLOW = 40; // [ms] between two pictures: coarser
 const FAST = 19; // [ms]: finer again
-const PAUSE = 300; // [ms] longer than this is no drawing speed, but a pause
-const PATIENCE = 12; // pictures before a verdict
+const PAUSE = 400; // [ms] longer than this is no drawing speed, but a pause
+const PATIENCE = 10; // pictures before a verdict
 const LONG_PATIENCE = 240; // pictures before another try at finer
 
 export class Quality {
-    constructor() {
-        const finest = Math.min(devicePixelRatio, 2);
+    /** @param software whether a processor draws, to which each sample of a pixel costs as much as a pixel */
+    constructor(software) {
+        const sharp = Math.min(devicePixelRatio, 2);
         this._levels = [
-            { ratio: finest, shadowEvery: 1 },
-            { ratio: Math.min(finest, 1), shadowEvery: 2 },
-            { ratio: 0.8, shadowEvery: 4 },
-            { ratio: 0.6, shadowEvery: 8 },
+            { ratio: sharp, fine: true, shadowEvery: 1 },
+            { ratio: Math.min(sharp, 1), fine: true, shadowEvery: 2 },
+            { ratio: Math.min(sharp, 1), fine: false, shadowEvery: 3 },
+            { ratio: 0.75, fine: false, shadowEvery: 4 },
+            { ratio: 0.55, fine: false, shadowEvery: 8 },
         ];
-        this._level = 0;
+        /** How a picture is drawn that stays for a while. */
+        this.still = { ratio: software ? Math.max(sharp, 1.5) : sharp, fine: true };
+        this._level = software ? 3 : 0;
         this._tries = 2;
         this._restart();
     }
 
-    get ratio() {
-        return this._levels[this._level].ratio;
-    }
-
-    get finest() {
-        return this._levels[0].ratio;
-    }
-
-    /** Whether the picture of this number gets new shadows. */
-    shadows(picture) {
-        return picture % this._levels[this._level].shadowEvery === 0;
+    get now() {
+        return this._levels[this._level];
     }
 
     _restart() {
@@ -38,24 +33,18 @@ export class Quality {
         this._count = 0;
     }
 
-    /** Take note of the time [ms] between two pictures drawn one after the other; true where the level changed. */
+    /** Take note of the time [ms] between two pictures drawn one after the other. */
     note(interval) {
-        if (interval > PAUSE) return false;
+        if (interval > PAUSE) return;
         this._mean = this._mean === null ? interval : 0.85 * this._mean + 0.15 * interval;
         this._count += 1;
         if (this._count >= PATIENCE && this._mean > SLOW && this._level < this._levels.length - 1) {
-            return this._go(this._level + 1);
-        }
-        if (this._count >= LONG_PATIENCE && this._mean < FAST && this._level > 0 && this._tries > 0) {
+            this._level += 1;
+            this._restart();
+        } else if (this._count >= LONG_PATIENCE && this._mean < FAST && this._level > 0 && this._tries > 0) {
             this._tries -= 1;
-            return this._go(this._level - 1);
+            this._level -= 1;
+            this._restart();
         }
-        return false;
-    }
-
-    _go(level) {
-        this._level = level;
-        this._restart();
-        return true;
     }
 }

@@ -12,7 +12,7 @@ export class Robot {
      */
     constructor(robot, parts, color) {
         this.group = new THREE.Group();
-        this._materials = [];
+        this._parts = [];
         this._joints = robot.joints.map(() => new THREE.Group());
         this._links = robot.links.map((link) => {
             const group = new THREE.Group();
@@ -22,11 +22,14 @@ export class Robot {
         });
         const materials = robot.links.map(() => []);
         for (const part of parts ?? []) {
-            const mesh = new THREE.Mesh(part.geometry, part.material.clone());
-            mesh.castShadow = mesh.receiveShadow = true;
+            const fine = part.material.clone();
+            const { color, opacity, transparent, side } = fine;
+            const coarse = new THREE.MeshLambertMaterial({ color, opacity, transparent, side });
+            const mesh = new THREE.Mesh(part.geometry, fine);
+            mesh.castShadow = true;
             this._links[part.link].add(mesh);
-            this._materials.push(mesh.material);
-            materials[part.link].push(mesh.material);
+            this._parts.push({ mesh, fine, coarse });
+            materials[part.link].push(fine, coarse);
         }
         this._marks = new LimitMarks(robot, carriedBy(robot, materials));
         this.group.add(...this._joints, this._marks.group);
@@ -40,6 +43,14 @@ export class Robot {
         this._joints.forEach((joint, j) => place(joint, placements, 7 * j));
         this._skeleton?.update(this._joints);
         this._marks.update(frame.sides(i), limited, this._joints);
+    }
+
+    /** Draw finely, with shadows on itself, or quickly. */
+    refine(isFine) {
+        for (const { mesh, fine, coarse } of this._parts) {
+            mesh.material = isFine ? fine : coarse;
+            mesh.receiveShadow = isFine;
+        }
     }
 
     /** The corners of the boxes around its parts, in its own world: Vector3s. */
@@ -65,7 +76,10 @@ export class Robot {
     dispose() {
         this.group.parent?.remove(this.group);
         this._skeleton?.dispose();
-        for (const material of this._materials) material.dispose();
+        for (const { fine, coarse } of this._parts) {
+            fine.dispose();
+            coarse.dispose();
+        }
     }
 }
 

@@ -33,6 +33,7 @@ export class Show {
         this.camera.addEventListener("offsets", () => this._moveInstances());
         this.stage.onTick((now) => this._tick(now));
         this.stage.onResize = () => this.camera.moved || this.frameAll(false);
+        this.stage.onRefine = (fine) => this._instances.forEach(({ robot }) => robot.refine(fine));
         this.stage.onDrawn = () => this._afterDrawing();
     }
 
@@ -56,7 +57,7 @@ export class Show {
     setShapes(message) {
         if (message.generation !== this.robot?.generation || !message.parts.length) return;
         this._parts = this._shapes.parts(message);
-        for (const instance of this._instances) instance.setRobot(this.robot, this._parts);
+        for (const instance of this._instances) instance.setRobot(this.robot, this._parts, this.stage.fine);
         this._ground = null;
         this.drawn = "";
         if (this._frame) this._draw(this._frame);
@@ -120,7 +121,7 @@ export class Show {
 
     _addInstance() {
         const instance = new Instance(this.stage.scene, this._instances.length, this._theme);
-        instance.setRobot(this.robot, this._parts);
+        instance.setRobot(this.robot, this._parts, this.stage.fine);
         this._instances.push(instance);
         this._showBalls();
         this._moveInstances();
@@ -231,6 +232,12 @@ export class Show {
     letGoOfBall(k) {
         this.held = false;
         this.balls.letGo(k);
+    }
+
+    /** A frame that is not shown itself, but has been on the way. */
+    addToTrails(buffer) {
+        const frame = new Frame(buffer);
+        for (const instance of this._instances) instance.addToTrails(frame);
     }
 
     clearTrails() {

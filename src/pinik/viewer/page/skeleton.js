@@ -11,8 +11,8 @@ export class Skeleton {
     constructor(robot, color) {
         this.group = new THREE.Group();
         this._radius = 0.018 * robot.size;
-        this._bone = new THREE.MeshStandardMaterial({ color: 0x9aa3ad, roughness: 0.55 });
-        this._joint = new THREE.MeshStandardMaterial({ color, roughness: 0.45 });
+        this._bone = new THREE.MeshLambertMaterial({ color: 0x8d98a5 });
+        this._joint = new THREE.MeshLambertMaterial({ color });
         this._spheres = robot.joints.map((_, j) => this._add(SPHERE, j ? this._joint : this._bone));
         // A link that begins away from its joint, such as a tool's tip, is the end of one more rod.
         const ends = robot.links.map((link) => ({ joint: link.joint, at: new THREE.Vector3(...link.placement) }));
@@ -24,7 +24,7 @@ export class Skeleton {
 
     _add(geometry, material) {
         const mesh = new THREE.Mesh(geometry, material);
-        mesh.castShadow = mesh.receiveShadow = true;
+        mesh.castShadow = true;
         this.group.add(mesh);
         return mesh;
     }

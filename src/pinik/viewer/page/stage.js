@@ -6,7 +6,7 @@ import { Quality } from "pinik/quality.js";
 import { THREE, Viewer } from "pinik/three.js";
 
 const FIELD_OF_VIEW = 32; // [deg], narrow: little distortion, instances of equal size
-const SETTLE = 250; // [ms] without a change after which a still picture is drawn as finely as possible
+const SETTLE = 400; // [ms] without a change after which a still picture is drawn as finely as possible
 
 export class Stage {
     constructor(element, theme) {
@@ -16,22 +16,24 @@ export class Stage {
         this._tickers = [];
         this._last = 0;
         this._settled = false;
-        this._quality = new Quality();
-        this._setUpViewer();
+        this.fine = true;
+        const software = isSoftware();
+        this._quality = new Quality(software);
+        this._setUpViewer(software);
         this.ground = new Ground();
         this.lights = new Lights();
         this.viewer.scene.add(this.ground.group, this.lights.group);
+        this.viewer.scene.updateMatrixWorld();
         this._paint();
         theme.addEventListener("change", () => this._paint());
         new ResizeObserver(() => this._resize()).observe(element);
         requestAnimationFrame((now) => this._tick(now));
     }
 
-    _setUpViewer() {
-        const renderer = new THREE.WebGLRenderer({ antialias: true, alpha: true });
+    _setUpViewer(software) {
+        const renderer = new THREE.WebGLRenderer({ antialias: !software, alpha: true });
         renderer.outputEncoding = THREE.sRGBEncoding;
         renderer.shadowMap.enabled = true;
-        renderer.shadowMap.type = THREE.PCFSoftShadowMap;
         renderer.shadowMap.autoUpdate = false;
         this.element.append(renderer.domElement);
         const viewer = new Viewer(this.element, false, renderer);
@@ -80,50 +82,45 @@ export class Stage {
 
     _resize() {
         if (this.width === 0 || this.height === 0) return;
-        this._setRatio(this._quality.ratio);
+        this._ratio = null;
         this.viewer.camera.aspect = this.width / this.height;
-        this.onResize?.();
-    }
-
-    _setRatio(ratio) {
-        const { renderer } = this.viewer;
-        this._ratio = ratio;
-        renderer.setPixelRatio(ratio);
-        renderer.setSize(this.width, this.height);
         this.touch();
+        this.onResize?.();
     }
 
     _tick(now) {
         requestAnimationFrame((next) => this._tick(next));
         for (const ticker of this._tickers) ticker(now);
         if (this.viewer.needs_render) {
-            this._draw(now);
+            if (!this._settled) this._quality.note(now - this._last);
+            this._settled = false;
+            this._last = now;
+            const level = this._quality.now;
+            this._render(level, this.frames % level.shadowEvery === 0);
         } else if (!this._settled && now - this._last > SETTLE) {
-            this._settle();
+            this._settled = true;
+            this._render(this._quality.still, true);
         }
     }
 
-    _draw(now) {
-        const ratio = this._quality.ratio;
-        if (this._settled && this._ratio !== ratio) this._setRatio(ratio);
-        if (!this._settled && this._quality.note(now - this._last)) this._setRatio(this._quality.ratio);
-        this._settled = false;
-        this._last = now;
-        this._render(this._quality.shadows(this.frames));
-    }
-
-    _settle() {
-        this._settled = true;
-        if (this._ratio !== this._quality.finest) this._setRatio(this._quality.finest);
-        this._render(true);
-    }
-
-    _render(shadows) {
+    _render({ ratio, fine }, shadows) {
         const { camera, controls, renderer } = this.viewer;
+        if (this._ratio !== ratio) {
+            this._ratio = ratio;
+            renderer.setPixelRatio(ratio);
+            renderer.setSize(this.width, this.height);
+        }
+        if (this.fine !== fine) {
+            this.fine = fine;
+            this.ground.refine(fine);
+            this.onRefine?.(fine);
+        }
+        // Materials of the two kinds are never drawn in the other's turn, so that each keeps its own kind of shadow.
+        renderer.shadowMap.type = fine ? THREE.PCFSoftShadowMap : THREE.BasicShadowMap;
+        renderer.shadowMap.needsUpdate = shadows;
         const distance = camera.position.distanceTo(controls.target);
         camera.near = distance / 200;
         camera.far = distance * 50;
-        renderer.shadowMap.needsUpdate = shadows;
         this.viewer.render();
         this.frames += 1;
         this.onDrawn?.();
@@ -132,9 +129,17 @@ export class Stage {
     /** Where a point of the scene (z up) is on the canvas [CSS px]; `behind` where the camera does not look. */
     project(point) {
         const { camera, scene } = this.viewer;
-        scene.updateMatrixWorld();
-        camera.updateMatrixWorld();
+        camera.updateWorldMatrix(true, false);
         const seen = point.clone().applyMatrix4(scene.matrixWorld).project(camera);
         return { x: ((seen.x + 1) / 2) * this.width, y: ((1 - seen.y) / 2) * this.height, behind: seen.z > 1 };
     }
+}
+
+/** Whether WebGL is drawn by the processor. */
+function isSoftware() {
+    const gl = document.createElement("canvas").getContext("webgl");
+    const about = gl?.getExtension("WEBGL_debug_renderer_info");
+    const name = about ? gl.getParameter(about.UNMASKED_RENDERER_WEBGL) : "";
+    gl?.getExtension("WEBGL_lose_context")?.loseContext();
+    return /swiftshader|llvmpipe|softpipe|software|basic render/i.test(name);
 }

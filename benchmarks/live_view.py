@@ -1,0 +1,173 @@
+"""What the live view promises in seconds and megabytes, measured in a real browser.
+
+    python benchmarks/live_view.py start      from `pinik live` to a drawn robot: Panda first and second time, arm
+    python benchmarks/live_view.py drag       from pointer event to the ball's new place at the server, and back
+    python benchmarks/live_view.py endure     60 s of four lions with all effectors: memory, queues, pace
+
+It needs the dev extras and Debian's chromium. Timings differ from machine to machine; compare within one run.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import os
+import platform
+import statistics
+import subprocess
+import sys
+import tempfile
+import time
+import urllib.request
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+from playwright.sync_api import Browser, Page, sync_playwright
+
+import pinik
+
+CHROMIUM = "/usr/bin/chromium"
+FLAGS = ["--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--disable-quic", "--no-first-run",
+         "--disable-background-networking", "--enable-precise-memory-info"]  # fmt: skip
+VIEWPORT = {"width": 1280, "height": 720}
+
+
+@contextmanager
+def browser() -> Iterator[Browser]:
+    with sync_playwright() as playwright:
+        chromium = playwright.chromium.launch(executable_path=CHROMIUM, args=FLAGS)
+        yield chromium
+        chromium.close()
+
+
+@contextmanager
+def live(*arguments: str, **environment: str) -> Iterator[tuple[subprocess.Popen[str], str]]:
+    """`pinik live` in a process of its own, and the address that it prints."""
+    command = [sys.executable, "-m", "pinik", "live", *arguments, "--no-browser", "--port", "0"]
+    with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True,
+                          env={**os.environ, **environment}) as process:  # fmt: skip
+        try:
+            yield process, process.stdout.readline().strip()
+        finally:
+            process.terminate()
+
+
+def state_of(url: str) -> dict[str, Any]:
+    with urllib.request.urlopen(f"{url}api/state") as answer:
+        return json.load(answer)
+
+
+def resident_megabytes(pid: int) -> float:
+    """The process's resident size, from /proc."""
+    pages = int(Path(f"/proc/{pid}/statm").read_text().split()[1])
+    return pages * os.sysconf("SC_PAGE_SIZE") / 1e6
+
+
+def drawn_after(page: Page, robot: str, cache: str, began: float) -> float:
+    """Seconds from `began` until the page, in a browser that is open already, has drawn the robot's own shapes."""
+    with live(robot, PINIK_CACHE_DIR=cache) as (_, url):
+        page.goto(url)
+        page.wait_for_function("window.pinik?.ready && window.pinik.shapesDrawn", polling="raf", timeout=60_000)
+        return time.perf_counter() - began
+
+
+def measure_start(rounds: int) -> dict[str, float]:
+    """Medians over `rounds`, each with an empty cache first."""
+    figures: dict[str, list[float]] = {}
+    with browser() as chromium:
+        for _ in range(rounds):
+            with tempfile.TemporaryDirectory() as cache:
+                for name, robot in (("panda, first", "panda"), ("panda, then", "panda"), ("arm, first", "arm"),
+                                    ("arm, then", "arm")):  # fmt: skip
+                    page = chromium.new_page(viewport=VIEWPORT)
+                    figures.setdefault(name, []).append(drawn_after(page, robot, cache, time.perf_counter()))
+                    page.close()
+    return {f"{name} [s]": statistics.median(values) for name, values in figures.items()}
+
+
+def measure_drag(moves: int) -> dict[str, float]:
+    """Milliseconds from a pointer event to the ball's new place, at the server and drawn again in the page.
+
+    The clocks of page and server are one machine's; what the server notes is the time at which its own state has the
+    ball where the pointer put it, polled in the process itself.
+    """
+    with pinik.live("arm", port=0, motion="hand") as view, browser() as chromium:
+        page = chromium.new_page(viewport=VIEWPORT)
+        page.goto(view.url)
+        page.wait_for_function("window.pinik?.ready", timeout=60_000)
+        page.evaluate(
+            "addEventListener('pointermove', e => window.lastMove = performance.timeOrigin + e.timeStamp, true)"
+        )
+        at = page.evaluate("window.pinik.targetOnScreen(0)")
+        page.mouse.move(at["x"], at["y"])
+        page.mouse.down()
+        delays = []
+        for k in range(moves):
+            before = view.state["balls"][0]["position"]
+            page.mouse.move(at["x"] + 3 * (k % 20) + 3, at["y"] - 2 * (k % 13) - 2)
+            deadline = time.perf_counter() + 5.0
+            while view.state["balls"][0]["position"] == before and time.perf_counter() < deadline:
+                time.sleep(0.0005)
+            arrived = 1e3 * time.time()
+            delays.append(arrived - page.evaluate("window.lastMove"))
+        page.mouse.up()
+    return {"pointer event to server, median [ms]": statistics.median(delays),
+            "pointer event to server, 90 % [ms]": statistics.quantiles(delays, n=10)[-1]}  # fmt: skip
+
+
+def measure_endurance(seconds: float) -> dict[str, float]:
+    """Four lions, six balls each on a curve: what grows."""
+    with live("lion", "--root", "free_flyer") as (process, url), browser() as chromium:
+        page = chromium.new_page(viewport=VIEWPORT)
+        page.goto(url)
+        page.wait_for_function("window.pinik?.ready", timeout=60_000)
+        for index in range(6):
+            page.get_by_test_id(f"ball-mode-{index}").select_option("on")
+        time.sleep(10.0)  # until the recording's ring is half full and the page's caches are warm
+        sizes, heaps, steps, began = [], [], state_of(url)["step"], time.perf_counter()
+        while time.perf_counter() - began < seconds:
+            sizes.append(resident_megabytes(process.pid))
+            heaps.append(page.evaluate("performance.memory.usedJSHeapSize") / 1e6)
+            time.sleep(1.0)
+        pace = (state_of(url)["step"] - steps) / (time.perf_counter() - began)
+        late = page.evaluate("window.pinik.state.step") - state_of(url)["step"]
+    third = len(sizes) // 3
+    return {
+        "server, first third [MB]": statistics.mean(sizes[:third]),
+        "server, last third [MB]": statistics.mean(sizes[-third:]),
+        "page's heap, first third [MB]": statistics.mean(heaps[:third]),
+        "page's heap, last third [MB]": statistics.mean(heaps[-third:]),
+        "steps a second": pace,
+        "steps that the page's state lags": -late,
+    }
+
+
+def main() -> None:
+    """Measure what was asked for and print it."""
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("what", choices=("start", "drag", "endure"))
+    parser.add_argument("--rounds", type=int, default=3, help="of start")
+    parser.add_argument("--moves", type=int, default=100, help="of drag")
+    parser.add_argument("--seconds", type=float, default=60.0, help="of endure")
+    parser.add_argument("--json", action="store_true")
+    arguments = parser.parse_args()
+    figures = {
+        "start": lambda: measure_start(arguments.rounds),
+        "drag": lambda: measure_drag(arguments.moves),
+        "endure": lambda: measure_endurance(arguments.seconds),
+    }[arguments.what]()
+    about = (
+        f"pinik {pinik.__version__}, Python {platform.python_version()}, {platform.machine()}, {os.cpu_count()} cores"
+    )
+    if arguments.json:
+        print(json.dumps({"schema": 1, "about": about, "figures": figures}))
+        return
+    print(f"# {about}, chromium with software rendering")
+    for name, value in figures.items():
+        print(f"{name:42} {value:10.2f}")
+
+
+if __name__ == "__main__":
+    main()

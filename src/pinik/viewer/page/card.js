@@ -1,0 +1,84 @@
+/** One instance in the panel: its method, its parameters, and what it says. */
+
+import { make, say } from "pinik/elements.js";
+import { offer, write } from "pinik/hands.js";
+import { parameterWidget } from "pinik/parameter.js";
+
+export class Card {
+    constructor(index, hello, connection) {
+        this._index = index;
+        this._connection = connection;
+        this._drawn = "";
+        this._widgets = [];
+        this._title = make("span", { className: "method-name" });
+        this._changed = make("span", { className: "changed", title: "Some parameters are not at their defaults", hidden: true });
+        this._parameters = make("div", { className: "parameters" });
+        this._details = make(
+            "details",
+            { dataset: { testid: `parameters-${index}` } },
+            make("summary", { title: "Parameters (p)" }, this._title, this._changed),
+            this._parameters,
+        );
+        this._method = make("select", { className: "small", dataset: { testid: `method-${index}` }, aria: { label: `Method of instance ${index + 1}` } });
+        offer(this._method, hello.methods.map(({ name }) => [name, name]));
+        this._help = new Map(hello.methods.map(({ name, help }) => [name, help]));
+        this._method.addEventListener("change", () => connection.send({ type: "method", instance: index, method: this._method.value }));
+        this._message = make("p", { className: "message", dataset: { testid: `message-${index}` } });
+        this._defaults = make("button", { type: "button", className: "soft", dataset: { testid: `defaults-${index}` } }, "Defaults");
+        this._defaults.addEventListener("click", () => this._reset());
+        this.element = make("article", { className: "card", dataset: { testid: `instance-${index}` } }, this._method, this._details, this._message);
+        this.element.style.setProperty("--own", `var(--instance-${index})`);
+    }
+
+    get open() {
+        return this._details.open;
+    }
+
+    set open(open) {
+        this._details.open = open;
+        if (open) this._details.querySelector("summary").focus();
+    }
+
+    setState(state) {
+        const instance = state.instances[this._index];
+        this._instance = instance;
+        say(this._title, instance.title);
+        this._title.title = this._help.get(instance.method) ?? "";
+        if (![...this._method.options].some(({ value }) => value === instance.method)) this._method.add(new Option(instance.method));
+        write(this._method, instance.method);
+        say(this._message, instance.message);
+        this._message.title = instance.message;
+        const { status } = instance;
+        this._message.dataset.tone = status === "CONVERGED" ? "good" : status === "IDLE" ? "idle" : "missed";
+        this._showParameters(instance, state);
+    }
+
+    _showParameters({ method, parameters }, state) {
+        const drawn = [method, ...parameters.map(({ name, kind }) => name + kind)].join();
+        if (drawn !== this._drawn) {
+            this._drawn = drawn;
+            this._widgets = parameters.map((description) => {
+                const commit = (value, often) => this._send(description.name, value, often);
+                return parameterWidget(description, `param-${this._index}-${description.name}`, commit);
+            });
+            this._parameters.replaceChildren(...this._widgets.map(({ element }) => element), this._defaults);
+        }
+        parameters.forEach((description, k) => this._widgets[k].show(description, state));
+        this._changed.hidden = !parameters.some(differs);
+        this._defaults.disabled = this._changed.hidden;
+    }
+
+    _send(name, value, often = false) {
+        const message = { type: "parameter", instance: this._index, name, value };
+        if (often) this._connection.sendNewest(`${this._index} ${name}`, message);
+        else this._connection.send(message);
+    }
+
+    _reset() {
+        for (const description of this._instance.parameters.filter(differs)) this._send(description.name, description.default);
+    }
+}
+
+function differs({ value, default: usual }) {
+    return JSON.stringify(value) !== JSON.stringify(usual);
+}

@@ -1,0 +1,129 @@
+/** The settings that all instances share. */
+
+import { byId, make, say } from "pinik/elements.js";
+import { offer, scale, typed, write } from "pinik/hands.js";
+import { plain, spaced } from "pinik/words.js";
+
+const DEGREE = Math.PI / 180;
+
+export class Controls {
+    /** @param connection where messages go */
+    constructor(connection) {
+        this._connection = connection;
+        const send = (type, fields) => connection.send({ type, ...fields });
+        this._send = send;
+        for (const id of ["robot", "root"]) {
+            byId(id).addEventListener("change", () => send("robot", { name: byId("robot").value, root: byId("root").value }));
+        }
+        byId("motion").addEventListener("change", ({ target }) => send("motion", { motion: target.value }));
+        byId("curve").addEventListener("change", ({ target }) => send("curve", { curve: target.value }));
+        byId("limits").addEventListener("change", ({ target }) => send("limits", { on: target.checked }));
+        byId("start").addEventListener("click", () => this.toggleRun());
+        byId("step").addEventListener("click", () => this.step());
+        byId("reset").addEventListener("click", () => send("reset"));
+        this._bindSpeed();
+        this._bindIterations();
+        this._bindTolerance();
+    }
+
+    setHello(hello) {
+        this.hello = hello;
+        const titled = (list) => list.map(({ name, title }) => [name, title]);
+        offer(byId("robot"), hello.robots.map((name) => [name, name]));
+        offer(byId("root"), hello.roots.map((name) => [name, spaced(name)]));
+        offer(byId("motion"), titled(hello.motions));
+        offer(byId("curve"), titled(hello.curves));
+        const [low, high] = hello.ranges.speed;
+        this._speed = scale(low, high, true);
+        Object.assign(byId("speed"), { min: low, max: high });
+        [byId("iterations").min, byId("iterations").max] = hello.ranges.iterations;
+        byId("views").replaceChildren(...hello.views.map((count) => this._viewButton(count)));
+    }
+
+    _viewButton(count) {
+        const title = count === 1 ? "One robot (1)" : `${count} robots side by side (${count})`;
+        const button = make("button", { type: "button", title, dataset: { testid: `view-${count}`, view: count } }, String(count));
+        button.addEventListener("click", () => this.view(count));
+        return button;
+    }
+
+    view(count) {
+        this._send("view", { count });
+    }
+
+    toggleRun() {
+        this._send("run", { on: !this.state?.running });
+    }
+
+    /** One step; a running session stops first. */
+    step() {
+        if (this.state?.running) this._send("run", { on: false });
+        this._send("step");
+    }
+
+    changeSpeed(factor) {
+        const [low, high] = this.hello.ranges.speed;
+        this._send("speed", { value: Number(Math.min(Math.max(this.state.speed * factor, low), high).toPrecision(3)) });
+    }
+
+    _bindSpeed() {
+        byId("speed").addEventListener("change", ({ target }) => {
+            const value = typed(target);
+            if (value !== null) this._send("speed", { value });
+        });
+        byId("speed-slider").addEventListener("input", ({ target }) => {
+            const value = this._speed.value(Number(target.value));
+            byId("speed").value = plain(value);
+            this._connection.sendNewest("speed", { type: "speed", value });
+        });
+    }
+
+    _bindIterations() {
+        const send = () => {
+            const at_most = typed(byId("iterations"));
+            if (at_most !== null) this._send("iterations", { until_reached: byId("until-reached").checked, at_most: Math.round(at_most) });
+        };
+        byId("iterations").addEventListener("change", send);
+        byId("until-reached").addEventListener("change", send);
+    }
+
+    _bindTolerance() {
+        const send = () => {
+            const [millimetres, degrees] = [typed(byId("tolerance")), typed(byId("tolerance-angle"))];
+            if (millimetres !== null && degrees !== null) {
+                this._send("tolerance", { position: millimetres / 1000, orientation: degrees * DEGREE });
+            }
+        };
+        byId("tolerance").addEventListener("change", send);
+        byId("tolerance-angle").addEventListener("change", send);
+    }
+
+    setState(state) {
+        this.state = state;
+        const { hello } = this;
+        // A robot from a file of the visitor's own is in no catalogue.
+        if (!hello.robots.includes(state.robot)) offer(byId("robot"), [state.robot, ...hello.robots].map((name) => [name, name]));
+        for (const name of ["robot", "root", "motion", "curve"]) write(byId(name), state[name]);
+        write(byId("limits"), state.limits);
+        write(byId("speed"), plain(state.speed));
+        write(byId("speed-slider"), this._speed.position(state.speed));
+        write(byId("until-reached"), state.iterations.until_reached);
+        write(byId("iterations"), state.iterations.at_most);
+        say(byId("iterations-label"), state.iterations.until_reached ? "Iterations at most" : "Iterations");
+        write(byId("tolerance"), plain(state.tolerance.position * 1000));
+        write(byId("tolerance-angle"), plain(Number((state.tolerance.orientation / DEGREE).toPrecision(3))));
+        for (const button of byId("views").children) button.ariaPressed = String(Number(button.dataset.view) === state.view);
+        byId("curve").closest(".field").classList.toggle("faint", state.motion !== "curve");
+        this._showRun(state);
+        byId("save-animation").download = `pinik-${state.robot.replace(/[^\w-]+/g, "_")}.html`;
+    }
+
+    _showRun({ running, steps_per_second: rate }) {
+        const start = byId("start");
+        start.ariaPressed = String(running);
+        start.title = running ? "Stop (space)" : "Start (space)";
+        start.querySelector("use").setAttribute("href", running ? "#icon-pause" : "#icon-play");
+        say(start.querySelector("span"), running ? "Stop" : "Start");
+        say(byId("rate"), running && rate ? `${rate.toFixed(0)} steps/s` : running ? "" : "stopped");
+    }
+}

@@ -1,0 +1,33 @@
+/** What each instance did over the last ten seconds, step by step, for the charts. */
+
+const SECONDS = 10;
+
+export class History {
+    constructor() {
+        this.series = [];
+        this.now = 0;
+    }
+
+    clear() {
+        this.series = [];
+    }
+
+    /** @param time [s] of the session, by its step */
+    add(frame, time) {
+        if (this.series.length !== frame.instances || time < this.now || frame.generation !== this._generation) {
+            this.series = Array.from({ length: frame.instances }, () => []);
+            this._generation = frame.generation;
+        }
+        this.now = time;
+        this.series.forEach((samples, i) => {
+            const { positionError, orientationError, seconds, counted } = frame.figures(i);
+            const last = samples[samples.length - 1];
+            if (!last || last.time < time) samples.push({ time, error: positionError, turn: orientationError, seconds: counted ? seconds : NaN });
+            while (samples[0].time < time - SECONDS) samples.shift();
+        });
+    }
+
+    get seconds() {
+        return SECONDS;
+    }
+}

@@ -1,0 +1,57 @@
+/** A parameter that gives numbers to some joints: a list of these, and a menu of the others. */
+
+import { icon, make } from "pinik/elements.js";
+import { offer, typed, write } from "pinik/hands.js";
+import { plain } from "pinik/words.js";
+
+export class JointValues {
+    constructor({ name, low, high }, testid, commit) {
+        this._name = name;
+        this._range = { low, high };
+        this._testid = testid;
+        this._commit = commit;
+        this._value = {};
+        this._rows = new Map();
+        this.list = make("ul", { className: "joint-values" });
+        this.adder = make("select", { dataset: { testid }, aria: { label: `${name}: give a joint a value` } });
+        this.adder.addEventListener("change", () => {
+            const joint = this.adder.value;
+            if (joint) this._commit({ ...this._value, [joint]: this._range.high === null ? 0 : this._range.high / 2 });
+            this.adder.value = "";
+        });
+    }
+
+    show(value, jointNames) {
+        this._value = value;
+        const free = jointNames.filter((joint) => !(joint in value));
+        offer(this.adder, [["", "add a joint …"], ...free.map((joint) => [joint, joint])]);
+        for (const [joint, { row }] of this._rows) {
+            if (joint in value) continue;
+            row.remove();
+            this._rows.delete(joint);
+        }
+        for (const [joint, number] of Object.entries(value)) {
+            if (!this._rows.has(joint)) this._rows.set(joint, this._make(joint));
+            write(this._rows.get(joint).input, plain(number));
+        }
+    }
+
+    _make(joint) {
+        const { low, high } = this._range;
+        const input = make("input", { type: "number", step: "any", dataset: { testid: `${this._testid}-${joint}` }, aria: { label: joint } });
+        if (low !== null) input.min = low;
+        if (high !== null) input.max = high;
+        input.addEventListener("change", () => {
+            const number = typed(input);
+            if (number !== null) this._commit({ ...this._value, [joint]: number });
+        });
+        const remove = make("button", { type: "button", className: "quiet", title: `${joint} as the others`, aria: { label: `Remove ${joint}` } }, icon("close"));
+        remove.addEventListener("click", () => {
+            const { [joint]: _, ...others } = this._value;
+            this._commit(others);
+        });
+        const row = make("li", {}, make("span", {}, joint), input, remove);
+        this.list.append(row);
+        return { row, input };
+    }
+}

@@ -1,0 +1,32 @@
+/** Keys for everything, and the list of them. */
+
+import { byId, make } from "pinik/elements.js";
+
+export class Keys {
+    /** @param bindings [{keys, title, act(event)}]; `shown` where the list should say it differently */
+    constructor(bindings) {
+        this._acts = new Map(bindings.flatMap(({ keys, act }) => keys.map((key) => [key, act])));
+        byId("keys").append(
+            ...bindings.map(({ keys, shown = keys, title }) =>
+                make("div", {}, make("dt", {}, ...shown.map((key) => make("kbd", {}, key))), make("dd", {}, title)),
+            ),
+        );
+        document.addEventListener("keydown", (event) => this._press(event));
+    }
+
+    _press(event) {
+        if (event.ctrlKey || event.metaKey || event.altKey || event.isComposing || byId("help").open) return;
+        if (isUsedBy(event.target, event.key)) return;
+        const act = this._acts.get(event.key) ?? this._acts.get(event.key.toLowerCase());
+        if (!act) return;
+        event.preventDefault();
+        act(event);
+    }
+}
+
+/** Whether a key belongs to the element that has the focus. */
+function isUsedBy(element, key) {
+    if (element.matches("select, input[type=number], input[type=text], textarea")) return true;
+    if (element.matches("input[type=range]")) return key.startsWith("Arrow") || key.startsWith("Page");
+    return key === " " && element.matches("button, a, summary, input");
+}

@@ -1,0 +1,197 @@
+/** The live page: connects the session's messages with the picture, the panel and the visitor's hands. */
+
+import { Address } from "pinik/address.js";
+import { PRESETS } from "pinik/camera.js";
+import { Cards } from "pinik/cards.js";
+import { Chart } from "pinik/chart.js";
+import { Connection } from "pinik/connection.js";
+import { Controls } from "pinik/controls.js";
+import { byId } from "pinik/elements.js";
+import { isFrame } from "pinik/frame.js";
+import { Grab } from "pinik/grab.js";
+import { watchHands } from "pinik/hands.js";
+import { History } from "pinik/history.js";
+import { Keys } from "pinik/keys.js";
+import { Notices } from "pinik/notices.js";
+import { Nudge } from "pinik/nudge.js";
+import { addPresets } from "pinik/presets.js";
+import { Show } from "pinik/show.js";
+import { Table } from "pinik/table.js";
+import { Targets } from "pinik/targets.js";
+import { Theme } from "pinik/theme.js";
+import { THREE } from "pinik/three.js";
+
+const CHARTS = 100; // [ms] between two drawings of the charts
+
+class Page {
+    constructor() {
+        watchHands();
+        this.theme = new Theme();
+        this.notices = new Notices();
+        this.show = new Show({ canvas: byId("canvas"), labels: byId("labels") }, this.theme);
+        this.connection = new Connection({
+            onText: (message) => this._on[message.type]?.(message),
+            onBinary: (buffer) => this._take(buffer),
+            onOpen: () => this.notices.connected(true),
+            onClose: () => this.notices.connected(false),
+        });
+        this.controls = new Controls(this.connection);
+        this.cards = new Cards(byId("cards"), this.connection);
+        this.targets = new Targets(this.connection, (k) => this.show.select(k));
+        this.table = new Table(byId("table"));
+        this.address = new Address((setup) => this.connection.send({ type: "setup", setup }));
+        this.history = new History();
+        this._drawnCharts = 0;
+        this._unanswered = null;
+        this._makeCharts();
+        this._makeHands();
+        this._makeButtons();
+        this._makeKeys();
+        this.show.stage.onTick((now) => this._tick(now));
+    }
+
+    /** What to do with each of the session's messages. */
+    _on = {
+        hello: (hello) => {
+            this.hello = hello;
+            for (const part of [this.show, this.controls, this.cards]) part.setHello(hello);
+        },
+        robot: (robot) => {
+            this.show.setRobot(robot);
+            this.targets.setRobot(robot);
+            this.notices.warnings(robot.warnings);
+            this.robot = robot;
+        },
+        state: (state) => {
+            this.state = state;
+            document.title = `${state.robot} – pinik`;
+            for (const part of [this.controls, this.cards, this.targets, this.table, this.show]) part.setState(state);
+            this.notices.loading(state.loading);
+            this.address.show(state.setup);
+        },
+        shapes: (shapes) => {
+            this.show.setShapes(shapes);
+            if (shapes.generation === this.robot.generation) this.notices.warnings([...this.robot.warnings, ...shapes.warnings]);
+        },
+        error: ({ message }) => this.notices.error(message),
+    };
+
+    _take(buffer) {
+        const bytes = new Uint8Array(buffer);
+        if (!isFrame(bytes)) {
+            this.show.command(bytes);
+            return;
+        }
+        const frame = this.show.setFrame(buffer);
+        this.history.add(frame, frame.step / this.hello.steps_per_second);
+        // A hidden page draws nothing, but still follows.
+        if (document.hidden) this._answer(frame.step);
+        else this._unanswered = frame.step;
+    }
+
+    _answer(step) {
+        this.connection.send({ type: "drawn", step });
+        this._unanswered = null;
+    }
+
+    _tick(now) {
+        if (this._unanswered !== null) this._answer(this._unanswered);
+        if (now - this._drawnCharts < CHARTS || !this.state) return;
+        this._drawnCharts = now;
+        const { tolerance } = this.state;
+        this._errorChart.draw(this.history, tolerance.position * 1000);
+        this._timeChart.draw(this.history, null);
+    }
+
+    _makeCharts() {
+        this._errorChart = new Chart(byId("error-chart"), this.theme, { value: ({ error }) => error * 1000, logarithmic: true });
+        this._timeChart = new Chart(byId("time-chart"), this.theme, { value: ({ seconds }) => seconds * 1000, logarithmic: false, least: 0.2 });
+    }
+
+    _makeHands() {
+        this.grab = new Grab(this.show, {
+            onGrab: (k) => this.targets.select(k),
+            onMove: (k, position) => this._moveBall(k, position),
+            onHover: (k) => this.show.pointAt(k),
+        });
+        this.nudge = new Nudge(this.show, (k, position) => {
+            this.show.balls.hold(k, new THREE.Vector3(...position));
+            this.show.letGoOfBall(k);
+            this._moveBall(k, position);
+        });
+    }
+
+    _moveBall(index, position) {
+        this.connection.sendNewest(`ball ${index}`, { type: "ball", index, position });
+        this.targets.showPosition(index, position);
+    }
+
+    _makeButtons() {
+        addPresets(byId("presets"), this.show);
+        byId("frame-all").addEventListener("click", () => this.show.frameAll());
+        byId("help-button").addEventListener("click", () => byId("help").showModal());
+        byId("help").addEventListener("click", ({ target }) => target === byId("help") && byId("help").close());
+        byId("theme").addEventListener("click", () => this.theme.turn());
+        const tell = () => {
+            byId("theme").title = `Theme: ${this.theme.choice === "system" ? "as the system" : this.theme.choice} (t)`;
+        };
+        this.theme.addEventListener("change", tell);
+        tell();
+    }
+
+    _makeKeys() {
+        const { controls, show, targets } = this;
+        const next = (list, now) => list[(list.indexOf(now) + 1) % list.length];
+        const names = (list) => list.map(({ name }) => name);
+        const send = (type, fields) => this.connection.send({ type, ...fields });
+        const nudge = (event) => this.nudge.press(event.key, targets.selected, event.shiftKey);
+        new Keys([
+            { keys: [" "], shown: ["Space"], title: "start or stop", act: () => controls.toggleRun() },
+            { keys: ["."], title: "one step", act: () => controls.step() },
+            { keys: ["r"], title: "reset", act: () => send("reset") },
+            { keys: ["1", "2", "4"], title: "so many robots side by side", act: ({ key }) => controls.view(Number(key)) },
+            { keys: ["m"], title: "by hand, along a curve, at random", act: () => send("motion", { motion: next(names(this.hello.motions), this.state.motion) }) },
+            { keys: ["c"], title: "next curve", act: () => send("curve", { curve: next(names(this.hello.curves), this.state.curve) }) },
+            { keys: ["+", "=", "-"], shown: ["+", "−"], title: "faster, slower", act: ({ key }) => controls.changeSpeed(key === "-" ? 0.8 : 1.25) },
+            { keys: ["l"], title: "joint limits on or off", act: () => send("limits", { on: !this.state.limits }) },
+            { keys: ["p"], title: "parameters of the next method", act: () => this.cards.openNext() },
+            { keys: ["b"], title: "select the next ball", act: () => targets.selectNext() },
+            { keys: ["ArrowLeft", "ArrowRight", "ArrowUp", "ArrowDown"], shown: ["←", "→", "↑", "↓"], title: "ball sideways, away and nearer; Shift: finer", act: nudge },
+            { keys: ["PageUp", "PageDown"], shown: ["Page ↑", "Page ↓"], title: "ball up, down; Shift: finer", act: nudge },
+            { keys: ["o"], title: "ask for an orientation too", act: () => targets.toggleOrientation() },
+            { keys: ["v"], title: "next side to look from", act: () => show.frameAll(true, next(Object.keys(PRESETS), show.camera.preset)) },
+            { keys: ["f"], title: "look at everything", act: () => show.frameAll() },
+            { keys: ["t"], title: "light, dark or the system's theme", act: () => this.theme.turn() },
+            { keys: ["?"], title: "this list", act: () => byId("help").showModal() },
+        ]);
+    }
+}
+
+const page = new Page();
+
+/** For tests and the curious. */
+window.pinik = {
+    get state() {
+        return page.state;
+    },
+    get viewer() {
+        return page.show.stage.viewer;
+    },
+    get frames() {
+        return page.show.stage.frames;
+    },
+    /** What of the present robot has been drawn: "", "skeleton" or "shapes". */
+    get drawn() {
+        return page.show.drawn;
+    },
+    get ready() {
+        return page.show.drawn !== "";
+    },
+    /** Where ball k of the first instance is, in CSS pixels of the page. */
+    targetOnScreen(k) {
+        const { stage } = page.show;
+        const box = stage.element.getBoundingClientRect();
+        const { x, y } = stage.project(page.show.ballInWorld(k, 0));
+        return { x: box.left + x, y: box.top + y };
+    },
+};

@@ -1,0 +1,82 @@
+/** A saved animation: plays the frames that the page carries in itself. */
+
+import { byId } from "pinik/elements.js";
+import { addPresets } from "pinik/presets.js";
+import { Show } from "pinik/show.js";
+import { Theme } from "pinik/theme.js";
+
+const TAIL = 90; // frames before one that its effectors' trails show
+
+class Player {
+    constructor(recording) {
+        this._show = new Show({ canvas: byId("canvas"), labels: byId("labels") }, new Theme());
+        this._frames = bytesOf(recording.frames).buffer;
+        this._size = recording.frame_bytes;
+        this._count = Math.floor(this._frames.byteLength / Math.max(this._size, 1));
+        this._rate = recording.frames_per_second;
+        this._at = 0;
+        this._shown = -1;
+        this._playing = this._count > 1;
+        this._before = performance.now();
+        addPresets(byId("presets"), this._show);
+        this._show.setHello(recording.hello);
+        this._show.setRobot(recording.robot);
+        this._show.setState(recording.state);
+        for (const command of recording.commands) this._show.command(bytesOf(command));
+        this._show.setShapes(recording.shapes);
+        this._bind();
+        this._show.stage.onTick((now) => this._tick(now));
+    }
+
+    _bind() {
+        byId("time").max = Math.max(0, this._count - 1);
+        byId("play").addEventListener("click", () => this._toggle());
+        byId("time").addEventListener("input", ({ target }) => this._seek(Number(target.value)));
+        document.addEventListener("keydown", (event) => {
+            if (event.key !== " " || event.target.matches("button, select")) return;
+            event.preventDefault();
+            this._toggle();
+        });
+    }
+
+    _toggle() {
+        this._playing = !this._playing;
+        byId("play").ariaLabel = this._playing ? "Pause" : "Play";
+        byId("play").querySelector("use").setAttribute("href", this._playing ? "#icon-pause" : "#icon-play");
+    }
+
+    /** Go to a frame, by way of those before it, whose trails belong to the picture. */
+    _seek(at) {
+        this._at = at;
+        this._show.clearTrails();
+        for (let k = Math.max(0, at - TAIL); k < at; k++) this._show.addToTrails(this._frame(k));
+        this._shown = -1;
+    }
+
+    _frame(k) {
+        return this._frames.slice(k * this._size, (k + 1) * this._size);
+    }
+
+    _tick(now) {
+        if (this._playing) {
+            this._at += ((now - this._before) / 1000) * this._rate * Number(byId("rate").value);
+            if (this._at >= this._count) {
+                this._at = 0;
+                this._show.clearTrails();
+            }
+        }
+        this._before = now;
+        const k = Math.floor(this._at);
+        if (k === this._shown || this._count === 0) return;
+        this._shown = k;
+        this._show.setFrame(this._frame(k));
+        byId("time").value = k;
+        byId("clock").textContent = `${(k / this._rate).toFixed(1)} s of ${((this._count - 1) / this._rate).toFixed(1)} s`;
+    }
+}
+
+function bytesOf(base64) {
+    return Uint8Array.from(atob(base64), (character) => character.charCodeAt(0));
+}
+
+window.pinik = { player: new Player(JSON.parse(byId("recording").textContent)) };

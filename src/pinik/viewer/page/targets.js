@@ -1,0 +1,116 @@
+/** The balls in the panel: which frame each leads, how, and where it is in numbers. */
+
+import { byId, icon, make, say } from "pinik/elements.js";
+import { offer, typed, write } from "pinik/hands.js";
+import { plain } from "pinik/words.js";
+
+const DEGREE = Math.PI / 180;
+const MODES = [["on", "leads"], ["pinned", "pinned"], ["off", "off"]];
+const POSITION = ["target-x", "target-y", "target-z"];
+const TURN = ["roll", "pitch", "yaw"];
+
+export class Targets {
+    /** @param onSelect called with the ball that becomes the selected one */
+    constructor(connection, onSelect) {
+        this._connection = connection;
+        this._onSelect = onSelect;
+        this._rows = [];
+        this.selected = 0;
+        POSITION.forEach((id) => byId(id).addEventListener("change", () => this._sendPosition()));
+        TURN.forEach((id) => byId(id).addEventListener("change", () => this._sendOrientation(byId("orientation").checked)));
+        byId("orientation").addEventListener("change", ({ target }) => this._sendOrientation(target.checked));
+        byId("add-effector").addEventListener("change", ({ target }) => {
+            if (target.value) connection.send({ type: "add_effector", frame: target.value });
+            target.value = "";
+        });
+    }
+
+    get ball() {
+        return this.state?.balls[this.selected];
+    }
+
+    setRobot(robot) {
+        this._frames = robot.frames;
+        this.selected = 0;
+    }
+
+    setState(state) {
+        this.state = state;
+        if (this.selected >= state.balls.length) this.select(Math.max(0, state.balls.length - 1));
+        const taken = new Set(state.balls.map(({ frame }) => frame));
+        offer(byId("add-effector"), [["", "Add a frame …"], ...this._frames.filter((frame) => !taken.has(frame)).map((frame) => [frame, frame])]);
+        while (this._rows.length > state.balls.length) this._rows.pop().row.remove();
+        while (this._rows.length < state.balls.length) this._rows.push(this._make(this._rows.length));
+        this._rows.forEach((row, k) => this._showRow(row, state.balls[k], k));
+        this._showNumbers();
+    }
+
+    _make(k) {
+        const pick = make("button", { type: "button", className: "pick", dataset: { testid: `ball-${k}` } }, make("span", { className: "dot" }), make("span"));
+        pick.addEventListener("click", () => this.select(k));
+        const mode = make("select", { className: "small", dataset: { testid: `ball-mode-${k}` } });
+        offer(mode, MODES);
+        mode.addEventListener("change", () => this._connection.send({ type: "effector", index: k, mode: mode.value }));
+        const remove = make("button", { type: "button", className: "quiet", dataset: { testid: `ball-remove-${k}` } }, icon("close"));
+        remove.addEventListener("click", () => this._connection.send({ type: "remove_effector", index: k }));
+        const row = make("li", {}, pick, mode, remove);
+        byId("balls").append(row);
+        return { row, pick, mode, remove };
+    }
+
+    _showRow({ row, pick, mode, remove }, ball, k) {
+        say(pick.lastChild, ball.frame);
+        pick.ariaPressed = String(k === this.selected);
+        mode.ariaLabel = `What the ball of ${ball.frame} does`;
+        remove.ariaLabel = remove.title = `Remove the ball of ${ball.frame}`;
+        row.dataset.mode = ball.mode;
+        write(mode, ball.mode);
+    }
+
+    /** Show a ball's numbers; they follow a drag without waiting for the session. */
+    showPosition(k, position) {
+        if (k !== this.selected) return;
+        POSITION.forEach((id, axis) => write(byId(id), plain(position[axis], 3)));
+    }
+
+    _showNumbers() {
+        const { ball } = this;
+        for (const id of [...POSITION, ...TURN, "orientation"]) byId(id).disabled = !ball;
+        if (!ball) return;
+        this.showPosition(this.selected, ball.position);
+        write(byId("orientation"), ball.oriented);
+        TURN.forEach((id, axis) => {
+            write(byId(id), plain(ball.rpy[axis] / DEGREE, 1));
+        });
+        byId("turns").hidden = !ball.oriented;
+    }
+
+    select(k) {
+        this.selected = k;
+        this._rows.forEach(({ pick }, j) => {
+            pick.ariaPressed = String(j === k);
+        });
+        this._onSelect(k);
+        this._showNumbers();
+    }
+
+    selectNext() {
+        if (this._rows.length) this.select((this.selected + 1) % this._rows.length);
+    }
+
+    toggleOrientation() {
+        if (this.ball) this._sendOrientation(!this.ball.oriented);
+    }
+
+    _sendPosition() {
+        const position = POSITION.map((id) => typed(byId(id)));
+        if (!position.includes(null)) this._connection.send({ type: "ball", index: this.selected, position });
+    }
+
+    _sendOrientation(on) {
+        const degrees = TURN.map((id) => typed(byId(id)));
+        if (!degrees.includes(null)) {
+            this._connection.send({ type: "orientation", index: this.selected, on, rpy: degrees.map((angle) => angle * DEGREE) });
+        }
+    }
+}

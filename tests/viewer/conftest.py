@@ -1,0 +1,12 @@
+"""The viewer's tests keep finished shapes to themselves."""
+
+from __future__ import annotations
+
+import pytest
+
+
+@pytest.fixture(scope="session", autouse=True)
+def _own_shape_cache(tmp_path_factory):
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setenv("PINIK_CACHE_DIR", str(tmp_path_factory.mktemp("cache")))
+        yield

@@ -1,0 +1,169 @@
+"""What stands in for time, tabs and threads in the viewer's tests, and a reader of frames made from the documentation."""
+
+from __future__ import annotations
+
+import json
+import struct
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import pinocchio
+from numpy.typing import NDArray
+
+import pinik
+from pinik.viewer.session import Session
+from pinik.viewer.setup import write_setup
+from pinik.viewer.state import session_state
+
+
+class Clock:
+    """Seconds that pass when told to, and by `each` whenever somebody looks."""
+
+    def __init__(self, each: float = 0.0) -> None:
+        self.now = 0.0
+        self.each = each
+
+    def __call__(self) -> float:
+        self.now += self.each
+        return self.now
+
+
+class Tab:
+    """A browser tab that notes what it is sent; `answers` whether it says that frames were drawn."""
+
+    def __init__(self) -> None:
+        self.sent: list[str | bytes] = []
+
+    def send(self, message: str | bytes) -> None:
+        self.sent.append(message)
+
+    @property
+    def kinds(self) -> list[str]:
+        return [kind(message) for message in self.sent]
+
+    def of(self, wanted: str) -> list[Any]:
+        """The messages of one kind, texts as what their JSON says."""
+        found = [message for message in self.sent if kind(message) == wanted]
+        return [json.loads(m, parse_constant=no_number) if isinstance(m, str) else m for m in found]
+
+    def last(self, wanted: str) -> Any:
+        return self.of(wanted)[-1]
+
+
+def kind(message: str | bytes) -> str:
+    """ "frame", "shape" or a text's own type."""
+    if isinstance(message, bytes):
+        return "frame" if message[:4] == b"PNKF" else "shape"
+    return json.loads(message)["type"]
+
+
+def no_number(word: str) -> None:
+    raise AssertionError(f"{word} is no JSON")
+
+
+class Later:
+    """Work for other threads, which waits here until the test does it."""
+
+    def __init__(self) -> None:
+        self.waiting: list[tuple[Callable[[], Any], Callable[[Any], None]]] = []
+
+    def __call__(self, work: Callable[[], Any], then: Callable[[Any], None]) -> None:
+        self.waiting.append((work, then))
+
+    def do(self, index: int = 0) -> None:
+        work, then = self.waiting.pop(index)
+        try:
+            result = work()
+        except Exception as error:
+            result = error
+        then(result)
+
+    def do_all(self) -> None:
+        while self.waiting:
+            self.do()
+
+
+@dataclass
+class Block:
+    """One instance's part of a frame."""
+
+    status: int
+    position_error: float
+    orientation_error: float
+    time: float
+    iterations: int
+    joint_updates: int
+    jump: float
+    counted: int
+    joints: NDArray[np.float32]
+    sides: NDArray[np.float32]
+    points: NDArray[np.float32]
+
+
+@dataclass
+class Frame:
+    generation: int
+    step: int
+    balls: NDArray[np.float32]
+    blocks: list[Block]
+
+
+def read_frame(message: bytes) -> Frame:
+    """A frame as docs/live-protocol.md lays it out."""
+    assert message[:4] == b"PNKF"
+    numbers = list(struct.unpack(f"<{(len(message) - 4) // 4}f", message[4:]))
+
+    def take(count: int) -> list[float]:
+        taken, numbers[:count] = numbers[:count], []
+        assert len(taken) == count
+        return taken
+
+    generation, step, instances, joints, balls = (int(number) for number in take(5))
+    where = np.array(take(7 * balls), dtype=np.float32).reshape(balls, 7)
+    blocks = []
+    for _ in range(instances):
+        status, position, orientation, time, iterations, updates, jump, counted = take(8)
+        blocks.append(
+            Block(
+                int(status),
+                position,
+                orientation,
+                time,
+                int(iterations),
+                int(updates),
+                jump,
+                int(counted),
+                np.array(take(7 * joints), dtype=np.float32).reshape(joints, 7),
+                np.array(take(joints), dtype=np.float32),
+                np.array(take(3 * balls), dtype=np.float32).reshape(balls, 3),
+            )
+        )
+    assert numbers == []
+    return Frame(generation, step, where, blocks)
+
+
+def snapshot(session: Session) -> str:
+    """Everything that a message could change, as one text."""
+    shown = session_state(session)
+    return json.dumps(
+        [
+            shown,
+            write_setup(session),
+            [instance.q.tolist() for instance in session.instances],
+            [(i.solver.name, repr(i.solver), i.statistics.summary()) for i in session.instances],
+            [ball.home.tolist() for ball in session.balls],
+        ]
+    )
+
+
+def plain_placement(robot: pinik.Robot, frame: str, q: NDArray[np.float64]) -> pinocchio.SE3:
+    """oMf by Pinocchio alone."""
+    data = robot.model.createData()
+    pinocchio.framesForwardKinematics(robot.model, data, q)
+    return data.oMf[robot.model.getFrameId(frame, pinocchio.BODY)].copy()
+
+
+def is_inside(robot: pinik.Robot, q: NDArray[np.float64]) -> bool:
+    return bool((q >= robot.lower_q).all() and (q <= robot.upper_q).all())
