@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import pytest
 
+from page_fixtures import browser, open_desk  # noqa: F401
+
 
 @pytest.fixture(scope="session", autouse=True)
 def _own_shape_cache(tmp_path_factory):

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import concurrent.futures
+import errno
 import html
 import json
 import os
@@ -18,7 +19,6 @@ from typing import Any, TypeVar
 
 import tornado.httpserver
 import tornado.ioloop
-import tornado.netutil
 from numpy.typing import ArrayLike, NDArray
 
 from .. import errors
@@ -212,10 +212,40 @@ def _bind(host: str, port: int | None) -> list[socket.socket]:
         raise errors.InputError(f"a host is an address of this machine, such as '127.0.0.1'; got {host!r}")
     for candidate in (*_PORTS, 0) if port is None else (port,):
         try:
-            sockets = tornado.netutil.bind_sockets(candidate, address=host)
+            return _listen(host, candidate)
         except (OSError, UnicodeError) as error:
             fault = getattr(error, "strerror", None) or str(error)
-            continue
-        return sockets
     hint = "; leave the port out and pinik finds a free one" if port else ""
     raise errors.InputError(f"cannot listen on {host}, port {port}: {fault}{hint}")
+
+
+def _listen(host: str, port: int) -> list[socket.socket]:
+    """A socket for each address that the host's name stands for, all on one port.
+
+    Tornado's `bind_sockets` does the same, but leaves a socket open where the port is taken.
+    """
+    sockets: list[socket.socket] = []
+    try:
+        found = socket.getaddrinfo(host, port, type=socket.SOCK_STREAM, flags=socket.AI_PASSIVE)
+        for family, kind, protocol, _, address in dict.fromkeys(found):
+            listening = socket.socket(family, kind, protocol)
+            sockets.append(listening)
+            listening.setblocking(False)
+            if os.name != "nt":
+                listening.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+            if family == socket.AF_INET6:
+                listening.setsockopt(socket.IPPROTO_IPV6, socket.IPV6_V6ONLY, 1)
+            port = port or (sockets[0].getsockname()[1] if len(sockets) > 1 else 0)
+            try:
+                listening.bind((address[0], port, *address[2:]))
+            except OSError as error:
+                if error.errno != errno.EADDRNOTAVAIL or len(found) == 1:
+                    raise
+                sockets.pop().close()  # such as ::1 for "localhost", where there is no IPv6
+                continue
+            listening.listen(128)
+    except BaseException:
+        for listening in sockets:
+            listening.close()
+        raise
+    return sockets

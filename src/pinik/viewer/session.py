@@ -159,7 +159,11 @@ class Session:
         """
         if method not in self.methods:
             raise UnknownNameError("method", method, self.methods)
-        self._set_solver(index, make_solver(self.methods[method], **parameters))
+        try:
+            solver = make_solver(self.methods[method], **parameters)
+        except TypeError as error:  # a class of the user's own, with a field that has no default
+            raise InputError(f"method {method!r} cannot be made anew: {error}") from None
+        self._set_solver(index, solver)
 
     def set_parameter(self, index: int, name: str, value: Any) -> None:
         """One parameter of an instance's method.

@@ -11,7 +11,7 @@ from ..errors import InputError, UnknownNameError
 from ..targets import Tolerance
 from .instance import Chase
 from .messages import apply, read_json
-from .parameters import changed_parameters
+from .parameters import changed_parameters, describe_parameters
 from .session import Session
 
 __all__ = ["Setup", "apply_setup", "read_setup", "write_setup"]
@@ -116,9 +116,9 @@ def _messages(session: Session, setup: Setup) -> Iterator[dict[str, Any]]:
             wanted = changed.get(str(index), {})
             if not isinstance(wanted, dict):
                 raise InputError(f"set-up: the parameters of instance {index} are an object; got {wanted!r}")
-            stale = [name for name in changed_parameters(session.instances[index].solver) if name not in wanted]
-            defaults = type(session.instances[index].solver)().parameters
-            for name, value in {**{name: defaults[name] for name in stale}, **wanted}.items():
+            described = describe_parameters(session.instances[index].solver)
+            defaults = {p["name"]: p["default"] for p in described if p["value"] != p["default"]}
+            for name, value in (defaults | wanted).items():
                 yield {"type": "parameter", "instance": index, "name": name, "value": value}
     chase = session.chase
     yield {"type": "limits", "on": _on("limits", setup.get("limits", "on"))}
@@ -152,7 +152,7 @@ def _ball_messages(session: Session, balls: list[Any]) -> Iterator[dict[str, Any
     for frame in wanted:
         if frame not in [ball.frame for ball in session.balls]:
             yield {"type": "add_effector", "frame": frame}
-    yield from _removals(session, wanted)
+        yield from _removals(session, wanted)  # now the last ball may go too
     session.balls.sort(key=lambda ball: wanted.index(ball.frame))
     for frame, mode, position, rpy in ([*ball, None, None][:4] for ball in balls):
         index = [ball.frame for ball in session.balls].index(frame)

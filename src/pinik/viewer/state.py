@@ -73,11 +73,13 @@ def session_state(session: Session) -> dict[str, Any]:
 
 
 def _instance_state(instance: Instance, summary: Summary) -> dict[str, Any]:
+    verdict = instance.verdict()
     return {
         "method": instance.solver.name,
         "title": instance.solver.title,
         "parameters": describe_parameters(instance.solver),
-        **instance.verdict()._asdict(),
+        **verdict._asdict(),
+        "active_limits": list(verdict.active_limits),
         "angles": instance.robot.angles(instance.q),
         "statistics": summary._asdict(),
     }

@@ -1,5 +1,7 @@
 /** The address bar: carries the set-up, so that a link reopens it. */
 
+const PAUSE = 250; // [ms] between two changes: browsers refuse too many
+
 export class Address {
     /** @param open called with a set-up that the address asks for */
     constructor(open) {
@@ -18,7 +20,15 @@ export class Address {
             this._open(asked);
             return;
         }
-        if (location.hash.slice(1) !== setup) history.replaceState(null, "", `#${setup}`);
+        this._setup = setup;
+        if (!this._timer) this._write();
+    }
+
+    _write() {
+        this._timer = null;
+        if (location.hash.slice(1) === this._setup) return;
+        history.replaceState(null, "", `#${this._setup}`);
+        this._timer = setTimeout(() => this._write(), PAUSE);
     }
 }
 

@@ -12,7 +12,10 @@ const AXES = [
     { color: "#e5484d", z: -Math.PI / 2, x: 0 },
     { color: "#3d9a50", z: 0, x: 0 },
     { color: "#3b7ddd", z: 0, x: Math.PI / 2 },
-];
+].map(({ color, ...turn }) => ({
+    material: new THREE.MeshLambertMaterial({ color: new THREE.Color(color).convertSRGBToLinear() }),
+    ...turn,
+}));
 
 export class Ball {
     constructor(radius) {
@@ -65,8 +68,7 @@ function mesh(geometry, material) {
 
 function triad() {
     const group = new THREE.Group();
-    for (const { color, x, z } of AXES) {
-        const material = new THREE.MeshLambertMaterial({ color: new THREE.Color(color).convertSRGBToLinear() });
+    for (const { material, x, z } of AXES) {
         const arm = new THREE.Group();
         arm.add(mesh(AXIS, material), mesh(ARROW, material));
         arm.rotation.set(x, 0, z);
@@ -88,7 +90,9 @@ function halo() {
         pen.stroke();
         ringMap = new THREE.CanvasTexture(canvas);
     }
-    const sprite = new THREE.Sprite(new THREE.SpriteMaterial({ map: ringMap, depthTest: false, depthWrite: false, transparent: true }));
+    const sprite = new THREE.Sprite(
+        new THREE.SpriteMaterial({ map: ringMap, depthTest: false, depthWrite: false, transparent: true }),
+    );
     sprite.scale.setScalar(3.4);
     sprite.renderOrder = 6;
     return sprite;

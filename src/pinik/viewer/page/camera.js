@@ -52,11 +52,20 @@ export class Camera extends EventTarget {
         const sphere = new THREE.Sphere().setFromPoints(arranged.everything);
         this._stage.lights.aim(sphere.center, 1.05 * sphere.radius, arranged.view.azimuth);
         this.sphere = sphere;
-        const goal = { ...arranged.view, target: arranged.camera.target, distance: arranged.camera.distance, offsets: arranged.offsets };
+        const goal = {
+            ...arranged.view,
+            target: arranged.camera.target,
+            distance: arranged.camera.distance,
+            offsets: arranged.offsets,
+        };
         const began = smoothly && !this._calm.matches && this.offsets.length === count ? performance.now() : -Infinity;
         this._glide = { from: this._now(), to: goal, began };
         this.dispatchEvent(new Event("framed"));
         this._stage.touch();
+    }
+
+    get gliding() {
+        return this._glide !== null;
     }
 
     /** Where the camera is, in the scene's axes. */
@@ -104,7 +113,10 @@ export class Camera extends EventTarget {
         const { azimuth } = this._now();
         const snapped = Math.round(azimuth / (Math.PI / 2)) * (Math.PI / 2);
         const round = (x, y) => [Math.round(x), Math.round(y), 0];
-        return { right: round(-Math.sin(snapped), Math.cos(snapped)), away: round(-Math.cos(snapped), -Math.sin(snapped)) };
+        return {
+            right: round(-Math.sin(snapped), Math.cos(snapped)),
+            away: round(-Math.cos(snapped), -Math.sin(snapped)),
+        };
     }
 }
 

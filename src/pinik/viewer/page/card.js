@@ -11,7 +11,11 @@ export class Card {
         this._drawn = "";
         this._widgets = [];
         this._title = make("span", { className: "method-name" });
-        this._changed = make("span", { className: "changed", title: "Some parameters are not at their defaults", hidden: true });
+        this._changed = make("span", {
+            className: "changed",
+            title: "Some parameters are not at their defaults",
+            hidden: true,
+        });
         this._parameters = make("div", { className: "parameters" });
         this._details = make(
             "details",
@@ -19,14 +23,33 @@ export class Card {
             make("summary", { title: "Parameters (p)" }, this._title, this._changed),
             this._parameters,
         );
-        this._method = make("select", { className: "small", dataset: { testid: `method-${index}` }, aria: { label: `Method of instance ${index + 1}` } });
-        offer(this._method, hello.methods.map(({ name }) => [name, name]));
+        this._method = make("select", {
+            className: "small",
+            dataset: { testid: `method-${index}` },
+            aria: { label: `Method of instance ${index + 1}` },
+        });
+        offer(
+            this._method,
+            hello.methods.map(({ name }) => [name, name]),
+        );
         this._help = new Map(hello.methods.map(({ name, help }) => [name, help]));
-        this._method.addEventListener("change", () => connection.send({ type: "method", instance: index, method: this._method.value }));
+        this._method.addEventListener("change", () =>
+            connection.send({ type: "method", instance: index, method: this._method.value }),
+        );
         this._message = make("p", { className: "message", dataset: { testid: `message-${index}` } });
-        this._defaults = make("button", { type: "button", className: "soft", dataset: { testid: `defaults-${index}` } }, "Defaults");
+        this._defaults = make(
+            "button",
+            { type: "button", className: "soft", dataset: { testid: `defaults-${index}` } },
+            "Defaults",
+        );
         this._defaults.addEventListener("click", () => this._reset());
-        this.element = make("article", { className: "card", dataset: { testid: `instance-${index}` } }, this._method, this._details, this._message);
+        this.element = make(
+            "article",
+            { className: "card", dataset: { testid: `instance-${index}` } },
+            this._method,
+            this._details,
+            this._message,
+        );
         this.element.style.setProperty("--own", `var(--instance-${index})`);
     }
 
@@ -44,7 +67,8 @@ export class Card {
         this._instance = instance;
         say(this._title, instance.title);
         this._title.title = this._help.get(instance.method) ?? "";
-        if (![...this._method.options].some(({ value }) => value === instance.method)) this._method.add(new Option(instance.method));
+        if (![...this._method.options].some(({ value }) => value === instance.method))
+            this._method.add(new Option(instance.method));
         write(this._method, instance.method);
         say(this._message, instance.message);
         this._message.title = instance.message;
@@ -75,7 +99,8 @@ export class Card {
     }
 
     _reset() {
-        for (const description of this._instance.parameters.filter(differs)) this._send(description.name, description.default);
+        for (const description of this._instance.parameters.filter(differs))
+            this._send(description.name, description.default);
     }
 }
 

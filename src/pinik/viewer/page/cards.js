@@ -20,7 +20,6 @@ export class Cards {
             this._cards.push(card);
             this._element.append(card.element);
         }
-        this._element.dataset.count = this._cards.length;
         for (const card of this._cards) card.setState(state);
     }
 

@@ -8,7 +8,13 @@ const BOTTOM = 16;
 export class Chart {
     /** @param options value(sample) in the chart's unit, logarithmic, least (the smallest top of the axis) */
     constructor(canvas, theme, { value, logarithmic, least }) {
-        Object.assign(this, { _canvas: canvas, _theme: theme, _value: value, _logarithmic: logarithmic, _least: least });
+        Object.assign(this, {
+            _canvas: canvas,
+            _theme: theme,
+            _value: value,
+            _logarithmic: logarithmic,
+            _least: least,
+        });
         this._range = null;
     }
 
@@ -45,7 +51,10 @@ export class Chart {
     }
 
     _scale(series, mark) {
-        const values = series.flat().map(this._value).filter((value) => Number.isFinite(value));
+        const values = series
+            .flat()
+            .map(this._value)
+            .filter((value) => Number.isFinite(value));
         return this._logarithmic ? logarithmicScale(values, mark) : linearScale(values, this._least);
     }
 
@@ -57,19 +66,26 @@ export class Chart {
         pen.textBaseline = "middle";
         for (const tick of ticks) {
             const at = Math.round(y(tick)) + 0.5;
-            stroke(pen, [[area.left, at], [area.right, at]]);
+            stroke(pen, [
+                [area.left, at],
+                [area.right, at],
+            ]);
             pen.fillText(figure(tick), area.left - 5, at);
         }
         pen.textAlign = "center";
         pen.textBaseline = "alphabetic";
-        for (const back of this._width > 260 ? [8, 6, 4, 2] : [8, 4]) pen.fillText(`−${back} s`, x(history.now - back), this._height - 3);
+        for (const back of this._width > 260 ? [8, 6, 4, 2] : [8, 4])
+            pen.fillText(`−${back} s`, x(history.now - back), this._height - 3);
     }
 
     _mark(pen, area, at) {
         pen.save();
         pen.strokeStyle = this._theme.color("good");
         pen.setLineDash([4, 3]);
-        stroke(pen, [[area.left, at], [area.right, at]]);
+        stroke(pen, [
+            [area.left, at],
+            [area.right, at],
+        ]);
         pen.restore();
     }
 
@@ -114,7 +130,7 @@ function logarithmicScale(values, mark) {
 /** From nothing to a round number above all but the rarest values, so that one hiccup does not flatten the rest. */
 function linearScale(values, least) {
     const sorted = [...values].sort((a, b) => a - b);
-    const usual = sorted[Math.floor(0.995 * (sorted.length - 1))] ?? 0;
+    const usual = sorted[Math.floor(0.98 * (sorted.length - 1))] ?? 0;
     const wanted = Math.max(1.1 * usual, least);
     const power = 10 ** Math.floor(Math.log10(wanted));
     const top = [1, 2, 4, 5, 10].map((factor) => factor * power).find((value) => value >= wanted);

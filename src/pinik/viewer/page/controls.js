@@ -1,7 +1,7 @@
 /** The settings that all instances share. */
 
 import { byId, make, say } from "pinik/elements.js";
-import { offer, scale, typed, write } from "pinik/hands.js";
+import { Asked, offer, scale, typed, write } from "pinik/hands.js";
 import { plain, spaced } from "pinik/words.js";
 
 const DEGREE = Math.PI / 180;
@@ -12,8 +12,11 @@ export class Controls {
         this._connection = connection;
         const send = (type, fields) => connection.send({ type, ...fields });
         this._send = send;
+        this._asked = new Asked();
         for (const id of ["robot", "root"]) {
-            byId(id).addEventListener("change", () => send("robot", { name: byId("robot").value, root: byId("root").value }));
+            byId(id).addEventListener("change", () =>
+                send("robot", { name: byId("robot").value, root: byId("root").value }),
+            );
         }
         byId("motion").addEventListener("change", ({ target }) => send("motion", { motion: target.value }));
         byId("curve").addEventListener("change", ({ target }) => send("curve", { curve: target.value }));
@@ -29,8 +32,14 @@ export class Controls {
     setHello(hello) {
         this.hello = hello;
         const titled = (list) => list.map(({ name, title }) => [name, title]);
-        offer(byId("robot"), hello.robots.map((name) => [name, name]));
-        offer(byId("root"), hello.roots.map((name) => [name, spaced(name)]));
+        offer(
+            byId("robot"),
+            hello.robots.map((name) => [name, name]),
+        );
+        offer(
+            byId("root"),
+            hello.roots.map((name) => [name, spaced(name)]),
+        );
         offer(byId("motion"), titled(hello.motions));
         offer(byId("curve"), titled(hello.curves));
         const [low, high] = hello.ranges.speed;
@@ -42,7 +51,11 @@ export class Controls {
 
     _viewButton(count) {
         const title = count === 1 ? "One robot (1)" : `${count} robots side by side (${count})`;
-        const button = make("button", { type: "button", title, dataset: { testid: `view-${count}`, view: count } }, String(count));
+        const button = make(
+            "button",
+            { type: "button", title, dataset: { testid: `view-${count}`, view: count } },
+            String(count),
+        );
         button.addEventListener("click", () => this.view(count));
         return button;
     }
@@ -79,30 +92,40 @@ export class Controls {
     }
 
     _bindIterations() {
-        const send = () => {
-            const at_most = typed(byId("iterations"));
-            if (at_most !== null) this._send("iterations", { until_reached: byId("until-reached").checked, at_most: Math.round(at_most) });
-        };
-        byId("iterations").addEventListener("change", send);
-        byId("until-reached").addEventListener("change", send);
+        const send = (change) => this._sendPart("iterations", change);
+        byId("iterations").addEventListener("change", ({ target }) => {
+            const value = typed(target);
+            if (value !== null) send({ at_most: Math.round(value) });
+        });
+        byId("until-reached").addEventListener("change", ({ target }) => send({ until_reached: target.checked }));
     }
 
     _bindTolerance() {
-        const send = () => {
-            const [millimetres, degrees] = [typed(byId("tolerance")), typed(byId("tolerance-angle"))];
-            if (millimetres !== null && degrees !== null) {
-                this._send("tolerance", { position: millimetres / 1000, orientation: degrees * DEGREE });
-            }
-        };
-        byId("tolerance").addEventListener("change", send);
-        byId("tolerance-angle").addEventListener("change", send);
+        for (const [id, name, unit] of [
+            ["tolerance", "position", 0.001],
+            ["tolerance-angle", "orientation", DEGREE],
+        ]) {
+            byId(id).addEventListener("change", ({ target }) => {
+                const value = typed(target);
+                if (value !== null) this._sendPart("tolerance", { [name]: value * unit });
+            });
+        }
+    }
+
+    /** Change a part of a setting that is sent as a whole. */
+    _sendPart(type, change) {
+        this._send(type, this._asked.ask(type, { ...this._asked.now(type, this.state[type]), ...change }));
     }
 
     setState(state) {
         this.state = state;
         const { hello } = this;
         // A robot from a file of the visitor's own is in no catalogue.
-        if (!hello.robots.includes(state.robot)) offer(byId("robot"), [state.robot, ...hello.robots].map((name) => [name, name]));
+        if (!hello.robots.includes(state.robot))
+            offer(
+                byId("robot"),
+                [state.robot, ...hello.robots].map((name) => [name, name]),
+            );
         for (const name of ["robot", "root", "motion", "curve"]) write(byId(name), state[name]);
         write(byId("limits"), state.limits);
         write(byId("speed"), plain(state.speed));
@@ -112,15 +135,17 @@ export class Controls {
         say(byId("iterations-label"), state.iterations.until_reached ? "Iterations at most" : "Iterations");
         write(byId("tolerance"), plain(state.tolerance.position * 1000));
         write(byId("tolerance-angle"), plain(Number((state.tolerance.orientation / DEGREE).toPrecision(3))));
-        for (const button of byId("views").children) button.ariaPressed = String(Number(button.dataset.view) === state.view);
-        byId("curve").closest(".field").classList.toggle("faint", state.motion !== "curve");
+        for (const button of byId("views").children)
+            button.ariaPressed = String(Number(button.dataset.view) === state.view);
+        byId("curve")
+            .closest(".field")
+            .classList.toggle("faint", state.motion !== "curve");
         this._showRun(state);
         byId("save-animation").download = `pinik-${state.robot.replace(/[^\w-]+/g, "_")}.html`;
     }
 
     _showRun({ running, steps_per_second: rate }) {
         const start = byId("start");
-        start.ariaPressed = String(running);
         start.title = running ? "Stop (space)" : "Start (space)";
         start.querySelector("use").setAttribute("href", running ? "#icon-pause" : "#icon-play");
         say(start.querySelector("span"), running ? "Stop" : "Start");

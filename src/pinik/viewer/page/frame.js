@@ -32,9 +32,21 @@ export class Frame {
     }
 
     figures(instance) {
-        const [status, positionError, orientationError, seconds, iterations, jointUpdates, jump, counted] =
-            this._part(instance, 0, FIGURES);
-        return { status, positionError, orientationError, seconds, iterations, jointUpdates, jump, counted: counted > 0 };
+        const [status, positionError, orientationError, seconds, iterations, jointUpdates, jump, counted] = this._part(
+            instance,
+            0,
+            FIGURES,
+        );
+        return {
+            status,
+            positionError,
+            orientationError,
+            seconds,
+            iterations,
+            jointUpdates,
+            jump,
+            counted: counted > 0,
+        };
     }
 
     /** Seven numbers a joint, in the world. */
@@ -52,12 +64,13 @@ export class Frame {
         return this._part(instance, FIGURES + (PLACEMENT + 1) * this.joints, 3 * this.balls);
     }
 
-    /** Whether both show the same picture, whatever their step. */
+    /** Whether both show the same picture, whatever their step and figures. */
     looksLike(other) {
-        if (!other || other.numbers.length !== this.numbers.length) return false;
-        const same = (a, b) => a === b || (Number.isNaN(a) && Number.isNaN(b));
-        for (let k = 0; k < this.numbers.length; k++) {
-            if (k !== 1 && !same(this.numbers[k], other.numbers[k])) return false;
+        if (!other || other.numbers.length !== this.numbers.length || other.generation !== this.generation)
+            return false;
+        for (let k = HEAD; k < this.numbers.length; k++) {
+            const isFigure = k >= this._first && (k - this._first) % this._stride < FIGURES;
+            if (!isFigure && this.numbers[k] !== other.numbers[k]) return false;
         }
         return true;
     }

@@ -37,7 +37,8 @@ export function fit(points, view, lens) {
     const between = (low, high) => (low + high) / 2;
     const x = between(r + lens.right * back, -(l + lens.left * back));
     const y = between(t + lens.top * back, -(b + lens.bottom * back));
-    const place = (depth) => new THREE.Vector3().addScaledVector(right, x).addScaledVector(up, y).addScaledVector(ahead, depth);
+    const place = (depth) =>
+        new THREE.Vector3().addScaledVector(right, x).addScaledVector(up, y).addScaledVector(ahead, depth);
     const middle = between(near, far);
     return { position: place(back), target: place(middle), distance: middle - back };
 }

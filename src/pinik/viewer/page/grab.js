@@ -86,7 +86,9 @@ export class Grab {
             held.shift = event.shiftKey;
             const at = this._show.stage.project(held.position);
             held.slip = new THREE.Vector2((2 * at.x) / width - 1, 1 - (2 * at.y) / height).sub(pointer);
-            const normal = event.shiftKey ? new THREE.Vector3(0, 0, 1) : camera.getWorldDirection(new THREE.Vector3()).transformDirection(inverse);
+            const normal = event.shiftKey
+                ? new THREE.Vector3(0, 0, 1)
+                : camera.getWorldDirection(new THREE.Vector3()).transformDirection(inverse);
             held.plane = new THREE.Plane().setFromNormalAndCoplanarPoint(normal, held.position);
         }
         const caster = new THREE.Raycaster();

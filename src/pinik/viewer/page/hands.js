@@ -15,7 +15,10 @@ export function watchHands() {
         else later(event);
     });
     document.addEventListener("change", later);
-    document.addEventListener("focusout", ({ target }) => busyUntil.get(target) === Infinity && busyUntil.delete(target));
+    document.addEventListener(
+        "focusout",
+        ({ target }) => busyUntil.get(target) === Infinity && busyUntil.delete(target),
+    );
 }
 
 function isBusy(element) {
@@ -29,6 +32,24 @@ export function write(element, value) {
         if (element.checked !== value) element.checked = value;
     } else if (element.value !== String(value)) {
         element.value = value;
+    }
+}
+
+/** What was asked for lately: the next change goes on from there, also before the session has told of the last one. */
+export class Asked {
+    constructor() {
+        this._values = new Map();
+    }
+
+    /** The value last asked for, or after a while what the session told. */
+    now(key, told) {
+        const asked = this._values.get(key);
+        return asked && performance.now() < asked.until ? asked.value : told;
+    }
+
+    ask(key, value) {
+        this._values.set(key, { value, until: performance.now() + SETTLE });
+        return value;
     }
 }
 
@@ -53,7 +74,8 @@ export function scale(low, high, logarithmic) {
     const to = logarithmic ? Math.log : (x) => x;
     const from = logarithmic ? Math.exp : (x) => x;
     return {
-        position: (value) => Math.round((1000 * (to(Math.min(Math.max(value, low), high)) - to(low))) / (to(high) - to(low))),
+        position: (value) =>
+            Math.round((1000 * (to(Math.min(Math.max(value, low), high)) - to(low))) / (to(high) - to(low))),
         value: (position) => Number(from(to(low) + (position / 1000) * (to(high) - to(low))).toPrecision(3)),
     };
 }

@@ -22,7 +22,8 @@ export class History {
         this.series.forEach((samples, i) => {
             const { positionError, orientationError, seconds, counted } = frame.figures(i);
             const last = samples[samples.length - 1];
-            if (!last || last.time < time) samples.push({ time, error: positionError, turn: orientationError, seconds: counted ? seconds : NaN });
+            if (!last || last.time < time)
+                samples.push({ time, error: positionError, turn: orientationError, seconds: counted ? seconds : NaN });
             while (samples[0].time < time - SECONDS) samples.shift();
         });
     }

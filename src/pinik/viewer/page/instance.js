@@ -1,6 +1,7 @@
 /** One of the robots side by side, with its copies of the balls and curves and its effectors' trails. */
 
 import { Ball } from "pinik/ball.js";
+import { askedJoints } from "pinik/limit_marks.js";
 import { Ribbon } from "pinik/ribbon.js";
 import { Robot } from "pinik/robot.js";
 import { THREE } from "pinik/three.js";
@@ -14,7 +15,7 @@ export class Instance {
         this._index = index;
         this._theme = theme;
         this._sets = [];
-        this._limited = new Set();
+        this._asked = new Set();
         this.robot = null;
         scene.add(this.group);
     }
@@ -24,15 +25,14 @@ export class Instance {
         this.robot?.dispose();
         this.robot = new Robot(robot, parts, this._theme.color(`instance-${this._index}`));
         this.robot.refine(fine);
-        this._size = robot.size;
-        this._joints = robot.joints.length;
+        this._message = robot;
         this.group.add(this.robot.group);
     }
 
     /** As many balls as the state has, shown as it says. */
     setState(state, radius, selected, near) {
         const { balls } = state;
-        this._limited = new Set(state.instances[this._index]?.active_limits);
+        this._asked = askedJoints(this._message, state);
         this._tolerance = state.tolerance.position;
         if (this._sets.length !== balls.length || this._radius !== radius) {
             this._clearBalls();
@@ -80,7 +80,7 @@ export class Instance {
 
     /** @param places for each ball {position: Vector3, quaternion: Quaternion} */
     update(frame, places) {
-        if (this.robot && frame.joints === this._joints) this.robot.update(frame, this._index, this._limited);
+        this.robot.update(frame, this._index, this._asked);
         const points = frame.points(this._index);
         this._sets.forEach(({ ball, gap, trail, mode }, k) => {
             const { position, quaternion } = places[k];
@@ -91,7 +91,7 @@ export class Instance {
                 gap.set([], 0);
                 return;
             }
-            trail.add(x, y, z);
+            trail.add(frame.step, x, y, z);
             const away = Math.hypot(position.x - x, position.y - y, position.z - z);
             const visible = away > Math.max(1.1 * this._radius, this._tolerance);
             gap.set([x, y, z, position.x, position.y, position.z], visible ? 2 : 0);
@@ -101,7 +101,7 @@ export class Instance {
     /** Where its effectors have been, without moving it. */
     addToTrails(frame) {
         const points = frame.points(this._index);
-        this._sets.forEach(({ trail }, k) => trail.add(...points.subarray(3 * k, 3 * k + 3)));
+        this._sets.forEach(({ trail }, k) => trail.add(frame.step, ...points.subarray(3 * k, 3 * k + 3)));
     }
 
     get fading() {

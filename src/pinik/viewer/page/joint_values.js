@@ -9,7 +9,10 @@ export class JointValues {
         this._name = name;
         this._range = { low, high };
         this._testid = testid;
-        this._commit = commit;
+        this._commit = (value) => {
+            this._value = value;
+            commit(value);
+        };
         this._value = {};
         this._rows = new Map();
         this.list = make("ul", { className: "joint-values" });
@@ -38,14 +41,23 @@ export class JointValues {
 
     _make(joint) {
         const { low, high } = this._range;
-        const input = make("input", { type: "number", step: "any", dataset: { testid: `${this._testid}-${joint}` }, aria: { label: joint } });
+        const input = make("input", {
+            type: "number",
+            step: "any",
+            dataset: { testid: `${this._testid}-${joint}` },
+            aria: { label: joint },
+        });
         if (low !== null) input.min = low;
         if (high !== null) input.max = high;
         input.addEventListener("change", () => {
             const number = typed(input);
             if (number !== null) this._commit({ ...this._value, [joint]: number });
         });
-        const remove = make("button", { type: "button", className: "quiet", title: `${joint} as the others`, aria: { label: `Remove ${joint}` } }, icon("close"));
+        const remove = make(
+            "button",
+            { type: "button", className: "quiet", title: `${joint} as the others`, aria: { label: `Remove ${joint}` } },
+            icon("close"),
+        );
         remove.addEventListener("click", () => {
             const { [joint]: _, ...others } = this._value;
             this._commit(others);

@@ -1,6 +1,9 @@
 /** What hovers below each robot: its method and where it stands, never on top of each other. */
 
+import { make, say } from "pinik/elements.js";
+
 const GAP = 6; // [px]
+const NARROW = 165; // [px] with less room than this, the method's short name has to do
 
 export class Labels {
     constructor(element) {
@@ -8,43 +11,44 @@ export class Labels {
         this._chips = [];
     }
 
-    /** @param texts for each instance {title, words, good} */
+    /** @param texts for each instance {title, method, words, good} */
     set(texts) {
         while (this._chips.length < texts.length) this._chips.push(this._make(this._chips.length));
         while (this._chips.length > texts.length) this._chips.pop().chip.remove();
-        texts.forEach(({ title, words, good }, i) => {
+        texts.forEach(({ title, method, words, good }, i) => {
             const { chip, name, state } = this._chips[i];
-            if (name.textContent !== title) name.textContent = title;
-            if (state.textContent !== words) state.textContent = words;
+            say(name, this._narrow ? method : title);
+            say(state, words);
             chip.classList.toggle("good", good);
         });
     }
 
     _make(i) {
-        const part = (className) => Object.assign(document.createElement("span"), { className });
-        const [name, state] = [part("name"), part("words")];
-        const chip = Object.assign(document.createElement("div"), { className: "chip" });
-        chip.dataset.testid = `label-${i}`;
+        const [name, state] = ["name", "words"].map((className) => make("span", { className }));
+        const chip = make("div", { className: "chip", dataset: { testid: `label-${i}` } }, name, state);
         chip.style.setProperty("--own", `var(--instance-${i})`);
-        chip.append(name, state);
         this._element.append(chip);
         return { chip, name, state };
     }
 
     /** @param anchors for each instance {x, y, behind} [px]: the middle of the chip's upper edge */
     place(anchors, width, height) {
-        const pitch = narrowest(anchors);
-        this._element.style.setProperty("--most", `${Math.max(84, Math.min(230, pitch - GAP, width - 2 * GAP))}px`);
+        const room = Math.max(84, Math.min(230, narrowest(anchors) - GAP, width - 2 * GAP));
+        this._narrow = room < NARROW;
+        this._element.classList.toggle("narrow", this._narrow);
+        this._element.style.setProperty("--most", `${room}px`);
         const placed = [];
         this._chips.forEach(({ chip }, i) => {
             const anchor = anchors[i];
             chip.hidden = !anchor || anchor.behind;
             if (chip.hidden) return;
             const [w, h] = [chip.offsetWidth, chip.offsetHeight];
-            const x = Math.min(Math.max(anchor.x - w / 2, GAP), width - w - GAP);
+            const fits = (left) => Math.min(Math.max(left, GAP), width - w - GAP);
+            let x = fits(anchor.x - w / 2);
             let y = Math.min(Math.max(anchor.y, GAP), height - h - GAP);
             for (const other of placed) {
-                if (Math.abs(other.x - x) < (other.w + w) / 2 + GAP && overlaps(other, y, h)) y = other.y - h - GAP;
+                if (overlap(other, { x, y, w, h })) x = fits(other.x + other.w + GAP);
+                if (overlap(other, { x, y, w, h })) y = other.y - h - GAP;
             }
             placed.push({ x, y, w, h });
             chip.style.transform = `translate(${Math.round(x)}px, ${Math.round(y)}px)`;
@@ -52,8 +56,8 @@ export class Labels {
     }
 }
 
-function overlaps(other, y, h) {
-    return y < other.y + other.h + GAP && other.y < y + h + GAP;
+function overlap(a, b) {
+    return a.x < b.x + b.w + GAP && b.x < a.x + a.w + GAP && a.y < b.y + b.h + GAP && b.y < a.y + a.h + GAP;
 }
 
 /** The smallest distance between neighbours in one row. */

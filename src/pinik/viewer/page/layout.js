@@ -3,7 +3,7 @@
 import { axesOf, fit } from "pinik/framing.js";
 import { THREE } from "pinik/three.js";
 
-const GAP = 0.12; // between neighbours, of their width
+const GAP = 0.06; // between neighbours, of their width
 const WORTH = 1.5; // how much nearer the camera must come for two rows: one is easier to compare
 const STEEP = 0.5; // [rad] from how high two rows are seen at least
 const STEP_BACK = 0.85; // between two rows, of what keeps one clear of the other

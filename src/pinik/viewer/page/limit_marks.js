@@ -4,7 +4,7 @@ import { THREE } from "pinik/three.js";
 
 const AMBER = new THREE.Color(0xffb000).convertSRGBToLinear();
 const GLOW = 0.22;
-const SIZE = 0.085; // of the robot's size
+const SIZE = 0.07; // of the robot's size
 
 export class LimitMarks {
     /**
@@ -13,21 +13,24 @@ export class LimitMarks {
      */
     constructor(robot, carried) {
         this.group = new THREE.Group();
-        this._names = robot.joints.map((joint) => joint.name);
         this._carried = carried;
         this._size = SIZE * robot.size;
         this._rings = new Map();
     }
 
-    /** Mark those of the joints at a limit that matter to the targets, by name. */
-    update(sides, names, joints) {
+    /**
+     * @param sides for each joint, as a frame has them
+     * @param asked indices of the joints whose limits matter
+     * @param joints Object3Ds placed where the joints are
+     */
+    update(sides, asked, joints) {
         const tinted = new Set();
-        this._names.forEach((name, j) => {
-            const marked = Math.abs(sides[j]) === 1 && names.has(name);
+        joints.forEach((joint, j) => {
+            const marked = Math.abs(sides[j]) === 1 && asked.has(j);
             const ring = this._rings.get(j) ?? (marked ? this._addRing(j) : null);
             if (!ring) return;
             ring.visible = marked;
-            ring.position.copy(joints[j].position);
+            ring.position.copy(joint.position);
             for (const material of this._carried[j]) {
                 if (marked) tinted.add(material);
                 else if (!tinted.has(material)) material.emissive.setRGB(0, 0, 0);
@@ -52,7 +55,10 @@ function ringMaterial() {
     if (shared) return shared;
     const canvas = Object.assign(document.createElement("canvas"), { width: 128, height: 128 });
     const pen = canvas.getContext("2d");
-    for (const [width, color] of [[18, "rgba(30, 20, 0, 0.55)"], [11, "#ffb000"]]) {
+    for (const [width, color] of [
+        [15, "rgba(30, 20, 0, 0.5)"],
+        [9, "#ffb000"],
+    ]) {
         pen.lineWidth = width;
         pen.strokeStyle = color;
         pen.beginPath();
@@ -63,4 +69,16 @@ function ringMaterial() {
     map.encoding = THREE.sRGBEncoding;
     shared = new THREE.SpriteMaterial({ map, depthTest: false, depthWrite: false });
     return shared;
+}
+
+/** The joints that move a ball's frame, whose limits may be why it is missed; all where a frame is no link's. */
+export function askedJoints(robot, { balls, limits }) {
+    const asked = new Set();
+    for (const { frame, mode } of limits ? balls : []) {
+        if (mode === "off") continue;
+        const link = robot.links.find(({ name }) => name === frame);
+        if (!link) return new Set(robot.joints.keys());
+        for (let j = link.joint; j > 0; j = robot.joints[j].parent) asked.add(j);
+    }
+    return asked;
 }

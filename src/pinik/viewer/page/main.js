@@ -1,7 +1,6 @@
 /** The live page: connects the session's messages with the picture, the panel and the visitor's hands. */
 
 import { Address } from "pinik/address.js";
-import { PRESETS } from "pinik/camera.js";
 import { Cards } from "pinik/cards.js";
 import { Chart } from "pinik/chart.js";
 import { Connection } from "pinik/connection.js";
@@ -15,6 +14,7 @@ import { Keys } from "pinik/keys.js";
 import { Notices } from "pinik/notices.js";
 import { Nudge } from "pinik/nudge.js";
 import { addPresets } from "pinik/presets.js";
+import { shortcuts } from "pinik/shortcuts.js";
 import { Show } from "pinik/show.js";
 import { Table } from "pinik/table.js";
 import { Targets } from "pinik/targets.js";
@@ -42,12 +42,13 @@ class Page {
         this.address = new Address((setup) => this.connection.send({ type: "setup", setup }));
         this.history = new History();
         this._drawnCharts = 0;
-        this._unanswered = null;
+        this._unanswered = [];
         this._makeCharts();
         this._makeHands();
         this._makeButtons();
-        this._makeKeys();
+        new Keys(shortcuts(this));
         this.show.stage.onTick((now) => this._tick(now));
+        document.addEventListener("visibilitychange", () => this._answer());
     }
 
     /** What to do with each of the session's messages. */
@@ -71,7 +72,8 @@ class Page {
         },
         shapes: (shapes) => {
             this.show.setShapes(shapes);
-            if (shapes.generation === this.robot.generation) this.notices.warnings([...this.robot.warnings, ...shapes.warnings]);
+            if (shapes.generation === this.robot.generation)
+                this.notices.warnings([...this.robot.warnings, ...shapes.warnings]);
         },
         error: ({ message }) => this.notices.error(message),
     };
@@ -85,17 +87,16 @@ class Page {
         const frame = this.show.setFrame(buffer);
         this.history.add(frame, frame.step / this.hello.steps_per_second);
         // A hidden page draws nothing, but still follows.
-        if (document.hidden) this._answer(frame.step);
-        else this._unanswered = frame.step;
+        this._unanswered.push(frame.step);
+        if (document.hidden) this._answer();
     }
 
-    _answer(step) {
-        this.connection.send({ type: "drawn", step });
-        this._unanswered = null;
+    _answer() {
+        for (const step of this._unanswered.splice(0)) this.connection.send({ type: "drawn", step });
     }
 
     _tick(now) {
-        if (this._unanswered !== null) this._answer(this._unanswered);
+        this._answer();
         if (now - this._drawnCharts < CHARTS || !this.state) return;
         this._drawnCharts = now;
         const { tolerance } = this.state;
@@ -104,8 +105,15 @@ class Page {
     }
 
     _makeCharts() {
-        this._errorChart = new Chart(byId("error-chart"), this.theme, { value: ({ error }) => error * 1000, logarithmic: true });
-        this._timeChart = new Chart(byId("time-chart"), this.theme, { value: ({ seconds }) => seconds * 1000, logarithmic: false, least: 0.2 });
+        this._errorChart = new Chart(byId("error-chart"), this.theme, {
+            value: ({ error }) => error * 1000,
+            logarithmic: true,
+        });
+        this._timeChart = new Chart(byId("time-chart"), this.theme, {
+            value: ({ seconds }) => seconds * 1000,
+            logarithmic: false,
+            least: 0.2,
+        });
     }
 
     _makeHands() {
@@ -138,33 +146,6 @@ class Page {
         this.theme.addEventListener("change", tell);
         tell();
     }
-
-    _makeKeys() {
-        const { controls, show, targets } = this;
-        const next = (list, now) => list[(list.indexOf(now) + 1) % list.length];
-        const names = (list) => list.map(({ name }) => name);
-        const send = (type, fields) => this.connection.send({ type, ...fields });
-        const nudge = (event) => this.nudge.press(event.key, targets.selected, event.shiftKey);
-        new Keys([
-            { keys: [" "], shown: ["Space"], title: "start or stop", act: () => controls.toggleRun() },
-            { keys: ["."], title: "one step", act: () => controls.step() },
-            { keys: ["r"], title: "reset", act: () => send("reset") },
-            { keys: ["1", "2", "4"], title: "so many robots side by side", act: ({ key }) => controls.view(Number(key)) },
-            { keys: ["m"], title: "by hand, along a curve, at random", act: () => send("motion", { motion: next(names(this.hello.motions), this.state.motion) }) },
-            { keys: ["c"], title: "next curve", act: () => send("curve", { curve: next(names(this.hello.curves), this.state.curve) }) },
-            { keys: ["+", "=", "-"], shown: ["+", "−"], title: "faster, slower", act: ({ key }) => controls.changeSpeed(key === "-" ? 0.8 : 1.25) },
-            { keys: ["l"], title: "joint limits on or off", act: () => send("limits", { on: !this.state.limits }) },
-            { keys: ["p"], title: "parameters of the next method", act: () => this.cards.openNext() },
-            { keys: ["b"], title: "select the next ball", act: () => targets.selectNext() },
-            { keys: ["ArrowLeft", "ArrowRight", "ArrowUp", "ArrowDown"], shown: ["←", "→", "↑", "↓"], title: "ball sideways, away and nearer; Shift: finer", act: nudge },
-            { keys: ["PageUp", "PageDown"], shown: ["Page ↑", "Page ↓"], title: "ball up, down; Shift: finer", act: nudge },
-            { keys: ["o"], title: "ask for an orientation too", act: () => targets.toggleOrientation() },
-            { keys: ["v"], title: "next side to look from", act: () => show.frameAll(true, next(Object.keys(PRESETS), show.camera.preset)) },
-            { keys: ["f"], title: "look at everything", act: () => show.frameAll() },
-            { keys: ["t"], title: "light, dark or the system's theme", act: () => this.theme.turn() },
-            { keys: ["?"], title: "this list", act: () => byId("help").showModal() },
-        ]);
-    }
 }
 
 const page = new Page();
@@ -186,6 +167,10 @@ window.pinik = {
     },
     get ready() {
         return page.show.drawn !== "";
+    },
+    /** Whether the camera has come to rest. */
+    get still() {
+        return page.show.still;
     },
     /** Where ball k of the first instance is, in CSS pixels of the page. */
     targetOnScreen(k) {

@@ -30,7 +30,10 @@ export class Notices {
     warnings(list) {
         const details = byId("warnings");
         details.hidden = list.length === 0;
-        say(details.querySelector("summary"), list.length === 1 ? "1 note on this robot" : `${list.length} notes on this robot`);
+        say(
+            details.querySelector("summary"),
+            list.length === 1 ? "1 note on this robot" : `${list.length} notes on this robot`,
+        );
         details.querySelector("ul").replaceChildren(...list.map((words) => make("li", {}, words)));
     }
 }

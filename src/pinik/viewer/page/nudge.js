@@ -1,4 +1,4 @@
-/** Moving the selected ball by keys: level with the ground along the world's axis nearest to the arrow, and up and down. */
+/** Moving the selected ball by keys: up and down, and along the level axis of the world nearest to an arrow. */
 
 const STEP = 0.015; // of the robot's size
 const FINE = 0.1;

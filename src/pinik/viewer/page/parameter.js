@@ -15,7 +15,13 @@ function row(description, control, ...after) {
     const title = make("span", { className: "name" }, spaced(description.name));
     if (description.unit) title.append(make("small", {}, description.unit));
     const label = make("label", { className: "head", title: description.help }, title, control);
-    return make("div", { className: `parameter ${description.kind}` }, label, ...after, make("p", { className: "help" }, description.help));
+    return make(
+        "div",
+        { className: `parameter ${description.kind}` },
+        label,
+        ...after,
+        make("p", { className: "help" }, description.help),
+    );
 }
 
 function numberWidget(description, testid, commit) {
@@ -31,9 +37,19 @@ function numberWidget(description, testid, commit) {
     });
     const extras = [];
     const scaled = slider && scale(slider[0], slider[1], logarithmic);
-    const range = scaled && make("input", { type: "range", min: 0, max: 1000, step: 1, aria: { label: `${spaced(description.name)}, slider` } });
+    const range =
+        scaled &&
+        make("input", {
+            type: "range",
+            min: 0,
+            max: 1000,
+            step: 1,
+            aria: { label: `${spaced(description.name)}, slider` },
+        });
     range?.addEventListener("input", () => {
-        const value = description.whole ? Math.round(scaled.value(Number(range.value))) : scaled.value(Number(range.value));
+        const value = description.whole
+            ? Math.round(scaled.value(Number(range.value)))
+            : scaled.value(Number(range.value));
         input.value = plain(value);
         commit(value, true);
     });
@@ -67,12 +83,18 @@ function truthWidget(description, testid, commit) {
 
 function choiceWidget(description, testid, commit) {
     const select = make("select", { dataset: { testid } });
-    offer(select, description.choices.map((choice) => [choice, spaced(choice)]));
+    offer(
+        select,
+        description.choices.map((choice) => [choice, spaced(choice)]),
+    );
     select.addEventListener("change", () => commit(select.value));
     return { element: row(description, select), show: ({ value }) => write(select, value) };
 }
 
 function jointsWidget(description, testid, commit) {
     const values = new JointValues(description, testid, commit);
-    return { element: row(description, values.adder, values.list), show: ({ value }, state) => values.show(value, state.joint_names) };
+    return {
+        element: row(description, values.adder, values.list),
+        show: ({ value }, state) => values.show(value, state.joint_names),
+    };
 }

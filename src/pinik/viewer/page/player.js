@@ -16,7 +16,6 @@ class Player {
         this._rate = recording.frames_per_second;
         this._at = 0;
         this._shown = -1;
-        this._playing = this._count > 1;
         this._before = performance.now();
         addPresets(byId("presets"), this._show);
         this._show.setHello(recording.hello);
@@ -25,24 +24,27 @@ class Player {
         for (const command of recording.commands) this._show.command(bytesOf(command));
         this._show.setShapes(recording.shapes);
         this._bind();
+        this._play(this._count > 1);
         this._show.stage.onTick((now) => this._tick(now));
     }
 
     _bind() {
         byId("time").max = Math.max(0, this._count - 1);
-        byId("play").addEventListener("click", () => this._toggle());
+        byId("play").addEventListener("click", () => this._play(!this._playing));
         byId("time").addEventListener("input", ({ target }) => this._seek(Number(target.value)));
         document.addEventListener("keydown", (event) => {
             if (event.key !== " " || event.target.matches("button, select")) return;
             event.preventDefault();
-            this._toggle();
+            this._play(!this._playing);
         });
     }
 
-    _toggle() {
-        this._playing = !this._playing;
-        byId("play").ariaLabel = this._playing ? "Pause" : "Play";
-        byId("play").querySelector("use").setAttribute("href", this._playing ? "#icon-pause" : "#icon-play");
+    _play(on) {
+        this._playing = on;
+        byId("play").ariaLabel = on ? "Pause" : "Play";
+        byId("play")
+            .querySelector("use")
+            .setAttribute("href", on ? "#icon-pause" : "#icon-play");
     }
 
     /** Go to a frame, by way of those before it, whose trails belong to the picture. */
@@ -71,7 +73,8 @@ class Player {
         this._shown = k;
         this._show.setFrame(this._frame(k));
         byId("time").value = k;
-        byId("clock").textContent = `${(k / this._rate).toFixed(1)} s of ${((this._count - 1) / this._rate).toFixed(1)} s`;
+        byId("clock").textContent =
+            `${(k / this._rate).toFixed(1)} s of ${((this._count - 1) / this._rate).toFixed(1)} s`;
     }
 }
 

@@ -1,6 +1,6 @@
 /** How finely to draw, so that the picture stays fluid also where a processor has to draw it. */
 
-const SLOW = 40; // [ms] between two pictures: coarser
+const SLOW = 55; // [ms] between two pictures: coarser
 const FAST = 19; // [ms]: finer again
 const PAUSE = 400; // [ms] longer than this is no drawing speed, but a pause
 const PATIENCE = 10; // pictures before a verdict
@@ -14,12 +14,11 @@ export class Quality {
             { ratio: sharp, fine: true, shadowEvery: 1 },
             { ratio: Math.min(sharp, 1), fine: true, shadowEvery: 2 },
             { ratio: Math.min(sharp, 1), fine: false, shadowEvery: 3 },
-            { ratio: 0.75, fine: false, shadowEvery: 4 },
-            { ratio: 0.55, fine: false, shadowEvery: 8 },
+            { ratio: 0.75, fine: false, shadowEvery: 6 },
         ];
         /** How a picture is drawn that stays for a while. */
         this.still = { ratio: software ? Math.max(sharp, 1.5) : sharp, fine: true };
-        this._level = software ? 3 : 0;
+        this._level = software ? 2 : 0;
         this._tries = 2;
         this._restart();
     }

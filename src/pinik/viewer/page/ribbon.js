@@ -1,4 +1,4 @@
-/** A line of a width in pixels that the graphics card lays flat to the viewer; it may thin out towards its beginning. */
+/** A line of a width in pixels that the graphics card turns to the viewer; it may thin out towards its beginning. */
 
 import { THREE } from "pinik/three.js";
 
@@ -36,7 +36,14 @@ export class Ribbon {
         this._geometry = new THREE.BufferGeometry();
         for (const name of ["position", "before", "after"]) this._attribute(name, 3);
         for (const name of ["side", "along"]) this._attribute(name, 1);
-        const index = Array.from({ length: capacity - 1 }, (_, k) => [2 * k, 2 * k + 1, 2 * k + 2, 2 * k + 2, 2 * k + 1, 2 * k + 3]);
+        const index = Array.from({ length: capacity - 1 }, (_, k) => [
+            2 * k,
+            2 * k + 1,
+            2 * k + 2,
+            2 * k + 2,
+            2 * k + 1,
+            2 * k + 3,
+        ]);
         this._geometry.setIndex(index.flat());
         const uniforms = { color: new THREE.Color(), resolution: new THREE.Vector2(1, 1), width, opacity, taper };
         const material = new THREE.ShaderMaterial({
@@ -73,7 +80,11 @@ export class Ribbon {
         if (count < 2) return;
         const { position, before, after, side, along } = this._geometry.attributes;
         for (let k = 0; k < count; k++) {
-            const neighbours = [[position, k], [before, Math.max(k - 1, 0)], [after, Math.min(k + 1, count - 1)]];
+            const neighbours = [
+                [position, k],
+                [before, Math.max(k - 1, 0)],
+                [after, Math.min(k + 1, count - 1)],
+            ];
             for (const half of [0, 1]) {
                 const vertex = 2 * k + half;
                 for (const [attribute, at] of neighbours) {

@@ -1,6 +1,7 @@
 /** One instance of the robot in the scene: its shapes or its skeleton, moved joint by joint. */
 
 import { LimitMarks } from "pinik/limit_marks.js";
+import { quickMaterial } from "pinik/quick_material.js";
 import { Skeleton } from "pinik/skeleton.js";
 import { THREE } from "pinik/three.js";
 
@@ -23,8 +24,7 @@ export class Robot {
         const materials = robot.links.map(() => []);
         for (const part of parts ?? []) {
             const fine = part.material.clone();
-            const { color, opacity, transparent, side } = fine;
-            const coarse = new THREE.MeshLambertMaterial({ color, opacity, transparent, side });
+            const coarse = quickMaterial(fine);
             const mesh = new THREE.Mesh(part.geometry, fine);
             mesh.castShadow = true;
             this._links[part.link].add(mesh);
@@ -37,12 +37,12 @@ export class Robot {
         if (this._skeleton) this.group.add(this._skeleton.group);
     }
 
-    /** Stand as instance `i` of a frame does; `limited` names the joints whose limits matter. */
-    update(frame, i, limited) {
+    /** Stand as instance `i` of a frame does; `asked` are the joints whose limits matter. */
+    update(frame, i, asked) {
         const placements = frame.placements(i);
         this._joints.forEach((joint, j) => place(joint, placements, 7 * j));
         this._skeleton?.update(this._joints);
-        this._marks.update(frame.sides(i), limited, this._joints);
+        this._marks.update(frame.sides(i), asked, this._joints);
     }
 
     /** Draw finely, with shadows on itself, or quickly. */
@@ -65,7 +65,11 @@ export class Robot {
                 const { min, max } = mesh.geometry.boundingBox;
                 const toRobot = inverse.clone().multiply(mesh.matrixWorld);
                 for (let k = 0; k < 8; k++) {
-                    const corner = new THREE.Vector3(k & 1 ? max.x : min.x, k & 2 ? max.y : min.y, k & 4 ? max.z : min.z);
+                    const corner = new THREE.Vector3(
+                        k & 1 ? max.x : min.x,
+                        k & 2 ? max.y : min.y,
+                        k & 4 ? max.z : min.z,
+                    );
                     points.push(corner.applyMatrix4(toRobot));
                 }
             }

@@ -5,8 +5,9 @@ import { Lights } from "pinik/lights.js";
 import { Quality } from "pinik/quality.js";
 import { THREE, Viewer } from "pinik/three.js";
 
-const FIELD_OF_VIEW = 32; // [deg], narrow: little distortion, instances of equal size
+const FIELD_OF_VIEW = 20; // [deg], narrow: little distortion, instances of equal size
 const SETTLE = 400; // [ms] without a change after which a still picture is drawn as finely as possible
+const IDLE = 20; // chances to draw that pass meanwhile: a slow picture is not yet a still one
 
 export class Stage {
     constructor(element, theme) {
@@ -15,13 +16,14 @@ export class Stage {
         this.frames = 0;
         this._tickers = [];
         this._last = 0;
+        this._idle = 0;
         this._settled = false;
         this.fine = true;
         const software = isSoftware();
         this._quality = new Quality(software);
         this._setUpViewer(software);
         this.ground = new Ground();
-        this.lights = new Lights();
+        this.lights = new Lights(software);
         this.viewer.scene.add(this.ground.group, this.lights.group);
         this.viewer.scene.updateMatrixWorld();
         this._paint();
@@ -95,9 +97,13 @@ export class Stage {
             if (!this._settled) this._quality.note(now - this._last);
             this._settled = false;
             this._last = now;
+            this._idle = 0;
             const level = this._quality.now;
             this._render(level, this.frames % level.shadowEvery === 0);
-        } else if (!this._settled && now - this._last > SETTLE) {
+            return;
+        }
+        this._idle += 1;
+        if (!this._settled && this._idle > IDLE && now - this._last > SETTLE) {
             this._settled = true;
             this._render(this._quality.still, true);
         }
@@ -119,8 +125,8 @@ export class Stage {
         renderer.shadowMap.type = fine ? THREE.PCFSoftShadowMap : THREE.BasicShadowMap;
         renderer.shadowMap.needsUpdate = shadows;
         const distance = camera.position.distanceTo(controls.target);
-        camera.near = distance / 200;
-        camera.far = distance * 50;
+        camera.near = distance / 25;
+        camera.far = distance * 30;
         this.viewer.render();
         this.frames += 1;
         this.onDrawn?.();

@@ -1,11 +1,15 @@
 /** The balls in the panel: which frame each leads, how, and where it is in numbers. */
 
 import { byId, icon, make, say } from "pinik/elements.js";
-import { offer, typed, write } from "pinik/hands.js";
+import { Asked, offer, typed, write } from "pinik/hands.js";
 import { plain } from "pinik/words.js";
 
 const DEGREE = Math.PI / 180;
-const MODES = [["on", "leads"], ["pinned", "pinned"], ["off", "off"]];
+const MODES = [
+    ["on", "leads"],
+    ["pinned", "pinned"],
+    ["off", "off"],
+];
 const POSITION = ["target-x", "target-y", "target-z"];
 const TURN = ["roll", "pitch", "yaw"];
 
@@ -15,10 +19,15 @@ export class Targets {
         this._connection = connection;
         this._onSelect = onSelect;
         this._rows = [];
+        this._asked = new Asked();
         this.selected = 0;
-        POSITION.forEach((id) => byId(id).addEventListener("change", () => this._sendPosition()));
-        TURN.forEach((id) => byId(id).addEventListener("change", () => this._sendOrientation(byId("orientation").checked)));
-        byId("orientation").addEventListener("change", ({ target }) => this._sendOrientation(target.checked));
+        POSITION.forEach((id, axis) =>
+            byId(id).addEventListener("change", ({ target }) => this._sendPosition(axis, typed(target))),
+        );
+        TURN.forEach((id, axis) =>
+            byId(id).addEventListener("change", ({ target }) => this._sendTurn(axis, typed(target))),
+        );
+        byId("orientation").addEventListener("change", ({ target }) => this._orient({ on: target.checked }));
         byId("add-effector").addEventListener("change", ({ target }) => {
             if (target.value) connection.send({ type: "add_effector", frame: target.value });
             target.value = "";
@@ -38,7 +47,10 @@ export class Targets {
         this.state = state;
         if (this.selected >= state.balls.length) this.select(Math.max(0, state.balls.length - 1));
         const taken = new Set(state.balls.map(({ frame }) => frame));
-        offer(byId("add-effector"), [["", "Add a frame …"], ...this._frames.filter((frame) => !taken.has(frame)).map((frame) => [frame, frame])]);
+        offer(byId("add-effector"), [
+            ["", "Add a frame …"],
+            ...this._frames.filter((frame) => !taken.has(frame)).map((frame) => [frame, frame]),
+        ]);
         while (this._rows.length > state.balls.length) this._rows.pop().row.remove();
         while (this._rows.length < state.balls.length) this._rows.push(this._make(this._rows.length));
         this._rows.forEach((row, k) => this._showRow(row, state.balls[k], k));
@@ -46,12 +58,21 @@ export class Targets {
     }
 
     _make(k) {
-        const pick = make("button", { type: "button", className: "pick", dataset: { testid: `ball-${k}` } }, make("span", { className: "dot" }), make("span"));
+        const pick = make(
+            "button",
+            { type: "button", className: "pick", dataset: { testid: `ball-${k}` } },
+            make("span", { className: "dot" }),
+            make("span"),
+        );
         pick.addEventListener("click", () => this.select(k));
         const mode = make("select", { className: "small", dataset: { testid: `ball-mode-${k}` } });
         offer(mode, MODES);
         mode.addEventListener("change", () => this._connection.send({ type: "effector", index: k, mode: mode.value }));
-        const remove = make("button", { type: "button", className: "quiet", dataset: { testid: `ball-remove-${k}` } }, icon("close"));
+        const remove = make(
+            "button",
+            { type: "button", className: "quiet", dataset: { testid: `ball-remove-${k}` } },
+            icon("close"),
+        );
         remove.addEventListener("click", () => this._connection.send({ type: "remove_effector", index: k }));
         const row = make("li", {}, pick, mode, remove);
         byId("balls").append(row);
@@ -99,18 +120,30 @@ export class Targets {
     }
 
     toggleOrientation() {
-        if (this.ball) this._sendOrientation(!this.ball.oriented);
+        if (this.ball) this._orient({ on: !this.ball.oriented });
     }
 
-    _sendPosition() {
-        const position = POSITION.map((id) => typed(byId(id)));
-        if (!position.includes(null)) this._connection.send({ type: "ball", index: this.selected, position });
+    _sendPosition(axis, value) {
+        if (value === null || !this.ball) return;
+        const key = `position ${this.selected}`;
+        const position = changed(this._asked.now(key, this.ball.position), axis, value);
+        this._connection.send({ type: "ball", index: this.selected, position: this._asked.ask(key, position) });
     }
 
-    _sendOrientation(on) {
-        const degrees = TURN.map((id) => typed(byId(id)));
-        if (!degrees.includes(null)) {
-            this._connection.send({ type: "orientation", index: this.selected, on, rpy: degrees.map((angle) => angle * DEGREE) });
-        }
+    _sendTurn(axis, value) {
+        if (value !== null && this.ball) this._orient({ axis, angle: value * DEGREE });
     }
+
+    /** Ask for an orientation, or not; or turn it about one axis. */
+    _orient({ on, axis, angle }) {
+        const key = `orientation ${this.selected}`;
+        const before = this._asked.now(key, { on: this.ball.oriented, rpy: this.ball.rpy });
+        const rpy = axis === undefined ? before.rpy : changed(before.rpy, axis, angle);
+        const asked = this._asked.ask(key, { on: on ?? before.on, rpy });
+        this._connection.send({ type: "orientation", index: this.selected, ...asked });
+    }
+}
+
+function changed(numbers, index, value) {
+    return numbers.map((old, i) => (i === index ? value : old));
 }

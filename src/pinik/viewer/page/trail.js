@@ -1,15 +1,14 @@
-/** The way that an effector came lately: like a comet's tail, gone when it stands still. */
+/** The way that an effector came lately: like a comet's tail, gone when it has stood still for a while. */
 
 import { Ribbon } from "pinik/ribbon.js";
 
-const POINTS = 90; // frames that are remembered: a second and a half
+const STEPS = 90; // of the session, 60 a second
+const POINTS = 90;
 
 export class Trail {
     constructor() {
         this._ribbon = new Ribbon({ capacity: POINTS, width: 7, opacity: 0.85, taper: 1 });
-        this._points = new Float32Array(3 * POINTS);
-        this._count = 0;
-        this._still = 0;
+        this._points = [];
     }
 
     get mesh() {
@@ -20,29 +19,26 @@ export class Trail {
         this._ribbon.color = css;
     }
 
-    /** Whether it still changes while its effector does not. */
+    /** Whether time alone changes it. */
     get fading() {
-        return this._count > 0 && this._still < POINTS;
+        return this._points.length > 0;
     }
 
-    add(x, y, z) {
-        const [last, points] = [3 * (this._count - 1), this._points];
-        const same = this._count > 0 && points[last] === x && points[last + 1] === y && points[last + 2] === z;
-        this._still = same ? this._still + 1 : 0;
-        if (this._still >= POINTS) {
-            this._ribbon.set(points, 0);
-            return;
-        }
-        if (this._count === POINTS) points.copyWithin(0, 3);
-        else this._count += 1;
-        points.set([x, y, z], 3 * (this._count - 1));
-        this._ribbon.set(points, this._count);
+    add(step, x, y, z) {
+        const points = this._points;
+        const last = points[points.length - 1];
+        if (last && last.step > step) this.clear();
+        if (!last || last.x !== x || last.y !== y || last.z !== z) points.push({ step, x, y, z });
+        while (points.length > POINTS || (points.length && points[0].step < step - STEPS)) points.shift();
+        this._ribbon.set(
+            points.flatMap((point) => [point.x, point.y, point.z]),
+            points.length,
+        );
     }
 
     clear() {
-        this._count = 0;
-        this._still = 0;
-        this._ribbon.set(this._points, 0);
+        this._points.length = 0;
+        this._ribbon.set([], 0);
     }
 
     dispose() {

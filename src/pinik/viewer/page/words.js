@@ -21,7 +21,8 @@ export function length(metres) {
 export function degrees(radians) {
     if (radians === null || !Number.isFinite(radians)) return NOTHING;
     const value = (radians * 180) / Math.PI;
-    return `${Math.abs(value) >= 10 ? value.toFixed(1) : value.toFixed(2)}°`;
+    const size = Math.abs(value);
+    return `${value.toFixed(size >= 100 ? 0 : size >= 10 ? 1 : 2)}°`;
 }
 
 export function milliseconds(seconds) {
@@ -49,14 +50,13 @@ export function spaced(name) {
     return name.replaceAll("_", " ");
 }
 
-/** Where an instance stands: "reached", "4.1 cm short", …; errors in metres and radians, not finite where not asked. */
+/** Where an instance stands: "reached", "4.1 cm short", …; errors in m and rad, not finite where not asked for. */
 export function verdict(status, positionError, orientationError, tolerance) {
     if (status === "FAILED") return "solver failed";
     if (status === "IDLE") return "idle";
     if (status === "CONVERGED") return "reached";
     const away = Number.isFinite(positionError) && positionError > tolerance.position;
     const turned = Number.isFinite(orientationError) && orientationError > tolerance.orientation;
-    if (away && status === "UNREACHABLE") return `out of reach, ${length(positionError)} short`;
     if (away) return `${length(positionError)} short`;
     if (turned) return `${degrees(orientationError)} turned away`;
     return "reached";

@@ -1,4 +1,4 @@
-"""What stands in for time, tabs and threads in the viewer's tests, and a reader of frames made from the documentation."""
+"""For the live view's tests: stand-ins for time, tabs and threads, good messages, and a reader of frames."""
 
 from __future__ import annotations
 
@@ -16,6 +16,33 @@ import pinik
 from pinik.viewer.session import Session
 from pinik.viewer.setup import write_setup
 from pinik.viewer.state import session_state
+
+# A well-formed message of every type that a session itself can answer, and what each field is.
+GOOD = {
+    "view": ({"count": 2}, {"count": "index"}),
+    "method": ({"instance": 0, "method": "dls"}, {"instance": "index", "method": "name"}),
+    "parameter": (
+        {"instance": 3, "name": "damping", "value": 0.3},
+        {"instance": "index", "name": "name", "value": "value"},
+    ),
+    "limits": ({"on": False}, {"on": "truth"}),
+    "motion": ({"motion": "random"}, {"motion": "name"}),
+    "curve": ({"curve": "knot"}, {"curve": "name"}),
+    "speed": ({"value": 2.5}, {"value": "number"}),
+    "iterations": ({"until_reached": False, "at_most": 3}, {"until_reached": "truth", "at_most": "count"}),
+    "tolerance": ({"position": 0.01, "orientation": 0.1}, {"position": "number", "orientation": "number"}),
+    "run": ({"on": True}, {"on": "truth"}),
+    "step": ({}, {}),
+    "reset": ({}, {}),
+    "ball": ({"index": 0, "position": [0.1, 0.2, 0.3]}, {"index": "index", "position": "point"}),
+    "orientation": (
+        {"index": 0, "on": True, "rpy": [0.1, 0.2, 0.3]},
+        {"index": "index", "on": "truth", "rpy": "angles"},
+    ),
+    "effector": ({"index": 0, "mode": "pinned"}, {"index": "index", "mode": "name"}),
+    "add_effector": ({"frame": "bone3"}, {"frame": "name"}),
+    "remove_effector": ({"index": 1}, {"index": "index"}),
+}
 
 
 class Clock:

@@ -1,0 +1,57 @@
+/** What the labels below the robots say, and where they hang. */
+
+import { Labels } from "pinik/labels.js";
+import { verdict } from "pinik/words.js";
+
+const WORDS = 120; // [ms] between two changes of what they say
+const BELOW = 8; // [px] under the lowest point of the base
+
+export class Captions {
+    constructor(element, stage) {
+        this._labels = new Labels(element);
+        this._stage = stage;
+        this._bases = [];
+        this._said = 0;
+    }
+
+    setHello(hello) {
+        this._statuses = hello.statuses;
+    }
+
+    /** Tell where each instance stands, but not more often than one can read. */
+    say(now, frame, { instances, tolerance }) {
+        if (now - this._said < WORDS) return;
+        this._said = now;
+        const texts = instances.slice(0, frame.instances).map(({ title, method }, i) => {
+            const { status, positionError, orientationError } = frame.figures(i);
+            const name = this._statuses[status];
+            return {
+                title,
+                method,
+                words: verdict(name, positionError, orientationError, tolerance),
+                good: name === "CONVERGED",
+            };
+        });
+        this._labels.set(texts);
+        this.place();
+    }
+
+    /** @param bases for each instance the points that its robot stands on, in the scene; Vector3s */
+    hang(bases) {
+        this._bases = bases;
+    }
+
+    place() {
+        const anchors = this._bases.map((points) => {
+            const seen = points.map((point) => this._stage.project(point));
+            const xs = seen.map(({ x }) => x);
+            const lowest = Math.max(...seen.map(({ y }) => y));
+            return {
+                x: (Math.min(...xs) + Math.max(...xs)) / 2,
+                y: lowest + BELOW,
+                behind: seen.some(({ behind }) => behind),
+            };
+        });
+        if (anchors.length) this._labels.place(anchors, this._stage.width, this._stage.height);
+    }
+}

@@ -1,0 +1,55 @@
+/** A robot's skin where a processor draws: the same lights, added up once a corner instead of once a pixel. */
+
+import { THREE } from "pinik/three.js";
+
+const VERTEX = `
+uniform vec3 color, emissive, keyWay, fillWay;
+uniform vec3 strengths;
+varying vec3 skin;
+void main() {
+    vec4 place = modelMatrix * vec4(position, 1.0);
+    vec3 n = normalize(mat3(modelMatrix) * normal);
+    // Many files have faces that look inwards.
+    if (dot(n, cameraPosition - place.xyz) < 0.0) n = -n;
+    vec3 facing = vec3(0.78 + 0.22 * n.y, max(dot(n, keyWay), 0.0), max(dot(n, fillWay), 0.0));
+    float light = dot(strengths, facing);
+    skin = pow(color * light + emissive, vec3(1.0 / 2.2));
+    gl_Position = projectionMatrix * viewMatrix * place;
+}`;
+
+const FRAGMENT = `
+uniform float opacity;
+varying vec3 skin;
+void main() { gl_FragColor = vec4(skin, opacity); }`;
+
+/** What all of them share; set by the lights. In the world with y up. */
+const lights = {
+    keyWay: { value: new THREE.Vector3(0, 1, 0) },
+    fillWay: { value: new THREE.Vector3(0, 1, 0) },
+    strengths: { value: new THREE.Vector3(0.5, 0.6, 0.2) },
+};
+
+/** @param strengths sky, key, fill; the ways are unit vectors to the lights */
+export function lightQuickMaterials(strengths, keyWay, fillWay) {
+    lights.strengths.value.set(...strengths);
+    lights.keyWay.value.copy(keyWay);
+    lights.fillWay.value.copy(fillWay);
+}
+
+/** One that looks like a MeshStandardMaterial from afar. */
+export function quickMaterial({ color, opacity, transparent }) {
+    const material = new THREE.ShaderMaterial({
+        vertexShader: VERTEX,
+        fragmentShader: FRAGMENT,
+        uniforms: {
+            color: { value: color },
+            emissive: { value: new THREE.Color(0) },
+            opacity: { value: opacity },
+            ...lights,
+        },
+        side: THREE.DoubleSide,
+        transparent,
+    });
+    material.emissive = material.uniforms.emissive.value;
+    return material;
+}

@@ -1,0 +1,78 @@
+/** What belongs in the picture, and looking at all of it whenever something has left it. */
+
+import { Extent } from "pinik/extent.js";
+import { THREE } from "pinik/three.js";
+
+const LOOK = 300; // [ms] between two looks at whether something left the picture
+const EDGE = 4; // [px] it may come this near to the edge
+
+export class Sight {
+    /** @param show what is looked at */
+    constructor(show) {
+        this._show = show;
+        this._extent = new Extent();
+        this._looked = 0;
+        this._pending = false;
+    }
+
+    /** Another robot, or other ways to go: what was needed so far counts no more. */
+    forget() {
+        this._extent.clear();
+    }
+
+    /** Look at everything, as soon as nothing is in the visitor's hand. */
+    ask() {
+        this._pending = true;
+    }
+
+    get pending() {
+        return this._pending;
+    }
+
+    /** Look at everything; the camera goes there smoothly unless told otherwise. */
+    all(smoothly, preset) {
+        const { camera, stage, instances, ground, robot } = this._show;
+        this._pending = false;
+        camera.frame(this._points(), instances.length, preset, smoothly);
+        const { center, radius } = camera.sphere;
+        stage.ground.lay(ground, center.x, center.y, radius, robot.size);
+    }
+
+    /** Follow what left the picture, unless the visitor turned the camera or has a ball in the hand. */
+    follow(now) {
+        const { camera, busy } = this._show;
+        if (busy) return;
+        if (this._pending) {
+            this.all(true, camera.preset);
+            return;
+        }
+        if (now - this._looked < LOOK || camera.moved || camera.gliding) return;
+        this._looked = now;
+        if (this._someLeft()) this.all(true, camera.preset);
+    }
+
+    _someLeft() {
+        const { stage, instances } = this._show;
+        const points = this._points();
+        return instances.some((_, i) =>
+            points.some((point) => {
+                const { x, y } = stage.project(point.clone().add(this._show.offset(i)));
+                return x < EDGE || y < EDGE || x > stage.width - EDGE || y > stage.height - EDGE;
+            }),
+        );
+    }
+
+    /** What of each instance should be seen, as points of its own world. */
+    _points() {
+        const { instances, balls, state, ballRadius } = this._show;
+        this._extent.add(instances.flatMap((instance) => instance.robot.corners()));
+        const points = this._extent.points;
+        state.balls.forEach((ball, k) => {
+            const position = balls.places[k]?.position;
+            if (ball.mode === "off" || !position) return;
+            for (const side of [-ballRadius, ballRadius]) points.push(position.clone().addScalar(side));
+            for (let j = 0; j < ball.curve.length; j += 4) points.push(new THREE.Vector3(...ball.curve[j]));
+        });
+        return points;
+    }
+}

@@ -1,0 +1,145 @@
+"""Dragging in the 3-D view: the ball follows the hand, the robots follow the ball, and the camera keeps still."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from page_fixtures import METHODS, PHONE
+
+RED = np.array([216, 31, 47])  # about what a ball looks like
+
+
+def place(state, k=0):
+    return np.array(state["balls"][k]["position"])
+
+
+def camera(desk):
+    return np.array(desk.runs("pinik.viewer.camera.matrixWorld.toArray()"))
+
+
+def looks_along(desk):
+    """The camera's direction in the robot's world, where z is up."""
+    x, y, z = -camera(desk)[8:11]
+    return np.array([x, -z, y])
+
+
+def drag(desk, start, way, *, steps=6, release=True):
+    """Press at a place [px], go a way [px] in steps; the tab is left time to draw each."""
+    mouse = desk.page.mouse
+    mouse.move(*start)
+    mouse.down()
+    for k in range(1, steps + 1):
+        mouse.move(start[0] + way[0] * k / steps, start[1] + way[1] * k / steps)
+    if release:
+        mouse.up()
+
+
+def red_spots(picture):
+    """Middles (x, y) of what is red in a picture, from left to right."""
+    is_red = (np.abs(picture - RED) < 60).all(axis=2) & (picture[..., 0] > 2 * picture[..., 1] + 20)
+    columns = np.flatnonzero(is_red.sum(axis=0) > 2)
+    groups = np.split(columns, np.flatnonzero(np.diff(columns) > 6) + 1)
+    return [(group.mean(), np.flatnonzero(is_red[:, group].any(axis=1)).mean()) for group in groups if len(group) > 4]
+
+
+def test_all_four_instances_follow_the_ball_that_is_dragged(open_desk):
+    desk = open_desk(methods=METHODS, running=True)
+    desk.until(desk.is_followed)
+    begin, seen_from = place(desk.state), camera(desk)
+    start = desk.ball_on_screen()
+    drag(desk, start, (-25, 40), release=False)
+    state = desk.until(lambda s: np.linalg.norm(place(s) - begin) > 0.03)
+    np.testing.assert_allclose(camera(desk), seen_from, atol=1e-9, err_msg="the camera turned")
+    desk.page.mouse.up()
+    state = desk.until(desk.is_followed)
+    assert len(state["instances"]) == 4
+    assert abs((place(state) - begin) @ looks_along(desk)) < 1e-3, "not in the plane that is seen"
+    np.testing.assert_allclose(np.subtract(desk.ball_on_screen(), start), (-25, 40), atol=3)
+    for axis, coordinate in zip("xyz", place(state), strict=True):
+        desk.wait(lambda axis=axis, coordinate=coordinate: abs(desk.value(f"target-{axis}") - coordinate) < 6e-4)
+
+
+def test_a_ball_is_where_the_page_says_and_every_instances_copy_can_be_dragged(open_desk):
+    desk = open_desk(methods=METHODS)
+    box = desk.page.locator("#canvas").bounding_box()
+    spots = red_spots(desk.picture())
+    assert len(spots) == 4
+    x, y = desk.ball_on_screen()
+    np.testing.assert_allclose(spots[0], (x - box["x"], y - box["y"]), atol=4)
+    for spot in spots[1:]:
+        before = place(desk.agree())
+        drag(desk, (spot[0] + box["x"], spot[1] + box["y"]), (0, -12))
+        after = place(desk.until(lambda s, before=before: np.linalg.norm(place(s) - before) > 0.01))
+        assert after[2] > before[2]
+        desk.settle()
+
+
+def test_a_drag_takes_the_ball_from_its_curve(open_desk):
+    desk = open_desk(methods=("dls",), running=True, motion="curve")
+    seen_from = camera(desk)
+    desk.page.mouse.move(*desk.ball_on_screen())
+    desk.page.mouse.down()
+    x, y = desk.ball_on_screen()
+    desk.page.mouse.move(x + 30, y, steps=4)
+    desk.until(lambda s: s["motion"] == "hand")
+    np.testing.assert_allclose(camera(desk), seen_from, atol=1e-9, err_msg="the camera turned")
+    desk.page.mouse.up()
+    desk.until(desk.is_followed)
+
+
+def test_with_shift_the_ball_keeps_its_height(open_desk):
+    desk = open_desk(methods=("dls",))
+    begin = place(desk.state)
+    desk.page.keyboard.down("Shift")
+    drag(desk, desk.ball_on_screen(), (-50, 25))
+    desk.page.keyboard.up("Shift")
+    after = place(desk.until(lambda s: np.linalg.norm(place(s) - begin) > 0.05))
+    assert after[2] == pytest.approx(begin[2], abs=1e-5)
+
+
+def test_dragging_beside_the_ball_turns_the_camera_and_moves_nothing(open_desk):
+    desk = open_desk(methods=("dls",))
+    begin, seen_from = desk.state["balls"], camera(desk)
+    box = desk.page.locator("#canvas").bounding_box()
+    drag(desk, (box["x"] + 60, box["y"] + box["height"] - 60), (120, -30))
+    desk.wait(lambda: np.abs(camera(desk) - seen_from).max() > 0.05)
+    assert desk.state["balls"] == begin
+    desk.click("camera-iso")
+    desk.settle()
+    desk.wait(lambda: np.abs(camera(desk) - seen_from).max() < 1e-2)
+
+
+def test_the_ball_that_is_taken_is_the_one_that_is_dragged_and_selected(open_desk):
+    desk = open_desk("lion", methods=("dls",))
+    desk.view.send("effector", index=4, mode="on")
+    desk.agree()
+    desk.settle()
+    begin = [place(desk.state, k) for k in range(6)]
+    drag(desk, desk.ball_on_screen(4), (0, -40))
+    state = desk.until(lambda s: np.linalg.norm(place(s, 4) - begin[4]) > 0.02)
+    assert all((place(state, k) == begin[k]).all() for k in (0, 1, 2, 3, 5))
+    desk.expect("ball-4").to_have_attribute("aria-pressed", "true")
+
+
+def test_a_finger_drags_the_ball_and_turns_the_camera_elsewhere(open_desk):
+    desk = open_desk("arm", methods=("dls",), viewport=PHONE, has_touch=True, is_mobile=True)
+    begin, seen_from = place(desk.state), camera(desk)
+    fingers = desk.page.context.new_cdp_session(desk.page)
+
+    def swipe(start, way):
+        for kind, part in [("touchStart", 0.0), *[("touchMove", k / 5) for k in range(1, 6)]]:
+            point = {"x": start[0] + way[0] * part, "y": start[1] + way[1] * part, "id": 1}
+            fingers.send("Input.dispatchTouchEvent", {"type": kind, "touchPoints": [point]})
+        fingers.send("Input.dispatchTouchEvent", {"type": "touchEnd", "touchPoints": []})
+
+    swipe(desk.ball_on_screen(), (-30, 30))
+    after = place(desk.until(lambda s: np.linalg.norm(place(s) - begin) > 0.03))
+    assert after[2] < begin[2]
+    np.testing.assert_allclose(camera(desk), seen_from, atol=1e-9, err_msg="the camera turned")
+    assert desk.runs("scrollY + document.querySelector('.app').scrollTop") == 0
+    box = desk.page.locator("#canvas").bounding_box()
+    held = desk.state["balls"]
+    swipe((box["x"] + 30, box["y"] + box["height"] - 30), (100, 0))
+    desk.wait(lambda: np.abs(camera(desk) - seen_from).max() > 0.05)
+    assert desk.state["balls"] == held

@@ -1,0 +1,161 @@
+"""The page's figures: they fill, change, and agree with the server's; why a target is missed; what can be saved."""
+
+from __future__ import annotations
+
+import csv
+import io
+import json
+import re
+import urllib.request
+
+import numpy as np
+import pytest
+from PIL import Image
+
+from page_fixtures import METHODS
+
+COLUMNS = ["mean-time", "mean-iterations", "efficiency", "mean-error", "largest-jump"]
+UNITS = {"ms": 1e-3, "%": 0.01, "m": 1.0, "cm": 0.01, "mm": 0.001, "°": np.pi / 180, "": 1.0}
+
+
+def figures(desk, i):
+    """What a row of the table says, in SI: name → (value, half of its last digit)."""
+    said = {}
+    for column in COLUMNS:
+        text = desk.text(f"{column}-{i}").split("/")[0].strip()
+        found = re.fullmatch(r"([\d.]+)\s*(\D*)", text)
+        assert found, f"{column}: {text!r}"
+        decimals = len(found[1].partition(".")[2])
+        unit = UNITS[found[2].strip()]
+        said[column] = float(found[1]) * unit, 0.51 * 10.0**-decimals * unit
+    return said
+
+
+def fetch(desk, path):
+    with urllib.request.urlopen(desk.view.url + path) as answer:
+        return answer.read().decode("utf-8")
+
+
+def test_statistics_fill_and_change_while_it_runs(open_desk):
+    desk = open_desk(methods=METHODS, motion="curve")
+    for column in COLUMNS:
+        assert [desk.text(f"{column}-{i}") for i in range(4)] == ["–"] * 4
+    desk.click("start")
+    for i in range(4):
+        desk.expect(f"mean-time-{i}").to_contain_text("ms")
+        desk.expect(f"efficiency-{i}").to_contain_text("%")
+    before = [desk.text(f"mean-time-{i}") for i in range(4)]
+    desk.wait(lambda: all(desk.text(f"mean-time-{i}") != before[i] for i in range(4)))
+
+
+def test_table_state_and_csv_agree(open_desk):
+    desk = open_desk(methods=METHODS, motion="curve", running=True)
+    desk.until(lambda s: all(i["statistics"]["steps"] > 30 for i in s["instances"]))
+    desk.click("start")
+    desk.until(lambda s: not s["running"])
+    desk.click("step")
+    desk.shows("!pinik.state.running")
+    desk.shows(f"pinik.state.step === {desk.state['step']}")
+    state = json.loads(fetch(desk, "api/state"))
+    with desk.page.expect_download() as download:
+        desk.click("csv")
+    rows = list(csv.DictReader(io.StringIO(download.value.path().read_text("utf-8"))))
+    assert download.value.suggested_filename.endswith(".csv")
+    assert [row["method"] for row in rows] == list(METHODS)
+    names = ["mean_time", "mean_iterations", "efficiency", "mean_error", "largest_jump"]
+    for i, (instance, row) in enumerate(zip(state["instances"], rows, strict=True)):
+        statistics = instance["statistics"]
+        in_csv = [row["mean_time_s"], row["mean_iterations"], row["efficiency"], row["mean_error_m"]]
+        in_csv.append(row["largest_jump_rad_or_m"])
+        assert [float(value) for value in in_csv] == [statistics[name] for name in names]
+        assert int(row["steps"]) == statistics["steps"]
+        for column, name in zip(COLUMNS, names, strict=True):
+            value, half_digit = figures(desk, i)[column]
+            assert value == pytest.approx(statistics[name], abs=half_digit), column
+
+
+def test_reset_empties_the_statistics(open_desk):
+    desk = open_desk(methods=("dls",), motion="curve", running=True)
+    desk.expect("efficiency-0").to_contain_text("%")
+    desk.click("start")
+    desk.until(lambda s: not s["running"])
+    desk.click("reset")
+    for column in COLUMNS:
+        desk.expect(f"{column}-0").to_have_text("–")
+
+
+@pytest.mark.parametrize("chart", ["error-chart", "time-chart"])
+def test_the_charts_are_drawn_and_go_on(open_desk, chart):
+    desk = open_desk("two_link", methods=("dls", "ccd"), motion="random", running=True)
+
+    def drawn():
+        return np.asarray(Image.open(io.BytesIO(desk.part(chart).screenshot())).convert("RGB")).astype(int)
+
+    colours = [[31, 111, 196], [217, 122, 0]]  # of the first two instances
+    desk.wait(lambda: all((np.abs(drawn() - colour).max(axis=2) < 60).sum() > 20 for colour in colours))
+    before = drawn()
+    desk.wait(lambda: (drawn() != before).any())
+
+
+def test_a_target_out_of_reach_is_said_so_in_words(open_desk):
+    desk = open_desk(methods=METHODS, running=True)
+    desk.type("target-x", 5)
+    state = desk.until(lambda s: {i["status"] for i in s["instances"]} == {"UNREACHABLE"})
+    for i in range(len(state["instances"])):
+        desk.expect(f"message-{i}").to_contain_text("reach")
+        desk.expect(f"status-{i}").to_contain_text("m short")
+        desk.expect(f"label-{i}").to_contain_text("m short")
+        tip = desk.effectors(state)[i].translation
+        short = float(re.search(r"([\d.]+) m short", desk.text(f"status-{i}"))[1])
+        assert short == pytest.approx(np.linalg.norm(tip - state["balls"][0]["position"]), abs=0.1)
+
+
+def test_a_missed_target_names_the_joints_that_sit_at_their_limits(open_desk, arm):
+    desk = open_desk(methods=("jt", "dls"), running=True)
+    desk.view.move_ball([0.0, 0.0, 0.2])
+    desk.until(lambda s: all(i["status"] not in ("IDLE", "CONVERGED") and i["active_limits"] for i in s["instances"]))
+    desk.click("start")
+    desk.until(lambda s: not s["running"])
+    desk.agree()
+    for i, instance in enumerate(desk.state["instances"]):
+        q = np.array([instance["angles"][name] for name in arm.joint_names])
+        at_limit = {n for n, x, low, high in zip(arm.joint_names, q, arm.lower, arm.upper, strict=True) if x in (low, high)}
+        assert at_limit >= set(instance["active_limits"]) != set()
+        message = desk.part(f"message-{i}")
+        desk.expect(message).to_have_text(instance["message"])
+        assert set(re.findall(r"bone\d_[xz]", message.inner_text())) == set(instance["active_limits"])
+        assert "limit" in message.inner_text()
+        desk.expect(f"status-{i}").to_contain_text("short")
+
+
+def test_the_saved_animation_plays_without_a_server(open_desk, tmp_path):
+    desk = open_desk(methods=("dls", "ccd"), motion="curve", running=True)
+    desk.until(lambda s: s["step"] > 90)
+    with desk.page.expect_download() as download:
+        desk.click("save-animation")
+    path = tmp_path / "saved.html"
+    download.value.save_as(path)
+    desk.view.close()
+    desk.faults.excuse("ERR_CONNECTION_REFUSED|WebSocket")
+    desk.page.goto(path.as_uri())
+    desk.shows("window.pinik?.player")
+    desk.expect(desk.page.locator("#labels .chip")).to_have_count(2)
+    clock = desk.page.locator("#clock")
+    desk.expect(clock).to_contain_text(re.compile(r"\d s of [1-9][\d.]* s|\d s of 0\.[5-9] s"))
+    first, before = clock.inner_text(), desk.picture()
+    desk.expect(clock).not_to_have_text(first)
+    desk.wait(lambda: (np.abs(desk.picture() - before).max(axis=2) > 60).sum() > 50)
+    desk.page.locator("#play").click()
+    stopped = clock.inner_text()
+    desk.page.locator("#time").fill("0")
+    desk.expect(clock).to_contain_text("0.0 s of")
+    assert stopped.split(" of ")[1] == clock.inner_text().split(" of ")[1]
+
+
+def test_a_page_saved_before_the_first_step_opens_as_well(open_desk, tmp_path):
+    desk = open_desk("two_link", methods=("dls",))
+    path = tmp_path / "saved.html"
+    desk.view.save_animation(path)
+    desk.page.goto(path.as_uri())
+    desk.shows("window.pinik?.player")
+    desk.expect("label-0").to_be_visible()
