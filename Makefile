@@ -10,7 +10,7 @@ unexport PYTHONPATH
 .PHONY: help run test lint bench clean
 
 help:
-	@echo "make run     install what is missing into $(VENV) and show a tour of pinik"
+	@echo "make run     install what is missing into $(VENV) and show a tour, then the live view"
 	@echo "make test    everything that is checked: style, types, tests"
 	@echo "make lint    style and types only"
 	@echo "make bench   how fast the solvers are"
@@ -20,6 +20,7 @@ help:
 
 run: $(VENV)/installed
 	@$(python) examples/tour.py
+	@$(python) -m pinik live || test $$? -eq 130  # Ctrl-C is how it ends
 
 test: lint
 	@$(python) -m pytest --numprocesses=auto --dist=worksteal

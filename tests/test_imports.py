@@ -26,9 +26,12 @@ ONLY_THERE = {
     "yourdfpy": {"second_opinion"},
     "trimesh": {"geometry"},
     "scipy": {"geometry"},
-    "meshcat": {"viewer.scene"},
+    "meshcat": set(),  # of meshcat the page takes the JavaScript; the Python package brings IPython and ZeroMQ
+    "zmq": set(),
+    "tornado": {"viewer.server", "viewer.live_view"},
+    "umsgpack": {"viewer.scene", "viewer.shape_cache"},
 }
-HEAVY = {"yourdfpy", "trimesh", "scipy", "meshcat", "matplotlib", "typer", "rich"}
+HEAVY = {"yourdfpy", "trimesh", "scipy", "meshcat", "matplotlib", "typer", "rich", "tornado", "umsgpack"}
 
 
 @dataclass(frozen=True)

@@ -240,4 +240,5 @@ def open_desk(browser: Browser) -> Iterator[OpenDesk]:
     for desk in desks:
         desk.page.context.close()
         desk.view.close()
-    assert [desk.faults.left for desk in desks] == [[] for _ in desks]
+    faults = [fault for desk in desks for fault in desk.faults.left]
+    assert not faults, f"a tab saw {faults}"

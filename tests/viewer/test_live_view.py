@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import gc
 import json
+import os
 import socket
 import subprocess
 import sys
@@ -50,6 +51,11 @@ def wait_until(condition):
     while not condition():
         assert time.monotonic() < deadline, "it does not happen"
         time.sleep(0.005)
+
+
+def open_files():
+    """How many, where the system tells."""
+    return len(os.listdir("/proc/self/fd")) if os.path.isdir("/proc/self/fd") else 0
 
 
 def own_threads():
@@ -127,7 +133,9 @@ def test_a_server_that_cannot_start_leaves_nothing_behind(two_link, monkeypatch)
     def missing(*_):
         raise pinik.EngineError("meshcat's viewer is missing")
 
+    wait_until(lambda: not own_threads())
     monkeypatch.setattr(live_view_module, "make_application", missing)
+    before = open_files()
     with socket.socket() as free:
         free.bind(("127.0.0.1", 0))
         port = free.getsockname()[1]
@@ -136,6 +144,7 @@ def test_a_server_that_cannot_start_leaves_nothing_behind(two_link, monkeypatch)
     assert can_be_bound(port)
     wait_until(lambda: not own_threads())
     gc.collect()  # what was left open would warn here
+    assert open_files() == before
 
 
 def test_two_views_at_once_know_nothing_of_each_other(two_link, arm):

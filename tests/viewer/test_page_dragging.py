@@ -77,11 +77,9 @@ def test_a_ball_is_where_the_page_says_and_every_instances_copy_can_be_dragged(o
 
 def test_a_drag_takes_the_ball_from_its_curve(open_desk):
     desk = open_desk(methods=("dls",), running=True, motion="curve")
+    desk.view.send("speed", value=0.1)
     seen_from = camera(desk)
-    desk.page.mouse.move(*desk.ball_on_screen())
-    desk.page.mouse.down()
-    x, y = desk.ball_on_screen()
-    desk.page.mouse.move(x + 30, y, steps=4)
+    drag(desk, desk.ball_on_screen(), (30, 0), release=False)
     desk.until(lambda s: s["motion"] == "hand")
     np.testing.assert_allclose(camera(desk), seen_from, atol=1e-9, err_msg="the camera turned")
     desk.page.mouse.up()

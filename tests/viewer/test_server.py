@@ -334,7 +334,8 @@ def test_a_page_that_never_reads_stops_nobody_and_queues_nothing(arm):
             early = view._do(queued)
             await page.next("frame", lambda frame: frame.step > begun + 90)
             assert view._do(lambda: len(view._show._seats)) == 2
-            assert view._do(queued) <= early + 2 * 4 * 1000  # two frames
+            assert view._do(queued) <= early + 2 * 2000  # two frames
+            assert view._do(lambda: max(seat.under_way for seat in view._show._seats.values())) <= 2
 
         talk(view, conversation)
 

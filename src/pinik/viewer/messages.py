@@ -148,6 +148,11 @@ def _set_iterations(session: Session, until_reached: bool, at_most: int) -> None
     session.set_chase(dataclasses.replace(session.chase, until_reached=until_reached, at_most=at_most))
 
 
+def _single_step(session: Session) -> None:
+    session.running = False
+    session.step()
+
+
 def _run(session: Session, on: bool) -> None:
     session.running = on
 
@@ -175,7 +180,7 @@ _MESSAGES: dict[str, tuple[dict[str, Check], Callable[..., None]]] = {
         Session.set_tolerance,
     ),
     "run": ({"on": _truth}, _run),
-    "step": ({}, Session.step),
+    "step": ({}, _single_step),
     "reset": ({}, Session.reset),
     "ball": ({**_BALL, "position": _point}, Session.move_ball),
     "orientation": ({**_BALL, "on": _truth, "rpy": _angles}, Session.orient_ball),

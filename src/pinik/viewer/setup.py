@@ -46,8 +46,7 @@ def write_setup(session: Session) -> str:
     if chase.tolerance != default.tolerance:
         setup["tolerance"] = ",".join(map(_short, chase.tolerance))
     setup["balls"] = _compact([_ball(session, index) for index in range(len(session.balls))])
-    if session.running:
-        setup["run"] = "on"
+    setup["run"] = "on" if session.running else "off"
     return urlencode(setup, quote_via=quote, safe=",:[]{}")
 
 
@@ -105,6 +104,8 @@ def apply_setup(session: Session, setup: Setup) -> None:
 def _messages(session: Session, setup: Setup) -> Iterator[dict[str, Any]]:
     if "view" in setup:
         yield {"type": "view", "count": _whole("view", setup["view"])}
+    if "parameters" in setup and "methods" not in setup:
+        raise InputError("set-up: parameters say nothing without the methods that have them")
     if "methods" in setup:
         changed = _parsed("parameters", setup.get("parameters", "{}"), dict)
         methods = setup["methods"].split(",")

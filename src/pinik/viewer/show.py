@@ -25,6 +25,7 @@ from .state import hello_message, session_state
 __all__ = ["Later", "Show", "Tab"]
 
 _STATES_PER_SECOND = 4
+_LONGEST_ERROR = 400  # characters: what a message holds is repeated in its error
 _FRAMES_UNDER_WAY = 2  # that a tab has not answered yet; more would only queue up in a slow one
 
 _FIGURES = ("steps", "mean_time_s", "mean_iterations", "mean_joint_updates", "efficiency", "mean_error_m",
@@ -141,7 +142,7 @@ class Show:
             else:
                 self.do(message)
         except PinikError as error:
-            tab.send(json.dumps({"type": "error", "message": str(error)}))
+            tab.send(_error(error))
 
     def _drawn(self, tab: Tab) -> None:
         seat = self._seats.get(tab)
@@ -207,7 +208,8 @@ class Show:
         """Do what a message says.
 
         Raises:
-            InputError, UnknownNameError: It cannot be done, and nothing has changed.
+            InputError, UnknownNameError: It cannot be done, and nothing has changed; of a set-up the parts before the
+                faulty one are done.
         """
         match message["type"]:
             case "robot":
@@ -216,31 +218,35 @@ class Show:
             case "setup":
                 self._set_up(read_setup(checked("setup", message, {"setup": _long_text})["setup"]))
             case kind:
-                view = self.session.view
-                balls = len(self.session.balls)
                 motion = self.session.motion.kind
-                apply(self.session, message)
-                if (view, balls) != (self.session.view, len(self.session.balls)):
-                    self._start_anew()
-                self._frame_due = True
+                self._change(lambda session: apply(session, message))
                 # A ball that is dragged moves in every frame; the state can wait for its own time.
                 waits = kind == "ball" and motion == self.session.motion.kind
                 self._state_due = self._state_due or not waits or not self.session.running
+
+    def _change(self, act: Callable[[Session], None]) -> None:
+        """Change the session; frames of other instances or other balls are of another recording."""
+        before = self._cast()
+        try:
+            act(self.session)
+        finally:
+            self._frame_due = True
+            if self._cast() != before:
+                self._start_anew()
+
+    def _cast(self) -> tuple[int, list[str]]:
+        """Who is in a frame."""
+        return self.session.view, [ball.frame for ball in self.session.balls]
 
     def _set_up(self, setup: Setup) -> None:
         robot = self.session.robot
         name = setup.get("robot", robot.name)
         root = setup.get("root", "fixed" if "robot" in setup else robot.root)
         if (name, root) == (robot.name, robot.root):
-            self._apply_setup(setup)
+            self._state_due = True
+            self._change(lambda session: apply_setup(session, setup))
         else:
             self._load(name, root, setup)
-
-    def _apply_setup(self, setup: Setup) -> None:
-        try:
-            apply_setup(self.session, setup)
-        finally:
-            self._start_anew()
 
     def _load(self, name: str, root: str, setup: Setup) -> None:
         self._menu.check(name, root)
@@ -248,10 +254,14 @@ class Show:
         self._state_due = True
         self._request += 1
         request = self._request
-        self._later(lambda: self._menu.load(name, root), lambda robot: self._take_robot(request, name, robot, setup))
 
-    def _take_robot(self, request: int, name: str, robot: Robot | BaseException, setup: Setup) -> None:
-        if request != self._request:  # somebody asked for another one meanwhile
+        def load() -> Robot | None:
+            return self._menu.load(name, root) if request == self._request else None
+
+        self._later(load, lambda robot: self._take_robot(request, name, robot, setup))
+
+    def _take_robot(self, request: int, name: str, robot: Robot | BaseException | None, setup: Setup) -> None:
+        if request != self._request or robot is None:  # somebody asked for another one meanwhile
             return
         self._loading = None
         self._state_due = True
@@ -265,7 +275,7 @@ class Show:
             finally:
                 self._change_session(session)
         except PinikError as error:
-            self._broadcast(json.dumps({"type": "error", "message": str(error)}))
+            self._broadcast(_error(error))
 
     # What is told
 
@@ -307,6 +317,13 @@ class Show:
         """The last seconds as a page of its own, which plays without a server."""
         shapes = self._shapes or Shapes((), (), ())
         return animation_page(self._hello, self._robot, shapes, self.state(), self.recording)
+
+
+def _error(error: PinikError) -> str:
+    words = str(error)
+    return json.dumps(
+        {"type": "error", "message": words if len(words) <= _LONGEST_ERROR else f"{words[:_LONGEST_ERROR]} …"}
+    )
 
 
 def _number(what: str, value: Any) -> int:

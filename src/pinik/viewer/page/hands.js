@@ -2,23 +2,33 @@
 
 const SETTLE = 700; // [ms] after a change in which the session may still tell how it was before
 
+const MEMORY = 1500; // [ms] in which what was asked for is taken for granted
+
 const busyUntil = new WeakMap();
 
 const isTyped = (element) => element.matches("input[type=number], input[type=text]");
 
-/** Notice which inputs are being edited; once for a page. */
-export function watchHands() {
-    const later = (event) => busyUntil.set(event.target, performance.now() + SETTLE);
+/**
+ * Notice which inputs are being edited; once for a page.
+ *
+ * @param refresh called when hands are off again, to show how things are: what was refused, the session does not tell
+ */
+export function watchHands(refresh) {
+    const later = ({ target }) => {
+        busyUntil.set(target, performance.now() + SETTLE);
+        setTimeout(refresh, SETTLE + 1);
+    };
     document.addEventListener("focusin", ({ target }) => isTyped(target) && busyUntil.set(target, Infinity));
     document.addEventListener("input", (event) => {
         if (isTyped(event.target)) busyUntil.set(event.target, Infinity);
         else later(event);
     });
     document.addEventListener("change", later);
-    document.addEventListener(
-        "focusout",
-        ({ target }) => busyUntil.get(target) === Infinity && busyUntil.delete(target),
-    );
+    document.addEventListener("focusout", ({ target }) => {
+        if (busyUntil.get(target) !== Infinity) return;
+        busyUntil.delete(target);
+        setTimeout(refresh);
+    });
 }
 
 function isBusy(element) {
@@ -48,7 +58,7 @@ export class Asked {
     }
 
     ask(key, value) {
-        this._values.set(key, { value, until: performance.now() + SETTLE });
+        this._values.set(key, { value, until: performance.now() + MEMORY });
         return value;
     }
 }

@@ -25,7 +25,7 @@ const CHARTS = 100; // [ms] between two drawings of the charts
 
 class Page {
     constructor() {
-        watchHands();
+        watchHands(() => this.state && this._showSettings(this.state));
         this.theme = new Theme();
         this.notices = new Notices();
         this.show = new Show({ canvas: byId("canvas"), labels: byId("labels") }, this.theme);
@@ -66,7 +66,9 @@ class Page {
         state: (state) => {
             this.state = state;
             document.title = `${state.robot} – pinik`;
-            for (const part of [this.controls, this.cards, this.targets, this.table, this.show]) part.setState(state);
+            this._showSettings(state);
+            this.table.setState(state);
+            this.show.setState(state);
             this.notices.loading(state.loading);
             this.address.show(state.setup);
         },
@@ -77,6 +79,10 @@ class Page {
         },
         error: ({ message }) => this.notices.error(message),
     };
+
+    _showSettings(state) {
+        for (const part of [this.controls, this.cards, this.targets]) part.setState(state);
+    }
 
     _take(buffer) {
         const bytes = new Uint8Array(buffer);
@@ -131,7 +137,7 @@ class Page {
 
     _moveBall(index, position) {
         this.connection.sendNewest(`ball ${index}`, { type: "ball", index, position });
-        this.targets.showPosition(index, position);
+        this.targets.moved(index, position);
     }
 
     _makeButtons() {

@@ -102,8 +102,8 @@ export class Show {
             const moves = fades || !frame.looksLike(this._frame);
             this._frame = frame;
             if (moves || frame.instances !== this.instances.length) this._draw(frame);
-            this._captions.say(now, frame, this.state);
         }
+        if (this._frame) this._captions.say(now, this._frame, this.state);
         // Between a change and the first frame that has it, there is nothing to look at.
         const { _frame: frame, state } = this;
         if (frame && frame.instances === state.view && frame.balls === state.balls.length) this._sight.follow(now);

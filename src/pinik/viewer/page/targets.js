@@ -88,8 +88,13 @@ export class Targets {
         write(mode, ball.mode);
     }
 
-    /** Show a ball's numbers; they follow a drag without waiting for the session. */
-    showPosition(k, position) {
+    /** A ball was moved by hand; its numbers follow without waiting for the session. */
+    moved(k, position) {
+        this._asked.ask(`position ${k}`, position);
+        this._showPosition(k, position);
+    }
+
+    _showPosition(k, position) {
         if (k !== this.selected) return;
         POSITION.forEach((id, axis) => write(byId(id), plain(position[axis], 3)));
     }
@@ -98,7 +103,7 @@ export class Targets {
         const { ball } = this;
         for (const id of [...POSITION, ...TURN, "orientation"]) byId(id).disabled = !ball;
         if (!ball) return;
-        this.showPosition(this.selected, ball.position);
+        this._showPosition(this.selected, ball.position);
         write(byId("orientation"), ball.oriented);
         TURN.forEach((id, axis) => {
             write(byId(id), plain(ball.rpy[axis] / DEGREE, 1));

@@ -1,0 +1,164 @@
+"""How the page looks: pictures that are not empty and move, dark and light, wide and narrow; and names for all inputs."""
+
+from __future__ import annotations
+
+import io
+
+import numpy as np
+import pytest
+from PIL import Image
+
+from page_fixtures import METHODS, PHONE, WIDE
+
+
+def unlike_background(picture):
+    """The part of a picture that differs from its own upper edge, column by column."""
+    return (np.abs(picture - picture[:1]).max(axis=2) > 40).mean()
+
+
+def luminance(picture):
+    return float((picture @ np.array([0.2126, 0.7152, 0.0722])).mean())
+
+
+def whole(desk):
+    return np.asarray(Image.open(io.BytesIO(desk.page.screenshot())).convert("RGB")).astype(int)
+
+
+def still_picture(desk):
+    """The canvas once nothing changes any more: two pictures alike, with no drawing between them."""
+    taken = []
+
+    def look():
+        taken.append((desk.runs("pinik.frames"), desk.picture()))
+        return len(taken) > 1 and taken[-1][0] == taken[-2][0] and (taken[-1][1] == taken[-2][1]).all()
+
+    desk.wait(look)
+    return taken[-1]
+
+
+@pytest.mark.parametrize("robot", ["arm", "lion", "panda"])
+def test_every_robot_is_drawn(open_desk, robot):
+    desk = open_desk(robot, ("dls",))
+    _, picture = still_picture(desk)
+    part = unlike_background(picture)
+    assert 0.01 < part < 0.9
+    colours = np.unique((picture // 16).reshape(-1, 3), axis=0)
+    assert len(colours) > 30
+
+
+def test_a_running_picture_moves_and_a_stopped_one_stands(open_desk):
+    desk = open_desk(methods=("dls", "ccd"), motion="curve", running=True)
+    first = desk.picture()
+    desk.wait(lambda: (np.abs(desk.picture() - first).max(axis=2) > 40).sum() > 100)
+    desk.click("start")
+    desk.until(lambda s: not s["running"])
+    desk.agree()
+    desk.settle()
+    frames, picture = still_picture(desk)
+    desk.page.wait_for_timeout(700)
+    assert desk.runs("pinik.frames") == frames, "a picture that stands is drawn again and again"
+    assert (desk.picture() == picture).all()
+
+
+def test_more_instances_show_more_robots(open_desk):
+    desk = open_desk(methods=METHODS, view=1)
+    dark = []
+    for count in (1, 4):
+        desk.click(f"view-{count}")
+        desk.until(lambda s, count=count: s["view"] == count)
+        desk.shows(f"pinik.state.view === {count}")
+        desk.settle()
+        red = (np.abs(still_picture(desk)[1] - [216, 31, 47]) < 60).all(axis=2).any(axis=0)
+        dark.append((np.diff(red.astype(int)) == 1).sum())
+    assert dark[1] > dark[0] >= 1
+
+
+def test_the_system_and_the_button_make_it_dark(open_desk):
+    desk = open_desk(methods=("dls",), color_scheme="dark")
+    corner = (slice(0, 40), slice(-60, -10))
+    assert luminance(desk.picture()[corner]) < 60
+    assert luminance(whole(desk)[:, -10:]) < 60
+    desk.page.emulate_media(color_scheme="light")
+    desk.wait(lambda: luminance(desk.picture()[corner]) > 170)
+    assert luminance(whole(desk)[:, -10:]) > 200
+    desk.click("theme")
+    desk.click("theme")
+    desk.wait(lambda: luminance(desk.picture()[corner]) < 60)
+    desk.page.reload()
+    desk.settle()
+    assert luminance(desk.picture()[corner]) < 60, "the choice was forgotten"
+
+
+@pytest.mark.parametrize(("size", "touch"), [(WIDE, False), (PHONE, True)], ids=["1280x720", "390x844"])
+@pytest.mark.parametrize("robot", ["arm", "lion"])
+def test_nothing_is_cut_off(open_desk, size, touch, robot):
+    desk = open_desk(robot, METHODS, viewport=size, has_touch=touch, is_mobile=touch)
+    assert desk.runs("innerWidth") == size["width"], "the page made itself wider than the screen"
+    assert desk.runs("[document.documentElement, document.body, ...document.querySelectorAll('.app, .panel, .stage')]"
+                     ".every(e => e.scrollWidth <= e.clientWidth)")  # fmt: skip
+    box = desk.page.locator("#canvas").bounding_box()
+    assert box["width"] >= 0.5 * size["width"]
+    assert box["height"] >= 230
+    assert unlike_background(still_picture(desk)[1]) > 0.01
+    cut = desk.runs(
+        """[...document.querySelectorAll(".panel :is(button, select, input, summary), .views button")]
+            .filter((e) => e.checkVisibility({ visibilityProperty: true }))
+            .filter((e) => {
+                e.scrollIntoView({ block: "center", inline: "nearest" });
+                const { left, right, top, bottom, width, height } = e.getBoundingClientRect();
+                const at = document.elementFromPoint((left + right) / 2, (top + bottom) / 2);
+                const covered = !(at && (e === at || e.contains(at) || at.closest("label")?.contains(e)));
+                return left < 0 || right > innerWidth + 0.5 || width < 8 || height < 8 || covered;
+            })
+            .map((e) => e.outerHTML.slice(0, 160))"""
+    )
+    assert cut == []
+
+
+def test_the_labels_do_not_cover_each_other_nor_leave_the_picture(open_desk):
+    desk = open_desk(methods=METHODS)
+    for size in (WIDE, PHONE, {"width": 900, "height": 600}):
+        desk.page.set_viewport_size(size)
+        desk.settle()
+
+        def well_placed():
+            stage = desk.page.locator("#canvas").bounding_box()
+            boxes = [desk.part(f"label-{i}").bounding_box() for i in range(4)]
+            inside = all(
+                b["x"] >= stage["x"] - 1 and b["x"] + b["width"] <= stage["x"] + stage["width"] + 1 for b in boxes
+            )
+            return inside and not any(overlap(a, b) for i, a in enumerate(boxes) for b in boxes[:i])
+
+        desk.wait(well_placed)
+
+
+def overlap(a, b):
+    return all(a[x] < b[x] + b[size] - 1 and b[x] < a[x] + a[size] - 1 for x, size in (("x", "width"), ("y", "height")))
+
+
+def test_everything_that_can_be_operated_has_a_name_to_be_read_aloud(open_desk):
+    desk = open_desk("lion", METHODS, running=True, root="free_flyer")
+    for i in range(4):
+        desk.part(f"parameters-{i}").locator("summary").click()
+    desk.choose("param-0-stiffness", "neck_yaw")
+    desk.part("orientation").check()
+    desk.expect("param-0-stiffness-neck_yaw").to_be_visible()
+    desk.expect("target-yaw").to_be_visible()
+    desk.type("speed", 1e6)
+    desk.expect(desk.toasts).to_have_count(1)
+    session = desk.page.context.new_cdp_session(desk.page)
+    operated = {"button", "combobox", "spinbutton", "slider", "checkbox", "link", "textbox", "DisclosureTriangle"}
+    found, nameless = 0, []
+    for node in session.send("Accessibility.getFullAXTree")["nodes"]:
+        if not node["ignored"] and node["role"]["value"] in operated:
+            found += 1
+            if not node.get("name", {}).get("value", "").strip():
+                nameless.append(node)
+    assert found > 60
+    assert nameless == []
+    assert desk.page.locator("h1").count() == 1
+    assert desk.runs("document.documentElement.lang") == "en"
+    ids = desk.runs("[...document.querySelectorAll('[id]')].map(({ id }) => id)")
+    assert len(ids) == len(set(ids))
+    testids = desk.runs("[...document.querySelectorAll('[data-testid]')].map(e => e.dataset.testid)")
+    assert len(testids) == len(set(testids))

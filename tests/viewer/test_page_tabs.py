@@ -1,0 +1,146 @@
+"""One session, many tabs: a reload, a second tab, a server that went and came back, and a link that says it all."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from page_fixtures import METHODS, need_browser, settings
+
+
+def changed(desk):
+    """Something set that is nobody's default."""
+    desk.choose("motion", "random")
+    desk.type("speed", 2)
+    desk.choose("method-0", "pinv")
+    desk.part("limits").uncheck()
+    return desk.until(lambda s: s["speed"] == 2 and s["instances"][0]["method"] == "pinv" and not s["limits"])
+
+
+def test_a_reload_comes_back_to_the_same_session(open_desk):
+    desk = open_desk(methods=("dls",), view=2, running=True)
+    before = settings(changed(desk))
+    assert before == settings(desk.agree())
+    step = desk.state["step"]
+    desk.page.reload()
+    desk.settle()
+    assert settings(desk.agree()) == before
+    assert desk.state["step"] > step, "the session began anew"
+    desk.expect("speed").to_have_value("2")
+    desk.expect("method-0").to_have_value("pinv")
+    desk.expect("limits").not_to_be_checked()
+
+
+def test_a_reload_asks_for_nothing_that_its_address_said_before(open_desk):
+    desk = open_desk(methods=("dls",))
+    desk.agree()
+    desk.page.route("**/*", lambda route: (desk.view.send("view", count=2), route.continue_()))
+    desk.page.reload()
+    desk.page.unroute_all()
+    desk.settle()
+    assert desk.agree()["view"] == 2
+
+
+def test_a_second_tab_agrees_and_each_sees_what_the_other_does(open_desk):
+    desk = open_desk(methods=METHODS)
+    desk.type("target-z", 0.7)
+    desk.until(lambda s: s["balls"][0]["position"][2] == 0.7)
+    second = desk.page.context.new_page()
+    second.goto(desk.view.url)
+    second.wait_for_function("() => window.pinik?.drawn === 'shapes' && pinik.still")
+    expect = need_browser().expect
+    expect(second.get_by_test_id("target-z")).to_have_value("0.7")
+    second.get_by_test_id("method-2").select_option("ccd")
+    desk.expect("method-2").to_have_value("ccd")
+    desk.click("view-1")
+    expect(second.locator("[data-testid^='instance-']")).to_have_count(1)
+    assert second.evaluate("() => pinik.state.setup") == desk.agree()["setup"]
+    desk.click("start")
+    expect(second.get_by_test_id("start")).to_have_text("Stop")
+    second.get_by_test_id("start").click()
+    desk.expect("start").to_have_text("Start")
+
+
+def test_a_bad_message_is_told_to_its_own_tab_alone(open_desk):
+    desk = open_desk("two_link", methods=("dls",))
+    second = desk.page.context.new_page()
+    second.goto(desk.view.url)
+    second.wait_for_function("() => window.pinik?.ready")
+    desk.type("speed", 1e6)
+    desk.expect(desk.toasts).to_have_count(1)
+    second.get_by_test_id("step").click()
+    second.wait_for_function("() => pinik.state.step === 1")
+    assert second.get_by_test_id("toasts").inner_text() == ""
+
+
+def test_the_page_comes_back_by_itself_when_the_server_does(open_desk):
+    desk = open_desk(methods=("dls",), running=True, motion="curve")
+    desk.faults.excuse("WebSocket")
+    port = desk.view.port
+    desk.expect("banner").to_be_hidden()
+    desk.view.close()
+    desk.expect("banner").to_be_visible()
+    desk.view = open_desk("two_link", ("ccd",), port=port, drawn=False).view
+    desk.expect("banner").to_be_hidden()
+    desk.expect("robot").to_have_value("two_link")
+    desk.settle()
+    desk.expect("label-0").to_contain_text("yclic")
+    desk.click("step")
+    desk.until(lambda s: s["step"] == 1)
+    desk.agree()
+    assert desk.page.url.endswith("#" + desk.state["setup"])
+
+
+def test_the_address_carries_everything_to_another_server(open_desk):
+    desk = open_desk("lion", METHODS, root="free_flyer")
+    desk.click("view-2")
+    desk.choose("method-0", "dls")
+    desk.part("parameters-0").locator("summary").click()
+    desk.type("param-0-damping", 0.125)
+    desk.choose("method-1", "ccd")
+    desk.part("parameters-1").locator("summary").click()
+    desk.choose("param-1-stiffness", "neck_yaw")
+    desk.choose("ball-mode-1", "off")
+    desk.choose("ball-mode-4", "on")
+    desk.type("tolerance", 0.5)
+    desk.type("speed", 3)
+    desk.part("limits").uncheck()
+    desk.click("ball-4")
+    desk.type("target-z", 0.35)
+    desk.part("orientation").check()
+    desk.until(lambda s: s["balls"][4]["oriented"] and s["balls"][4]["position"][2] == 0.35 and not s["limits"])
+    told = desk.agree()
+    address = desk.page.url
+    assert told["instances"][1]["parameters"][2]["value"], "no stiffness was set"
+
+    other = open_desk("two_link", ("jt",), setup=address.partition("#")[2])
+    found = other.until(lambda s: s["robot"] == "lion" and s["loading"] is None)
+    other.settle()
+    found = other.agree()
+    assert settings(found) | {"generation": 0, "balls": 0} == settings(told) | {"generation": 0, "balls": 0}
+    for before, after in zip(told["balls"], found["balls"], strict=True):
+        assert [after[k] for k in ("frame", "mode", "oriented")] == [before[k] for k in ("frame", "mode", "oriented")]
+        if before["mode"] != "off":
+            np.testing.assert_allclose(after["position"], before["position"], atol=1e-4)
+        if before["oriented"]:
+            np.testing.assert_allclose(after["rpy"], before["rpy"], atol=1e-4)
+    chosen = [[(i["method"], [(p["name"], p["value"]) for p in i["parameters"]]) for i in s["instances"]] for s in (told, found)]
+    assert chosen[0] == chosen[1]
+
+
+def test_a_bad_link_is_refused_in_words_and_the_page_lives_on(open_desk):
+    desk = open_desk("two_link", ("dls",), setup="robot=no_such_robot&view=2")
+    desk.expect(desk.toasts).to_contain_text("no_such_robot")
+    assert (desk.state["robot"], desk.state["view"]) == ("two_link", 1)
+    desk.click("view-2")
+    desk.until(lambda s: s["view"] == 2)
+
+
+@pytest.mark.parametrize("motion", ["curve", "random"])
+def test_a_pasted_address_changes_the_open_page(open_desk, motion):
+    desk = open_desk("two_link", ("dls",))
+    desk.agree()
+    desk.page.evaluate("hash => { location.hash = hash }", f"robot=two_link&view=2&methods=ccd,dls&motion={motion}")
+    state = desk.until(lambda s: s["view"] == 2 and s["motion"] == motion)
+    assert [i["method"] for i in state["instances"]] == ["ccd", "dls"]
+    desk.expect("motion").to_have_value(motion)
