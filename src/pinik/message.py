@@ -50,8 +50,8 @@ def explain(
     else:
         begin = {
             Status.STALLED: "stalled",
-            Status.MAX_ITERATIONS: "out of iterations",
-            Status.TIME_LIMIT: "out of time",
+            Status.MAX_ITERATIONS: "out of iterations,",
+            Status.TIME_LIMIT: "out of time,",
         }[status]
         sentence = f"{begin} {missed}"
     return "; ".join([sentence, *_limits(active)])

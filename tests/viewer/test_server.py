@@ -112,7 +112,7 @@ def talk(view, conversation, pages=1, **headers):
             return await asyncio.wait_for(conversation(*opened), 2 * PATIENCE)
         finally:
             for page in opened:
-                await page.close()
+                await asyncio.wait_for(page.close(), PATIENCE)
 
     return asyncio.run(held())
 
@@ -545,7 +545,8 @@ def test_the_page_has_a_policy_that_runs_its_own_scripts_alone(view):
         assert (status, headers["Content-Type"]) == (200, "text/html; charset=utf-8")
         policy = dict(part.split(" ", 1) for part in headers["Content-Security-Policy"].split("; "))
         nonces.append(re.search(r"'nonce-([\w-]{16,})'", policy["script-src"])[1])
-        assert "unsafe" not in policy["script-src"]
+        # Texts are evaluated for whoever drives the browser only: see test_page_looks.py for what meshcat could.
+        assert set(policy["script-src"].split()) == {"'self'", f"'nonce-{nonces[-1]}'", "'unsafe-eval'"}
         assert policy["default-src"] == "'self'"
         assert f"ws://127.0.0.1:{view.port}" in policy["connect-src"].split()
         page = body.decode()

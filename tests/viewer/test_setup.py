@@ -113,7 +113,7 @@ def test_a_set_up_says_what_differs_from_the_beginning_in_plain_words(arm):
     assert write_setup(Session(arm, clock=Clock())) == (
         "robot=arm&root=fixed&view=4&methods=ccd,jt,pinv,dls&motion=hand&balls=[[%22tip%22,%22on%22,"
         + json.dumps([round(float(x), 4) for x in shown.balls[0].position], separators=(",", ":"))
-        + "]]"
+        + "]]&run=off"
     )
     shown.set_motion("curve")
     shown.set_curve("knot")

@@ -60,7 +60,7 @@ class CCD(SweepingSolver):
     )
     relaxation: float | None = parameter(
         None,
-        "ω: factor on every joint's best change; None: 1, or 1.7 for poses",
+        "ω: factor on every joint's best change; of itself 1, and 1.7 for poses",
         low=0.01,
         high=1.99,
         slider=(0.1, 1.99),

@@ -119,7 +119,9 @@ class _Index(_Handler):
         here = self.request.host
         policy = {
             "default-src": "'self'",
-            "script-src": f"'self' 'nonce-{nonce}' data:",
+            # The page evaluates no text, and takes away meshcat's one command that does; programs that drive
+            # browsers, such as playwright, evaluate theirs.
+            "script-src": f"'self' 'nonce-{nonce}' 'unsafe-eval'",
             "style-src": "'self' 'unsafe-inline'",
             "img-src": "'self' data: blob:",
             "connect-src": f"'self' ws://{here} wss://{here}",

@@ -44,6 +44,8 @@ export class Stage {
         viewer.set_property(["Background"], "visible", false);
         // meshcat sizes itself by the window; here the layout decides.
         viewer.set_3d_pane_size = () => this._resize();
+        // The one command of meshcat's that evaluates text; nothing here needs it.
+        viewer.set_control = () => {};
         viewer.camera.fov = FIELD_OF_VIEW;
         viewer.controls.zoomSpeed = 0.8;
         this.viewer = viewer;
