@@ -69,7 +69,7 @@ def drawn_after(page: Page, robot: str, cache: str, began: float) -> float:
     """Seconds from `began` until the page, in a browser that is open already, has drawn the robot's own shapes."""
     with live(robot, PINIK_CACHE_DIR=cache) as (_, url):
         page.goto(url)
-        page.wait_for_function("window.pinik?.ready && window.pinik.shapesDrawn", polling="raf", timeout=60_000)
+        page.wait_for_function("() => window.pinik?.ready && window.pinik.drawn === 'shapes'", timeout=60_000)
         return time.perf_counter() - began
 
 
@@ -96,7 +96,7 @@ def measure_drag(moves: int) -> dict[str, float]:
     with pinik.live("arm", port=0, motion="hand") as view, browser() as chromium:
         page = chromium.new_page(viewport=VIEWPORT)
         page.goto(view.url)
-        page.wait_for_function("window.pinik?.ready", timeout=60_000)
+        page.wait_for_function("() => window.pinik?.ready", timeout=60_000)
         page.evaluate(
             "addEventListener('pointermove', e => window.lastMove = performance.timeOrigin + e.timeStamp, true)"
         )
@@ -122,7 +122,7 @@ def measure_endurance(seconds: float) -> dict[str, float]:
     with live("lion", "--root", "free_flyer") as (process, url), browser() as chromium:
         page = chromium.new_page(viewport=VIEWPORT)
         page.goto(url)
-        page.wait_for_function("window.pinik?.ready", timeout=60_000)
+        page.wait_for_function("() => window.pinik?.ready", timeout=60_000)
         for index in range(6):
             page.get_by_test_id(f"ball-mode-{index}").select_option("on")
         time.sleep(10.0)  # until the recording's ring is half full and the page's caches are warm

@@ -13,8 +13,8 @@ def ball(state, k=0):
     return state["balls"][k]
 
 
-def test_a_ball_is_selected_and_its_numbers_are_shown(open_desk):
-    desk = open_desk("lion", methods=("dls",))
+def test_a_ball_is_selected_and_its_numbers_are_shown(open_panel):
+    desk = open_panel("lion", methods=("dls",))
     frames = [b["frame"] for b in desk.state["balls"]]
     assert [desk.text(f"ball-{k}") for k in range(len(frames))] == frames
     for k in (4, 0, 5):
@@ -26,8 +26,8 @@ def test_a_ball_is_selected_and_its_numbers_are_shown(open_desk):
     assert pressed == ["false"] * 5 + ["true"]
 
 
-def test_a_ball_leads_is_pinned_or_off(open_desk, lion):
-    desk = open_desk("lion", methods=("dls",), running=True, motion="curve", root="free_flyer")
+def test_a_ball_leads_is_pinned_or_off(open_panel, lion):
+    desk = open_panel("lion", methods=("dls",), running=True, motion="curve", root="free_flyer")
     modes = [b["mode"] for b in desk.state["balls"]]
     assert modes[:4] == ["on", "pinned", "pinned", "pinned"], "the lion stands on its other paws"
     desk.choose("ball-mode-4", "on")
@@ -42,8 +42,8 @@ def test_a_ball_leads_is_pinned_or_off(open_desk, lion):
     desk.expect("ball-mode-4").to_have_value("off")
 
 
-def test_balls_are_added_on_free_frames_and_removed(open_desk, arm):
-    desk = open_desk(methods=("dls",), running=True)
+def test_balls_are_added_on_free_frames_and_removed(open_panel, arm):
+    desk = open_panel(methods=("dls",), running=True)
     offered = desk.part("add-effector").locator("option").evaluate_all("all => all.map(({ value }) => value)")
     assert offered[0] == ""
     assert {"bone1", "bone3", "gripper"} <= set(offered[1:]) <= set(arm.frame_names) - {"tip"}
@@ -61,8 +61,8 @@ def test_balls_are_added_on_free_frames_and_removed(open_desk, arm):
     assert len(desk.state["balls"]) == 1
 
 
-def test_a_typed_place_is_reached_by_all_four(open_desk):
-    desk = open_desk(methods=METHODS, running=True)
+def test_a_typed_place_is_reached_by_all_four(open_panel):
+    desk = open_panel(methods=METHODS, running=True)
     goal = [0.45, 0.2, 0.75]
     for axis, coordinate in zip("xyz", goal, strict=True):
         desk.type(f"target-{axis}", coordinate)
@@ -71,8 +71,8 @@ def test_a_typed_place_is_reached_by_all_four(open_desk):
     assert ball(state)["position"] == goal
 
 
-def test_a_place_typed_without_a_pause_arrives_as_a_whole(open_desk):
-    desk = open_desk(methods=("dls",), running=True)
+def test_a_place_typed_without_a_pause_arrives_as_a_whole(open_panel):
+    desk = open_panel(methods=("dls",), running=True)
     desk.part("target-x").fill("0.45")
     for coordinate in ("0.2", "0.75"):
         desk.page.keyboard.press("Tab")
@@ -81,15 +81,15 @@ def test_a_place_typed_without_a_pause_arrives_as_a_whole(open_desk):
     assert ball(desk.until(lambda s: ball(s)["position"][2] == 0.75))["position"] == [0.45, 0.2, 0.75]
 
 
-def test_a_typed_place_ends_the_curve(open_desk):
-    desk = open_desk(methods=("dls",), running=True, motion="curve")
+def test_a_typed_place_ends_the_curve(open_panel):
+    desk = open_panel(methods=("dls",), running=True, motion="curve")
     desk.type("target-z", 0.7)
     assert desk.until(lambda s: ball(s)["position"][2] == 0.7)["motion"] == "hand"
     desk.expect("motion").to_have_value("hand")
 
 
-def test_an_orientation_is_asked_for_in_degrees_and_reached(open_desk):
-    desk = open_desk("panda", methods=("dls",), running=True)
+def test_an_orientation_is_asked_for_in_degrees_and_reached(open_panel):
+    desk = open_panel("panda", methods=("dls",), running=True)
     desk.expect("target-roll").to_be_hidden()
     desk.part("orientation").check()
     desk.until(lambda s: ball(s)["oriented"] and s["instances"][0]["orientation_error"] is not None)

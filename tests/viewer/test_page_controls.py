@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import shutil
 from pathlib import Path
 
@@ -14,8 +15,8 @@ from page_fixtures import METHODS, need_browser
 URDF = Path(__file__).parents[2] / "urdf"
 
 
-def test_the_robot_menu_brings_another_robot_and_keeps_the_methods(open_desk):
-    desk = open_desk(view=2)
+def test_the_robot_menu_brings_another_robot_and_keeps_the_methods(open_panel):
+    desk = open_panel(view=2)
     assert desk.part("robot").locator("option").all_inner_texts() == pinik.catalog()
     desk.choose("robot", "two_link")
     state = desk.until(lambda s: s["robot"] == "two_link")
@@ -26,8 +27,8 @@ def test_the_robot_menu_brings_another_robot_and_keeps_the_methods(open_desk):
     assert desk.text("ball-0") == state["balls"][0]["frame"]
 
 
-def test_the_root_menu_frees_the_robot(open_desk):
-    desk = open_desk("lion", view=1)
+def test_the_root_menu_frees_the_robot(open_panel):
+    desk = open_panel("two_link", view=1)
     assert desk.part("root").locator("option").all_inner_texts() == ["fixed", "free flyer", "planar"]
     for root in ("free_flyer", "planar"):
         desk.choose("root", root)
@@ -35,15 +36,15 @@ def test_the_root_menu_frees_the_robot(open_desk):
         assert desk.view.robot.root == root
         desk.shows(f"pinik.state.root === '{root}'")
         desk.settle()
-    assert desk.state["robot"] == "lion"
+    assert desk.state["robot"] == "two_link"
 
 
-def test_a_robot_of_ones_own_file_is_in_the_menu_and_can_be_come_back_to(open_desk, tmp_path):
+def test_a_robot_of_ones_own_file_is_in_the_menu_and_can_be_come_back_to(open_panel, tmp_path):
     text = (URDF / "two_link.urdf").read_text("utf-8").replace('name="two_link"', 'name="my_own_robot"')
     path = tmp_path / "mine.urdf"
     path.write_text(text, "utf-8")
     shutil.copytree(URDF / "meshes", tmp_path / "meshes")
-    desk = open_desk(path, view=1)
+    desk = open_panel(path, view=1)
     own = desk.state["robot"]
     assert own not in pinik.catalog()
     desk.expect("robot").to_have_value(own)
@@ -55,8 +56,8 @@ def test_a_robot_of_ones_own_file_is_in_the_menu_and_can_be_come_back_to(open_de
     desk.settle()
 
 
-def test_the_view_buttons_show_one_two_or_four_instances(open_desk):
-    desk = open_desk(view=4)
+def test_the_view_buttons_show_one_two_or_four_instances(open_panel):
+    desk = open_panel(view=4)
     for count in (1, 2, 4):
         desk.click(f"view-{count}")
         desk.until(lambda s, count=count: s["view"] == count and len(s["instances"]) == count)
@@ -67,8 +68,8 @@ def test_the_view_buttons_show_one_two_or_four_instances(open_desk):
     assert [desk.part(f"view-{n}").get_attribute("aria-pressed") for n in (1, 2)] == ["false", "false"]
 
 
-def test_each_method_menu_changes_its_own_instance(open_desk):
-    desk = open_desk(view=4)
+def test_each_method_menu_changes_its_own_instance(open_panel):
+    desk = open_panel(view=4)
     wanted = ["dls", "ccd", "jt", "pinv"]
     for i, method in enumerate(wanted):
         assert desk.part(f"method-{i}").locator("option").all_inner_texts() == list(METHODS)
@@ -78,12 +79,12 @@ def test_each_method_menu_changes_its_own_instance(open_desk):
     assert [i["method"] for i in state["instances"]] == wanted
     for i, instance in enumerate(state["instances"]):
         desk.expect(f"instance-{i}").to_contain_text(instance["title"])
-        desk.expect(f"label-{i}").to_contain_text(instance["title"])
+        desk.expect(f"label-{i}").to_contain_text(re.compile(f"{instance['title']}|{instance['method']}"))
         desk.expect(desk.page.locator("#table tbody tr").nth(i)).to_contain_text(wanted[i])
 
 
-def test_a_click_on_a_methods_name_opens_its_parameters(open_desk):
-    desk = open_desk(view=2)
+def test_a_click_on_a_methods_name_opens_its_parameters(open_panel):
+    desk = open_panel(view=2)
     for i, parameter in enumerate(["relaxation", "target_jacobian"]):
         field = desk.part(f"param-{i}-{parameter}")
         desk.expect(field).to_be_hidden()
@@ -94,8 +95,8 @@ def test_a_click_on_a_methods_name_opens_its_parameters(open_desk):
         desk.expect(field).to_be_hidden()
 
 
-def test_the_checkbox_of_the_limits_frees_the_joints(open_desk, arm):
-    desk = open_desk(methods=("dls",), running=True)
+def test_the_checkbox_of_the_limits_frees_the_joints(open_panel, arm):
+    desk = open_panel(methods=("dls",), running=True)
     desk.view.move_ball([-0.5, 0.0, 0.2])
     desk.part("limits").uncheck()
     assert desk.until(lambda s: not s["limits"])["limits"] is False
@@ -109,8 +110,8 @@ def test_the_checkbox_of_the_limits_frees_the_joints(open_desk, arm):
     desk.until(lambda s: s["limits"] and not beyond(s))
 
 
-def test_motion_and_curve_menus_move_the_ball(open_desk):
-    desk = open_desk(methods=("dls",), running=True)
+def test_motion_and_curve_menus_move_the_ball(open_panel):
+    desk = open_panel(methods=("dls",), running=True)
 
     def place(state):
         return state["balls"][0]["position"]
@@ -128,8 +129,8 @@ def test_motion_and_curve_menus_move_the_ball(open_desk):
     assert place(desk.until(lambda s: s["step"] > step + 20)) == held
 
 
-def test_the_curve_menu_lays_another_curve(open_desk):
-    desk = open_desk("two_link", methods=("dls",), motion="curve")
+def test_the_curve_menu_lays_another_curve(open_panel):
+    desk = open_panel("two_link", methods=("dls",), motion="curve")
     options = desk.part("curve").locator("option").evaluate_all("all => all.map(({ value }) => value)")
     assert len(options) >= 4
     paths = set()
@@ -141,8 +142,8 @@ def test_the_curve_menu_lays_another_curve(open_desk):
     assert len(paths) == len(options)
 
 
-def test_start_stop_step_and_reset(open_desk):
-    desk = open_desk(methods=("dls",), motion="curve")
+def test_start_stop_step_and_reset(open_panel):
+    desk = open_panel(methods=("dls",), motion="curve")
     home = desk.state["balls"][0]["position"], desk.state["instances"][0]["angles"]
     desk.expect("start").to_have_text("Start")
     for count in (1, 2, 3):
@@ -163,8 +164,8 @@ def test_start_stop_step_and_reset(open_desk):
     assert state["instances"][0]["statistics"]["steps"] == 0
 
 
-def test_one_step_stops_a_running_session(open_desk):
-    desk = open_desk(methods=("dls",), motion="curve", running=True)
+def test_one_step_stops_a_running_session(open_panel):
+    desk = open_panel(methods=("dls",), motion="curve", running=True)
     desk.until(lambda s: s["step"] > 3)
     desk.click("step")
     stopped = desk.until(lambda s: not s["running"])
@@ -173,8 +174,8 @@ def test_one_step_stops_a_running_session(open_desk):
     assert desk.until(lambda s: s["step"] > stopped["step"])["step"] - stopped["step"] in (1, 2)
 
 
-def test_the_speed_as_a_number_and_by_the_slider(open_desk):
-    desk = open_desk(methods=("dls",), motion="curve")
+def test_the_speed_as_a_number_and_by_the_slider(open_panel):
+    desk = open_panel(methods=("dls",), motion="curve")
     desk.type("speed", 2.5)
     desk.until(lambda s: s["speed"] == 2.5)
     desk.expect("speed-slider").not_to_have_value("0")
@@ -188,8 +189,8 @@ def test_the_speed_as_a_number_and_by_the_slider(open_desk):
     assert 100 < before < 900
 
 
-def test_iterations_until_reached_or_so_many(open_desk):
-    desk = open_desk(methods=("jt",), running=True)
+def test_iterations_until_reached_or_so_many(open_panel):
+    desk = open_panel(methods=("jt",), running=True)
     desk.part("until-reached").uncheck()
     desk.until(lambda s: not s["iterations"]["until_reached"])
     desk.type("iterations", 3)
@@ -200,8 +201,8 @@ def test_iterations_until_reached_or_so_many(open_desk):
     desk.until(lambda s: s["iterations"]["until_reached"])
 
 
-def test_the_tolerance_is_typed_in_millimetres_and_degrees(open_desk):
-    desk = open_desk(methods=("dls",))
+def test_the_tolerance_is_typed_in_millimetres_and_degrees(open_panel):
+    desk = open_panel(methods=("dls",))
     desk.expect("tolerance").to_have_value("0.1")
     desk.type("tolerance", 20)
     desk.until(lambda s: s["tolerance"]["position"] == pytest.approx(0.02))
@@ -210,22 +211,19 @@ def test_the_tolerance_is_typed_in_millimetres_and_degrees(open_desk):
     assert state["tolerance"]["position"] == pytest.approx(0.02)
 
 
-@pytest.mark.parametrize(
-    ("field", "value", "setting"),
-    [("speed", 1000, "speed"), ("iterations", 0, "iterations"), ("tolerance", -1, "tolerance"), ("target-x", 1e6, "balls")],
-)  # fmt: skip
-def test_a_number_out_of_range_is_refused_in_words_and_changes_nothing(open_desk, field, value, setting):
-    desk = open_desk("two_link", methods=("dls",))
-    before, shown = desk.state, desk.part(field).input_value()
-    desk.type(field, value)
-    desk.expect(desk.toasts).to_have_count(1)
-    said = desk.toasts.inner_text()
-    assert len(said.split()) >= 5
-    assert {**desk.state, "steps_per_second": None} == {**before, "steps_per_second": None}, setting
-    desk.part("robot").focus()
-    desk.expect(field).to_have_value(shown)
-    desk.toasts.get_by_role("button").click()
-    desk.expect(desk.toasts).to_have_count(0)
+def test_a_number_out_of_range_is_refused_in_words_and_changes_nothing(open_panel):
+    desk = open_panel("two_link", methods=("dls",))
+    before = desk.agree()
+    for field, value in [("speed", 1000), ("iterations", 0), ("tolerance", -1), ("target-x", 1e6)]:
+        shown = desk.part(field).input_value()
+        desk.type(field, value)
+        desk.expect(desk.toasts).to_have_count(1)
+        assert len(desk.toasts.inner_text().split()) >= 5, "not said in words"
+        assert desk.state == before
+        desk.part("robot").focus()
+        desk.expect(field).to_have_value(shown)
+        desk.toasts.get_by_role("button").click()
+        desk.expect(desk.toasts).to_have_count(0)
 
 
 def test_without_a_browser_the_tests_are_skipped_unless_one_is_required(monkeypatch, tmp_path):

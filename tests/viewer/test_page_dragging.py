@@ -78,6 +78,7 @@ def test_a_ball_is_where_the_page_says_and_every_instances_copy_can_be_dragged(o
 def test_a_drag_takes_the_ball_from_its_curve(open_desk):
     desk = open_desk(methods=("dls",), running=True, motion="curve")
     desk.view.send("speed", value=0.1)
+    desk.agree()
     seen_from = camera(desk)
     drag(desk, desk.ball_on_screen(), (30, 0), release=False)
     desk.until(lambda s: s["motion"] == "hand")

@@ -13,13 +13,8 @@ def place(state, k=0):
 
 
 @pytest.fixture
-def desk(open_desk):
-    """Looked at from the front, where right is y, away is −x, up is z."""
-    desk = open_desk(methods=("dls",), view=2)
-    desk.click("camera-front")
-    desk.settle()
-    desk.runs("document.activeElement.blur()")
-    return desk
+def desk(open_panel):
+    return open_panel(methods=("dls",), view=2)
 
 
 def changes(desk, key, of):
@@ -52,6 +47,8 @@ def test_letters_and_figures_change_the_settings(desk):
 
 
 def test_arrows_and_page_keys_move_the_selected_ball(desk):
+    desk.click("camera-front")  # where right is y and away is −x
+    desk.settle()
     moves = {"ArrowRight": (0, 1, 0), "ArrowLeft": (0, -1, 0), "ArrowUp": (-1, 0, 0), "ArrowDown": (1, 0, 0)}
     moves |= {"PageUp": (0, 0, 1), "PageDown": (0, 0, -1)}
     steps = []
@@ -71,8 +68,8 @@ def test_keys_held_down_lose_no_step(desk):
     desk.until(lambda s: place(s)[2] - before[2] == pytest.approx(10 * (after - before)[2], abs=1e-5))
 
 
-def test_b_selects_the_next_ball_and_the_arrows_move_that(open_desk):
-    desk = open_desk("lion", methods=("dls",))
+def test_b_selects_the_next_ball_and_the_arrows_move_that(open_panel):
+    desk = open_panel("lion", methods=("dls",))
     desk.view.send("effector", index=1, mode="on")
     desk.agree()
     desk.page.keyboard.press("b")
@@ -92,11 +89,14 @@ def test_p_opens_the_parameters_of_one_method_after_the_other(desk):
 
 
 def test_v_f_and_t_change_what_is_seen(desk):
+    desk.settle()
+    desk.page.keyboard.press("v")
+    desk.expect("camera-front").to_have_attribute("aria-pressed", "true")
     desk.page.keyboard.press("v")
     desk.expect("camera-side").to_have_attribute("aria-pressed", "true")
     desk.settle()
     looked = desk.runs("pinik.viewer.camera.position.toArray()")
-    desk.page.mouse.move(500, 300)
+    desk.page.locator("#canvas").hover(position={"x": 300, "y": 40})
     desk.page.mouse.wheel(0, 600)
     desk.shows(f"pinik.viewer.camera.position.distanceTo({{x: {looked[0]}, y: {looked[1]}, z: {looked[2]}}}) > 0.1")
     desk.page.keyboard.press("f")
@@ -140,8 +140,8 @@ def test_what_is_typed_into_an_input_is_no_command(desk):
     assert desk.state["running"] is False
 
 
-def test_tab_reaches_every_control_and_its_focus_is_seen(open_desk):
-    desk = open_desk("two_link", methods=("dls", "ccd"))
+def test_tab_reaches_every_control_and_its_focus_is_seen(open_panel):
+    desk = open_panel("two_link", methods=("dls", "ccd"))
     desk.page.keyboard.press("p")
     desk.page.evaluate(
         """selector => {

@@ -1,4 +1,4 @@
-"""The live view's page in Debian's chromium: a server in this process, tabs that show it, and who watches their faults."""
+"""The live view's page in Debian's chromium: a server in this process, tabs that show it, a watch on their faults."""
 
 from __future__ import annotations
 
@@ -7,6 +7,7 @@ import os
 import re
 import time
 from collections.abc import Callable, Iterator
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 from urllib.parse import urlsplit
@@ -36,14 +37,16 @@ FLAGS = [
 METHODS = ("ccd", "jt", "pinv", "dls")
 PATIENCE = 30.0  # seconds; nothing here takes as many, unless it is broken
 WIDE = {"width": 1280, "height": 720}
+SMALL = {"width": 1110, "height": 300}  # the same layout with a canvas that costs a processor little
 PHONE = {"width": 390, "height": 844}
+DRAWN = "window.pinik?.drawn === 'shapes' && pinik.still"
 BARE = "#labels, .views, .toasts, .loading { visibility: hidden }"  # for pictures of the canvas alone
 
 State = dict[str, Any]
 
 
 def need_browser(chromium: Path = CHROMIUM) -> Any:
-    """playwright's module; where it or chromium is missing the test is skipped, or fails where a browser is required."""
+    """playwright's module; where it or chromium is missing the test is skipped, or fails if one is required."""
     missing = "" if chromium.exists() else f"{chromium} is missing (apt install chromium)"
     try:
         from playwright import sync_api
@@ -70,21 +73,24 @@ def browser() -> Iterator[Browser]:
 class Faults:
     """What no tab may do: complain on its console, fail to load a part, or ask another host for anything."""
 
-    def __init__(self) -> None:
+    def __init__(self, context: BrowserContext) -> None:
+        self.begin("")
+        context.on("console", lambda m: m.type == "error" and self._seen.append(f"console: {m.text}"))
+        context.on("weberror", lambda e: self._seen.append(f"error: {e.error}"))
+        context.on("request", lambda r: self._check_host(r.url))
+        context.on("requestfailed", lambda r: self._seen.append(f"failed: {r.url}: {r.failure}"))
+        context.on("response", lambda r: r.status >= 400 and self._seen.append(f"{r.status}: {r.url}"))
+        context.on("page", lambda page: page.on("websocket", lambda socket: self._check_host(socket.url)))
+
+    def begin(self, host: str) -> None:
+        """Forget what was; from now on only `host` may be asked."""
+        self._host = host
         self._seen: list[str] = []
         self._excused: list[str] = []
 
-    def watch(self, context: BrowserContext, host: str) -> None:
-        context.on("console", lambda m: m.type == "error" and self._seen.append(f"console: {m.text}"))
-        context.on("weberror", lambda e: self._seen.append(f"error: {e.error}"))
-        context.on("request", lambda r: self._check_host(r.url, host))
-        context.on("requestfailed", lambda r: self._seen.append(f"failed: {r.url}: {r.failure}"))
-        context.on("response", lambda r: r.status >= 400 and self._seen.append(f"{r.status}: {r.url}"))
-        context.on("page", lambda page: page.on("websocket", lambda socket: self._check_host(socket.url, host)))
-
-    def _check_host(self, url: str, host: str) -> None:
+    def _check_host(self, url: str) -> None:
         parts = urlsplit(url)
-        if parts.scheme not in ("data", "blob", "file") and parts.netloc != host:
+        if parts.scheme not in ("data", "blob", "file") and parts.netloc != self._host:
             self._seen.append(f"asks another host: {url}")
 
     def excuse(self, pattern: str) -> None:
@@ -123,7 +129,7 @@ class Desk:
         end = time.monotonic() + PATIENCE
         while not holds():
             assert time.monotonic() < end, "it never came to be so"
-            self.page.wait_for_timeout(20)
+            self.page.wait_for_timeout(40)
 
     def runs(self, script: str) -> Any:
         return self.page.evaluate(f"() => {script}")
@@ -139,7 +145,7 @@ class Desk:
 
     def settle(self) -> None:
         """Wait until the robot is drawn with its shapes and nothing but the robots moves the picture."""
-        self.shows("window.pinik?.drawn === 'shapes' && pinik.still")
+        self.shows(DRAWN)
 
     def part(self, testid: str) -> Locator:
         return self.page.get_by_test_id(testid)
@@ -204,8 +210,23 @@ def settings(state: State) -> State:
 OpenDesk = Callable[..., Desk]
 
 
+@pytest.fixture(scope="module")
+def tab(browser: Browser) -> Iterator[tuple[Page, Faults]]:
+    """A tab that a module's tests use one after the other, each with a server of its own: a new one costs a second."""
+    context = new_context(browser)
+    faults = Faults(context)
+    yield context.new_page(), faults
+    context.close()
+
+
+def new_context(browser: Browser, **options: Any) -> BrowserContext:
+    context = browser.new_context(**options)
+    context.set_default_timeout(1000 * PATIENCE)
+    return context
+
+
 @pytest.fixture
-def open_desk(browser: Browser) -> Iterator[OpenDesk]:
+def open_desk(browser: Browser, tab: tuple[Page, Faults]) -> Iterator[OpenDesk]:
     """Opens live views, each with a tab; at the end none of the tabs may have seen a fault."""
     desks: list[Desk] = []
 
@@ -219,26 +240,52 @@ def open_desk(browser: Browser) -> Iterator[OpenDesk]:
         root: str = "fixed",
         port: int = 0,
         setup: str = "",
-        drawn: bool = True,
+        until: str = DRAWN,
+        viewport: dict[str, int] = WIDE,
         **context: Any,
     ) -> Desk:
-        """Stopped and by hand unless told otherwise; `setup` is what the address asks for."""
+        """Stopped and by hand unless told otherwise.
+
+        `setup` is what the address asks for, `until` what to wait for in the tab; options of a context of its own.
+        """
         machine = robot if isinstance(robot, Path) else load_quietly(robot, root=root)
         live = pinik.live(machine, methods, running=running, motion=motion, view=view, port=port)
-        faults = Faults()
-        opened = browser.new_context(viewport=context.pop("viewport", WIDE), **context)
-        opened.set_default_timeout(1000 * PATIENCE)
-        faults.watch(opened, f"127.0.0.1:{live.port}")
-        desk = Desk(live, opened.new_page(), faults)
+        if context or desks:
+            opened = new_context(browser, viewport=viewport, **context)
+            faults, page = Faults(opened), opened.new_page()
+        else:
+            page, faults = tab
+            page.set_viewport_size(viewport)
+        faults.begin(f"127.0.0.1:{live.port}")
+        desk = Desk(live, page, faults)
         desks.append(desk)
-        desk.page.goto(live.url + (f"#{setup}" if setup else ""))
-        if drawn:
-            desk.settle()
+        page.goto(live.url + (f"#{setup}" if setup else ""))
+        desk.shows(until)
         return desk
 
     yield open_one
-    for desk in desks:
-        desk.page.context.close()
-        desk.view.close()
     faults = [fault for desk in desks for fault in desk.faults.left]
+    for desk in desks:
+        if desk.page is tab[0]:
+            leave(desk.page)
+        else:
+            desk.page.context.close()
+        desk.view.close()
     assert not faults, f"a tab saw {faults}"
+
+
+def leave(page: Page) -> None:
+    """Nothing of what a test did to a tab is left to the next."""
+    for other in page.context.pages:
+        if other is not page:
+            other.close()
+    page.unroute_all()
+    page.emulate_media()
+    page.mouse.move(0, 0)
+    page.goto("about:blank")
+
+
+@pytest.fixture
+def open_panel(open_desk: OpenDesk) -> OpenDesk:
+    """As `open_desk`, for tests that look at no picture: as soon as there is one, and it is small."""
+    return partial(open_desk, viewport=SMALL, until="window.pinik?.ready")
