@@ -143,6 +143,11 @@ class Desk:
         self.wait(lambda: settings(self.runs("pinik.state")) == settings(self.state))
         return self.state
 
+    def address(self) -> str:
+        """The set-up in the address bar, once it is the server's."""
+        self.wait(lambda: self.page.url.partition("#")[2] == self.state["setup"])
+        return self.state["setup"]
+
     def settle(self) -> None:
         """Wait until the robot is drawn with its shapes and nothing but the robots moves the picture."""
         self.shows(DRAWN)

@@ -138,7 +138,7 @@ def test_another_method_or_instance_keeps_to_its_own_parameters(open_panel):
 
 
 def test_a_number_out_of_range_is_refused_in_words_and_shown_as_it_was(open_panel):
-    desk = open_panel("two_link", ("dls", "ccd"), running=True, motion="curve")
+    desk = open_panel("two_link", ("dls", "ccd"))
     joint = desk.state["joint_names"][0]
     for i in (0, 1):
         desk.part(f"parameters-{i}").locator("summary").click()

@@ -61,6 +61,16 @@ def stage(two_link):
 # Joining
 
 
+def test_a_robot_stands_still_until_its_shapes_are_there_or_somebody_asks_for_something(two_link):
+    for first in (lambda stage: stage.later.do_all(), lambda stage: stage.says(stage.join(), "limits", on=False)):
+        stage = Stage(two_link)
+        stage.tick(10)
+        assert stage.show.session.steps == 0
+        first(stage)
+        stage.tick(10)
+        assert stage.show.session.steps == 10
+
+
 def test_a_tab_is_told_everything_in_order(stage):
     before = stage.join()
     assert before.kinds == ["hello", "robot", "state", "frame"]
@@ -116,6 +126,7 @@ def test_a_tab_that_left_is_told_nothing_more(stage):
 
 
 def test_without_tabs_it_goes_on(stage):
+    stage.later.do_all()
     stage.tick(30)
     assert stage.show.session.steps == 30
 
@@ -124,6 +135,7 @@ def test_without_tabs_it_goes_on(stage):
 
 
 def test_no_more_than_two_frames_are_under_way_and_then_comes_the_newest(stage):
+    stage.later.do_all()
     slow = stage.join()
     stage.tick(10)
     assert [read_frame(frame).step for frame in slow.of("frame")] == [0, 1]
@@ -165,6 +177,7 @@ def test_a_state_waits_for_a_late_tab_and_is_then_the_newest(stage):
 
 
 def test_a_slow_tab_does_not_slow_the_others(stage):
+    stage.later.do_all()
     _, quick = stage.join(), stage.join()
     stage.play(quick, ticks=60)
     assert [read_frame(frame).step for frame in quick.of("frame")] == list(range(61))
@@ -174,6 +187,7 @@ def test_a_slow_tab_does_not_slow_the_others(stage):
 
 
 def test_states_come_four_times_a_second_while_it_runs(stage):
+    stage.later.do_all()
     tab = stage.join()
     stage.play(tab, ticks=1)
     tab.sent.clear()
@@ -225,6 +239,7 @@ def test_a_ball_that_is_dragged_moves_in_every_frame(two_link):
 
 
 def test_the_pace_is_that_of_the_clock(stage):
+    stage.later.do_all()
     assert stage.show.state()["steps_per_second"] is None
     stage.tick(90)
     assert stage.show.state()["steps_per_second"] == pytest.approx(60.0)
@@ -435,6 +450,7 @@ def test_the_set_up_in_the_state_makes_the_same_state(stage):
 
 
 def test_the_recording_begins_anew_where_frames_change_their_kind(stage):
+    stage.later.do_all()
     show = stage.show
     stage.tick(10)
     kept = len(show.recording)
@@ -459,6 +475,7 @@ def test_the_recording_begins_anew_where_frames_change_their_kind(stage):
 
 
 def test_the_table_has_a_row_for_each_instance(stage):
+    stage.later.do_all()
     stage.tick(30)
     rows = list(csv.DictReader(io.StringIO(stage.show.statistics_csv())))
     assert [(row["instance"], row["method"]) for row in rows] == [("0", "dls"), ("1", "ccd")]

@@ -90,6 +90,7 @@ class Show:
         generation = self._generation
         self._robot = robot_message(session.robot, generation)
         self._shapes: Shapes | None = None
+        self._waits_for_shapes = True
         self._maker = FrameMaker(session.robot, generation)
         self._start_anew()
         self._broadcast(json.dumps(self._robot))
@@ -109,6 +110,7 @@ class Show:
             shapes = Shapes((), (), (f"the shapes cannot be shown: {shapes}",))
         if generation == self._generation:
             self._shapes = shapes
+            self._waits_for_shapes = False
             for message in self._shape_messages():
                 self._broadcast(message)
 
@@ -173,8 +175,12 @@ class Show:
     # Time
 
     def tick(self) -> None:
-        """A 60th of a second has passed: step, and send what is due."""
-        if self.session.tick():
+        """A 60th of a second has passed: step, and send what is due.
+
+        Until a robot has its shapes, or somebody asks for something, it stands still: the processors are needed for
+        reading them.
+        """
+        if not self._waits_for_shapes and self.session.tick():
             self._ticks.append(self._clock())
             self._frame_due = True
         else:
@@ -211,6 +217,7 @@ class Show:
             InputError, UnknownNameError: It cannot be done, and nothing has changed; of a set-up the parts before the
                 faulty one are done.
         """
+        self._waits_for_shapes = False
         match message["type"]:
             case "robot":
                 fields = checked("robot", message, {"name": text, "root": text})
