@@ -105,7 +105,7 @@ def measure_drag(moves: int) -> dict[str, float]:
         page.goto(view.url)
         page.wait_for_function("() => window.pinik?.ready && window.pinik.still", timeout=60_000)
         page.evaluate(
-            "addEventListener('pointermove', e => window.lastMove = performance.timeOrigin + e.timeStamp, true)"
+            "addEventListener('pointerrawupdate', e => window.lastMove = performance.timeOrigin + e.timeStamp, true)"
         )
         at = page.evaluate("window.pinik.targetOnScreen(0)")
         page.mouse.move(at["x"], at["y"])

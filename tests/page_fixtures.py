@@ -40,6 +40,10 @@ WIDE = {"width": 1280, "height": 720}
 SMALL = {"width": 1110, "height": 300}  # the same layout with a canvas that costs a processor little
 PHONE = {"width": 390, "height": 844}
 DRAWN = "window.pinik?.drawn === 'shapes' && pinik.still"
+SLOW_SCREEN = """{
+    const atOnce = window.requestAnimationFrame;
+    window.requestAnimationFrame = (draw) => setTimeout(() => atOnce(draw), 100);
+}"""
 BARE = "#labels, .views, .toasts, .loading { visibility: hidden }"  # for pictures of the canvas alone
 
 State = dict[str, Any]
@@ -216,12 +220,18 @@ OpenDesk = Callable[..., Desk]
 
 
 @pytest.fixture(scope="module")
-def tab(browser: Browser) -> Iterator[tuple[Page, Faults]]:
-    """A tab that a module's tests use one after the other, each with a server of its own: a new one costs a second."""
-    context = new_context(browser)
-    faults = Faults(context)
-    yield context.new_page(), faults
-    context.close()
+def tabs(browser: Browser) -> Iterator[dict[str, tuple[Page, Faults]]]:
+    """Tabs that a module's tests use one after the other, each test with a server of its own.
+
+    A new tab costs a second. "slow" is one with a slow screen, which leaves a processor that has to draw everything
+    time for the other things.
+    """
+    opened = {name: new_context(browser) for name in ("quick", "slow")}
+    opened["slow"].add_init_script(SLOW_SCREEN)
+    watched = {name: Faults(context) for name, context in opened.items()}
+    yield {name: (context.new_page(), watched[name]) for name, context in opened.items()}
+    for context in opened.values():
+        context.close()
 
 
 def new_context(browser: Browser, **options: Any) -> BrowserContext:
@@ -231,7 +241,7 @@ def new_context(browser: Browser, **options: Any) -> BrowserContext:
 
 
 @pytest.fixture
-def open_desk(browser: Browser, tab: tuple[Page, Faults]) -> Iterator[OpenDesk]:
+def open_desk(browser: Browser, tabs: dict[str, tuple[Page, Faults]]) -> Iterator[OpenDesk]:
     """Opens live views, each with a tab; at the end none of the tabs may have seen a fault."""
     desks: list[Desk] = []
 
@@ -247,6 +257,7 @@ def open_desk(browser: Browser, tab: tuple[Page, Faults]) -> Iterator[OpenDesk]:
         setup: str = "",
         until: str = DRAWN,
         viewport: dict[str, int] = WIDE,
+        tab: str = "quick",
         **context: Any,
     ) -> Desk:
         """Stopped and by hand unless told otherwise.
@@ -259,7 +270,7 @@ def open_desk(browser: Browser, tab: tuple[Page, Faults]) -> Iterator[OpenDesk]:
             opened = new_context(browser, viewport=viewport, **context)
             faults, page = Faults(opened), opened.new_page()
         else:
-            page, faults = tab
+            page, faults = tabs[tab]
             page.set_viewport_size(viewport)
         faults.begin(f"127.0.0.1:{live.port}")
         desk = Desk(live, page, faults)
@@ -271,7 +282,7 @@ def open_desk(browser: Browser, tab: tuple[Page, Faults]) -> Iterator[OpenDesk]:
     yield open_one
     faults = [fault for desk in desks for fault in desk.faults.left]
     for desk in desks:
-        if desk.page is tab[0]:
+        if any(desk.page is page for page, _ in tabs.values()):
             leave(desk.page)
         else:
             desk.page.context.close()
@@ -292,5 +303,5 @@ def leave(page: Page) -> None:
 
 @pytest.fixture
 def open_panel(open_desk: OpenDesk) -> OpenDesk:
-    """As `open_desk`, for tests that look at no picture: as soon as there is one, and it is small."""
-    return partial(open_desk, viewport=SMALL, until="window.pinik?.ready")
+    """As `open_desk`, for tests that look at no picture: one that is small and drawn slowly will do."""
+    return partial(open_desk, viewport=SMALL, tab="slow", until="window.pinik?.ready")

@@ -216,7 +216,8 @@ def _bind(host: str, port: int | None) -> list[socket.socket]:
         except (OSError, UnicodeError) as error:
             fault = getattr(error, "strerror", None) or str(error)
     hint = "; leave the port out and pinik finds a free one" if port else ""
-    raise errors.InputError(f"cannot listen on {host}, port {port}: {fault}{hint}")
+    where = host if port is None else f"{host}, port {port}"
+    raise errors.InputError(f"cannot listen on {where}: {fault}{hint}")
 
 
 def _listen(host: str, port: int) -> list[socket.socket]:

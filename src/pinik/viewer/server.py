@@ -56,7 +56,7 @@ def is_own_host(host_header: str, served: str) -> bool:
         return True
     if served in _LOOPBACK:
         return False
-    return name in (served, socket.gethostname()) or _is_address(name)
+    return name in (served.lower(), socket.gethostname().lower()) or _is_address(name)
 
 
 def _is_address(name: str) -> bool:

@@ -2,6 +2,7 @@
 
 const FIRST_DELAY = 300; // [ms]
 const LONGEST_DELAY = 4000;
+const SPACING = 16; // [ms] between two of what only the newest counts
 
 export class Connection {
     /** @param handlers onText(message), onBinary(ArrayBuffer), onOpen(), onClose() */
@@ -41,7 +42,7 @@ export class Connection {
         if (this.open) this._socket.send(JSON.stringify(message));
     }
 
-    /** Send the first at once and, of those that follow within a frame, the last. */
+    /** Send the first at once and, of those that follow within a 60th of a second, the last. */
     sendNewest(key, message) {
         if (this._waiting.has(key)) {
             this._waiting.set(key, message);
@@ -49,10 +50,10 @@ export class Connection {
         }
         this.send(message);
         this._waiting.set(key, null);
-        requestAnimationFrame(() => {
+        setTimeout(() => {
             const last = this._waiting.get(key);
             this._waiting.delete(key);
             if (last) this.sendNewest(key, last);
-        });
+        }, SPACING);
     }
 }

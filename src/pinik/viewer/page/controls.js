@@ -132,7 +132,7 @@ export class Controls {
         write(byId("speed-slider"), this._speed.position(state.speed));
         write(byId("until-reached"), state.iterations.until_reached);
         write(byId("iterations"), state.iterations.at_most);
-        say(byId("iterations-label"), state.iterations.until_reached ? "Iterations at most" : "Iterations");
+        byId("iterations").closest(".field").classList.toggle("faint", state.iterations.until_reached);
         write(byId("tolerance"), plain(state.tolerance.position * 1000));
         write(byId("tolerance-angle"), plain(Number((state.tolerance.orientation / DEGREE).toPrecision(3))));
         for (const button of byId("views").children)

@@ -17,6 +17,8 @@ export class Grab {
         const capture = { capture: true };
         element.addEventListener("pointerdown", (event) => this._down(event), capture);
         element.addEventListener("pointermove", (event) => this._move(event), capture);
+        // Comes at once, where pointermove waits for the next picture; not every browser has it.
+        element.addEventListener("pointerrawupdate", (event) => this._held && this._move(event), capture);
         for (const name of ["pointerup", "pointercancel", "lostpointercapture"]) {
             element.addEventListener(name, (event) => this._up(event), capture);
         }
@@ -66,6 +68,9 @@ export class Grab {
         }
         if (event.pointerId !== this._held.pointer) return;
         event.stopPropagation();
+        const where = `${event.clientX} ${event.clientY} ${event.shiftKey}`;
+        if (where === this._held.where) return; // the same move, told twice
+        this._held.where = where;
         const position = this._dragged(event);
         if (!position) return;
         this._held.position = position;

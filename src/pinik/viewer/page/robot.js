@@ -74,7 +74,7 @@ export class Robot {
                 }
             }
         }
-        return points;
+        return points.length ? points : [new THREE.Vector3()]; // neither joints nor shapes: where it is drawn
     }
 
     dispose() {

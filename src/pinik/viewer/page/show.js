@@ -44,7 +44,7 @@ export class Show {
         this._shapes.clear();
         this.balls.forget();
         this._sight.forget();
-        Object.assign(this, { robot, drawn: "", _parts: null, _frame: null, _ground: null, _framed: 0 });
+        Object.assign(this, { robot, drawn: "", _parts: null, _frame: null, ground: null, _framed: 0 });
         this.stage.touch();
     }
 
