@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+import time
 
 import numpy as np
 import pytest
@@ -26,14 +27,17 @@ def whole(desk):
 
 def still_picture(desk):
     """The canvas after its last drawing: a picture that stays is drawn once more, as finely as possible."""
-    drawn = []
+    frames, since = -1, 0.0
 
     def look():
-        drawn.append(desk.runs("pinik.frames"))
-        return len(drawn) > 20 and drawn[-1] == drawn[-20]  # 0.8 s, twice what the page waits
+        nonlocal frames, since
+        now = desk.runs("pinik.frames")
+        if now != frames:
+            frames, since = now, time.monotonic()
+        return time.monotonic() - since > 0.8  # twice what the page waits
 
     desk.wait(look)
-    return drawn[-1], desk.picture()
+    return frames, desk.picture()
 
 
 def test_a_robot_is_drawn_with_its_own_shapes_and_colours(open_desk):

@@ -86,6 +86,7 @@ def test_a_choice_a_truth_and_their_way_back_to_the_defaults(open_panel):
     desk.until(lambda s: value(s, "target_jacobian") is False)
     desk.type("param-0-damping", 0.2)
     desk.until(lambda s: value(s, "damping") == 0.2)
+    desk.agree()
     defaults.click()
     desk.until(lambda s: all(p["value"] == p["default"] for p in s["instances"][0]["parameters"]))
     desk.expect("param-0-rule").to_have_value("residual")
@@ -152,6 +153,6 @@ def test_a_number_out_of_range_is_refused_in_words_and_shown_as_it_was(open_pane
         desk.expect(desk.toasts).to_have_count(1)
         assert testid.split("-")[2] in desk.toasts.inner_text()
         assert str(number) in desk.toasts.inner_text()
+        desk.toasts.get_by_role("button").click()
         assert [i["parameters"] for i in desk.state["instances"]] == chosen
         desk.expect(testid).to_have_value(shown)
-        desk.toasts.get_by_role("button").click()
