@@ -270,12 +270,13 @@ def test_a_solver_that_raises_has_failed_until_it_works_again(arm):
     target = pinik.Target("tip", REACHABLE)
     one.step([target])
     q, steps = one.q, one.statistics.summary().steps
-    for _ in range(2):
+    for failed in (1, 2):
         one.step([target])
-        assert (one.status, one.last, one.counted) == ("FAILED", None, False)
+        assert (one.status, one.last.reached, one.last.error, one.counted) == ("FAILED", False, None, True)
         assert one.verdict() == ("FAILED", "the solver failed: ZeroDivisionError: not today", None, None, ())
         assert one.q is q
-        assert one.statistics.summary().steps == steps
+        summary = one.statistics.summary()
+        assert (summary.steps, summary.efficiency) == (steps + failed, 0.0)
     for _ in range(30):
         one.step([target])
     assert one.verdict().status == "CONVERGED"

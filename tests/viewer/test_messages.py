@@ -247,10 +247,12 @@ def test_the_ends_of_a_range_belong_to_it(arm, name):
     assert FARTHEST == 100.0
 
 
-def test_huge_angles_stay_numbers(arm):
-    shown = after(arm, "orientation", index=0, on=True, rpy=[1e300, -1e308, 5e-324])
+def test_angles_of_many_turns_stay_numbers_and_huge_ones_are_refused(arm):
+    shown = after(arm, "orientation", index=0, on=True, rpy=[100.0, -99.9, 5e-324])
     shown.step()
     json.dumps(json.loads(snapshot(shown)), allow_nan=False)
+    with pytest.raises(pinik.InputError, match="at most 100 rad"):
+        after(arm, "orientation", index=0, on=True, rpy=[1e300, 0.0, 0.0])
 
 
 # And everything else

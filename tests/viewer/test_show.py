@@ -64,6 +64,7 @@ def stage(two_link):
 def test_a_robot_stands_still_until_its_shapes_are_there_or_somebody_asks_for_something(two_link):
     for first in (lambda stage: stage.later.do_all(), lambda stage: stage.says(stage.join(), "limits", on=False)):
         stage = Stage(two_link)
+        stage.join()
         stage.tick(10)
         assert stage.show.session.steps == 0
         first(stage)

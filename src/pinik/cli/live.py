@@ -58,7 +58,7 @@ def live(
       pinik live lion --root free_flyer --methods ccd,dls
       pinik live path/to/robot.urdf --view 1 --methods pinv
     """
-    solvers = [solver_with(name, None) for name in methods.split(",")]
+    solvers = [solver_with(name.strip(), None) for name in methods.split(",")]
     machine = load_robot(robot, root=root, package_dirs=package_dir)
     with open_view(machine, solvers, view=view, motion=motion, port=port, host=host) as page:
         output.emit(page.url)

@@ -18,7 +18,7 @@ __all__ = ["live"]
 
 def live(
     robot: str | os.PathLike[str] | Robot = "arm",
-    methods: Iterable[str | type[Solver] | Solver] = ("ccd", "jt", "pinv", "dls"),
+    methods: str | type[Solver] | Solver | Iterable[str | type[Solver] | Solver] = ("ccd", "jt", "pinv", "dls"),
     *,
     view: int | None = None,
     root: str = "fixed",
@@ -35,7 +35,8 @@ def live(
 
     Args:
         robot: What `pinik.load` takes, or a robot that it returned.
-        methods: One to four solvers, by name, class or instance: one for each instance of the robot.
+        methods: One to four solvers, by name ("ccd,dls" are two), class or instance: one for each instance of the
+            robot.
         view: How many instances are seen: 1, 2 or 4; enough for the methods when None.
         root: As for `pinik.load`; a robot that is loaded already keeps its own.
         package_dirs: As for `pinik.load`.

@@ -11,8 +11,9 @@ from numpy.typing import NDArray
 
 from ..kinematics import Kinematics
 from ..limits import Limits
-from ..loop import solve
+from ..loop import iterate
 from ..robot import Robot
+from ..solution import Status
 from ..targets import Target
 from .curves import Curve, polyline
 
@@ -137,9 +138,12 @@ def _plane(kinematics: Kinematics, robot: Robot, q: Array) -> Array | None:
 
 
 def _follows(robot: Robot, frame: str, q: Array, points: Array) -> bool:
+    states = iterate(robot, Target(frame, points[0]), "dls", q, max_iterations=60, tolerance=(1e-3, 1e-3))
+    state = next(states)
     for point in points:
-        solution = solve(robot, Target(frame, point), q0=q, restarts=0, max_iterations=60, tolerance=(1e-3, 1e-3))
-        if not solution.success:
+        state = states.send(Target(frame, point))
+        while state.status is None:
+            state = next(states)
+        if state.status is not Status.CONVERGED:
             return False
-        q = solution.q
     return True

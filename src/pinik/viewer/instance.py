@@ -146,7 +146,7 @@ class Instance:
         try:
             state = self._run(asked, began + seconds)
         except Exception as error:  # a solver of the user's own may raise whatever it likes
-            self._fail(error)
+            self._fail(error, self._clock() - began)
             return
         spent = self._clock() - began
         self._state, self.q, self._failure = state, state.q, ""
@@ -181,10 +181,13 @@ class Instance:
         most = solver.max_iterations if chase.until_reached else chase.at_most
         return run(solver, self._kinematics, limits, start, most, chase.tolerance, TO_THE_END)
 
-    def _fail(self, error: Exception) -> None:
+    def _fail(self, error: Exception, spent: float) -> None:
+        """A step that the solver did not survive counts as one that missed."""
         self._forget_run()
         self._failure = f"the solver failed: {type(error).__name__}: {error}"
-        self.status, self.last, self.counted = "FAILED", None, False
+        self.last = StepFigures(spent, 0, 0, reached=False, error=None, jump=0.0)
+        self.status, self.counted = "FAILED", True
+        self.statistics.add(self.last)
 
     @property
     def orientation_error(self) -> float | None:

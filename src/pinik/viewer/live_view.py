@@ -11,7 +11,7 @@ import os
 import socket
 import threading
 import webbrowser
-from collections.abc import Callable, Iterable
+from collections.abc import Callable
 from concurrent.futures import Future, ThreadPoolExecutor
 from pathlib import Path
 from types import TracebackType
@@ -23,9 +23,8 @@ from numpy.typing import ArrayLike, NDArray
 
 from .. import errors
 from ..robot import Robot
-from ..solvers import Solver
 from .server import later_in_threads, make_application
-from .session import STEPS_PER_SECOND, Session
+from .session import STEPS_PER_SECOND, Methods, Session
 from .show import Show
 
 __all__ = ["LiveView"]
@@ -50,7 +49,7 @@ class LiveView:
     def __init__(
         self,
         robot: Robot,
-        methods: Iterable[str | type[Solver] | Solver],
+        methods: Methods,
         *,
         view: int | None,
         port: int | None,
@@ -171,6 +170,8 @@ class LiveView:
         """Do it in the server's thread, between two steps, and wait for it."""
         if self._closed.is_set():
             raise errors.InputError("this live view is closed; pinik.live(...) opens another")
+        if threading.current_thread() is self._thread:  # it would wait for itself
+            raise errors.InputError("a live view cannot be asked from inside a step, such as by a solver that it runs")
         done: Future[T] = Future()
 
         def run() -> None:

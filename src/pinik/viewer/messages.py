@@ -23,6 +23,7 @@ RANGES: dict[str, tuple[float, float]] = {
 FARTHEST = 100.0
 """[m] A ball stays within this of the world's origin."""
 _LONGEST_NAME = 200
+_LARGEST_ANGLE = 100.0  # [rad]
 _DEEPEST = 8
 
 Check = Callable[[str, Any], Any]
@@ -130,7 +131,10 @@ def _point(what: str, value: Any) -> Any:
 
 
 def _angles(what: str, value: Any) -> Any:
-    return as_vector(value, 3, what, "roll, pitch, yaw in radians")
+    angles = as_vector(value, 3, what, "roll, pitch, yaw in radians")
+    if abs(angles).max() > _LARGEST_ANGLE:
+        raise InputError(f"{what} is three angles of at most {_LARGEST_ANGLE:g} rad; got {angles.tolist()}")
+    return angles
 
 
 def _parameter_value(what: str, value: Any) -> Any:

@@ -21,7 +21,7 @@ from .instance import Chase, Instance
 from .motion import MOTIONS, Motion
 from .statistics import Summary
 
-__all__ = ["MOST_BALLS", "STEPS_PER_SECOND", "VIEWS", "Session"]
+__all__ = ["MOST_BALLS", "STEPS_PER_SECOND", "VIEWS", "Methods", "Session"]
 
 STEPS_PER_SECOND = 60
 VIEWS = (1, 2, 4)
@@ -30,6 +30,10 @@ MOST_BALLS = 12
 _SOLVERS_SHARE = 0.7
 _ON_THE_GROUND = 0.12  # [m] above the lowest frame
 _DEFAULT_METHODS = ("ccd", "jt", "pinv", "dls")
+
+
+Methods = str | type[Solver] | Solver | Iterable[str | type[Solver] | Solver]
+"""One method or several, by name (also "ccd,dls"), class or instance."""
 
 
 class Session:
@@ -50,7 +54,7 @@ class Session:
     def __init__(
         self,
         robot: Robot,
-        methods: Iterable[str | type[Solver] | Solver] = _DEFAULT_METHODS,
+        methods: Methods = _DEFAULT_METHODS,
         *,
         view: int | None = None,
         seed: int = 0,
@@ -70,12 +74,18 @@ class Session:
             UnknownNameError: No such method, or a joint in its parameters that the robot does not have.
             InputError: More than four methods, none, or another view.
         """
-        solvers = [make_solver(method) for method in methods]
+        if isinstance(methods, (str, type, Solver)):
+            methods = methods.split(",") if isinstance(methods, str) else [methods]
+        solvers = [make_solver(method.strip() if isinstance(method, str) else method) for method in methods]
         if not 1 <= len(solvers) <= VIEWS[-1]:
             raise InputError(f"a live view has one to four methods; got {len(solvers)}")
         if view is None:
             view = next(count for count in VIEWS if count >= len(solvers))
-        self.methods: dict[str, type[Solver]] = {**SOLVERS, **{s.name: type(s) for s in solvers}}
+        self.methods: dict[str, type[Solver]] = dict(SOLVERS)
+        for made in solvers:
+            known = self.methods.setdefault(made.name, type(made))
+            if known is not type(made) or "," in made.name:
+                raise InputError(f"methods have names of their own, without a comma; {made.name!r} is none")
         others = [name for name in self.methods if name not in {s.name for s in solvers}]
         solvers += [make_solver(self.methods[name]) for name in others[: VIEWS[-1] - len(solvers)]]
         for solver in solvers:

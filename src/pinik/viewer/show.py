@@ -177,10 +177,10 @@ class Show:
     def tick(self) -> None:
         """A 60th of a second has passed: step, and send what is due.
 
-        Until a robot has its shapes, or somebody asks for something, it stands still: the processors are needed for
-        reading them.
+        Until a robot that somebody watches has its shapes, or somebody asks for something, it stands still: the
+        processors are needed for reading them.
         """
-        if not self._waits_for_shapes and self.session.tick():
+        if not (self._waits_for_shapes and self._seats) and self.session.tick():
             self._ticks.append(self._clock())
             self._frame_due = True
         else:

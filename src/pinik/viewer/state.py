@@ -60,7 +60,7 @@ def session_state(session: Session) -> dict[str, Any]:
                 "position": ball.position.tolist(),
                 "rpy": ball.rpy.tolist(),
                 "oriented": ball.oriented,
-                "curve": motion.path(ball).tolist(),
+                "curve": motion.path(ball).round(4).tolist(),
             }
             for ball in session.balls
         ],

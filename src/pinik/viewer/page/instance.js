@@ -43,7 +43,7 @@ export class Instance {
         balls.forEach((ball, k) => {
             const set = this._sets[k];
             set.mode = ball.mode;
-            set.ball.show(ball, k === selected && balls.length > 1, k === near);
+            set.ball.show(ball, k === selected, k === near);
             this._layCurve(set, ball.curve);
         });
     }
