@@ -6,7 +6,7 @@ import numpy as np
 import pinocchio
 import pytest
 
-from page_fixtures import METHODS
+from desk import METHODS
 
 
 def ball(state, k=0):

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 import pinik
-from page_fixtures import METHODS, need_browser
+from desk import METHODS, need_browser
 
 URDF = Path(__file__).parents[2] / "urdf"
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from page_fixtures import METHODS, PHONE
+from desk import HALF, METHODS, PHONE
 
 RED = np.array([216, 31, 47])  # about what a ball looks like
 
@@ -52,16 +52,17 @@ def test_all_four_instances_follow_the_ball_that_is_dragged(open_desk):
     state = desk.until(lambda s: np.linalg.norm(place(s) - begin) > 0.03)
     np.testing.assert_allclose(camera(desk), seen_from, atol=1e-9, err_msg="the camera turned")
     desk.page.mouse.up()
+    desk.wait(lambda: np.allclose(np.subtract(desk.ball_on_screen(), start), (-25, 40), atol=3))
+    desk.agree()
     state = desk.until(desk.is_followed)
     assert len(state["instances"]) == 4
     assert abs((place(state) - begin) @ looks_along(desk)) < 1e-3, "not in the plane that is seen"
-    np.testing.assert_allclose(np.subtract(desk.ball_on_screen(), start), (-25, 40), atol=3)
     for axis, coordinate in zip("xyz", place(state), strict=True):
         desk.wait(lambda axis=axis, coordinate=coordinate: abs(desk.value(f"target-{axis}") - coordinate) < 6e-4)
 
 
 def test_a_ball_is_where_the_page_says_and_every_instances_copy_can_be_dragged(open_desk):
-    desk = open_desk(methods=METHODS)
+    desk = open_desk(methods=METHODS, viewport=HALF)
     box = desk.page.locator("#canvas").bounding_box()
     spots = red_spots(desk.picture())
     assert len(spots) == 4
@@ -76,7 +77,7 @@ def test_a_ball_is_where_the_page_says_and_every_instances_copy_can_be_dragged(o
 
 
 def test_a_drag_takes_the_ball_from_its_curve(open_desk):
-    desk = open_desk(methods=("dls",), running=True, motion="curve")
+    desk = open_desk(methods=("dls",), running=True, motion="curve", viewport=HALF)
     desk.view.send("speed", value=0.1)
     desk.agree()
     seen_from = camera(desk)
@@ -88,7 +89,7 @@ def test_a_drag_takes_the_ball_from_its_curve(open_desk):
 
 
 def test_with_shift_the_ball_keeps_its_height(open_desk):
-    desk = open_desk(methods=("dls",))
+    desk = open_desk(methods=("dls",), viewport=HALF)
     begin = place(desk.state)
     desk.page.keyboard.down("Shift")
     drag(desk, desk.ball_on_screen(), (-50, 25))
@@ -98,7 +99,7 @@ def test_with_shift_the_ball_keeps_its_height(open_desk):
 
 
 def test_dragging_beside_the_ball_turns_the_camera_and_moves_nothing(open_desk):
-    desk = open_desk(methods=("dls",))
+    desk = open_desk(methods=("dls",), viewport=HALF)
     begin, seen_from = desk.state["balls"], camera(desk)
     box = desk.page.locator("#canvas").bounding_box()
     drag(desk, (box["x"] + 60, box["y"] + box["height"] - 60), (120, -30))
@@ -110,7 +111,7 @@ def test_dragging_beside_the_ball_turns_the_camera_and_moves_nothing(open_desk):
 
 
 def test_the_ball_that_is_taken_is_the_one_that_is_dragged_and_selected(open_desk):
-    desk = open_desk("lion", methods=("dls",))
+    desk = open_desk("lion", methods=("dls",), viewport=HALF)
     desk.view.send("effector", index=4, mode="on")
     desk.agree()
     desk.settle()

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from page_fixtures import METHODS, PHONE, WIDE
+from desk import METHODS, PHONE, WIDE
 
 
 def unlike_background(picture):

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from page_fixtures import METHODS
+from desk import METHODS
 
 
 def open_parameters(open_panel, method, **options):

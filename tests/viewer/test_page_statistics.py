@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from page_fixtures import METHODS
+from desk import METHODS
 
 COLUMNS = ["mean-time", "mean-iterations", "efficiency", "mean-error", "largest-jump"]
 UNITS = {"ms": 1e-3, "%": 0.01, "m": 1.0, "cm": 0.01, "mm": 0.001, "°": np.pi / 180, "": 1.0}

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from page_fixtures import METHODS, SMALL, need_browser, settings
+import pinik
+from desk import METHODS, SMALL, need_browser, settings
 
 
 def changed(desk):
@@ -76,14 +77,14 @@ def test_a_bad_message_is_told_to_its_own_tab_alone(open_panel):
     assert second.get_by_test_id("toasts").inner_text() == ""
 
 
-def test_the_page_comes_back_by_itself_when_the_server_does(open_panel):
+def test_the_page_comes_back_by_itself_when_the_server_does(open_panel, two_link):
     desk = open_panel(methods=("dls",), running=True, motion="curve")
     desk.faults.excuse("WebSocket")
     port = desk.view.port
     desk.expect("banner").to_be_hidden()
     desk.view.close()
     desk.expect("banner").to_be_visible()
-    desk.view = open_panel("two_link", ("ccd",), port=port).view
+    desk.view = pinik.live(two_link, ["ccd"], port=port, running=False)
     desk.expect("banner").to_be_hidden()
     desk.expect("robot").to_have_value("two_link")
     desk.settle()
@@ -93,7 +94,7 @@ def test_the_page_comes_back_by_itself_when_the_server_does(open_panel):
     assert desk.address().startswith("robot=two_link")
 
 
-def test_the_address_carries_everything_to_another_server(open_panel):
+def test_the_address_carries_everything_to_another_server(open_panel, two_link):
     desk = open_panel("lion", METHODS, root="free_flyer", view=2)
     desk.choose("method-0", "dls")
     desk.part("parameters-0").locator("summary").click()
@@ -114,9 +115,11 @@ def test_the_address_carries_everything_to_another_server(open_panel):
     address = desk.address()
     assert told["instances"][1]["parameters"][2]["value"], "no stiffness was set"
 
-    other = open_panel("two_link", ("jt",), setup=address)
-    found = other.until(lambda s: s["robot"] == "lion" and s["loading"] is None)
-    found = other.agree()
+    desk.view.close()
+    desk.faults.excuse("WebSocket")
+    desk.visit(pinik.live(two_link, ["jt"], port=0), address, until="window.pinik?.ready")
+    desk.until(lambda s: s["robot"] == "lion" and s["loading"] is None)
+    found = desk.agree()
     assert settings(found) | {"generation": 0, "balls": 0} == settings(told) | {"generation": 0, "balls": 0}
     for before, after in zip(told["balls"], found["balls"], strict=True):
         assert [after[k] for k in ("frame", "mode", "oriented")] == [before[k] for k in ("frame", "mode", "oriented")]

@@ -9,7 +9,8 @@ export class Address {
         const [navigation] = performance.getEntriesByType("navigation");
         // After a reload the session knows better than the address what the visitor had last.
         this._asked = navigation?.type === "reload" ? "" : location.hash.slice(1);
-        addEventListener("hashchange", () => this._open(location.hash.slice(1)));
+        // The event's own address: the page may have written a newer one meanwhile.
+        addEventListener("hashchange", (event) => this._open(new URL(event.newURL).hash.slice(1)));
     }
 
     /** Say how things are; the first time, ask for what a link asked for. */

@@ -50,10 +50,13 @@ export class Connection {
         }
         this.send(message);
         this._waiting.set(key, null);
-        setTimeout(() => {
-            const last = this._waiting.get(key);
-            this._waiting.delete(key);
-            if (last) this.sendNewest(key, last);
-        }, SPACING);
+        setTimeout(() => this.flush(key), SPACING);
+    }
+
+    /** What waits goes out now. */
+    flush(key) {
+        const last = this._waiting.get(key);
+        this._waiting.delete(key);
+        if (last) this.sendNewest(key, last);
     }
 }

@@ -7,7 +7,7 @@ const REACH = { mouse: 18, pen: 22, touch: 34 }; // [px] around a ball's middle,
 export class Grab {
     /**
      * @param show the scene
-     * @param handlers onGrab(k), onMove(k, [x, y, z]), onHover(k or null)
+     * @param handlers onGrab(k), onMove(k, [x, y, z]), onDrop(k), onHover(k or null)
      */
     constructor(show, handlers) {
         this._show = show;
@@ -54,6 +54,7 @@ export class Grab {
         event.preventDefault();
         const start = this._show.ballInWorld(found.k, found.instance);
         this._held = { ...found, pointer: event.pointerId, start, shift: null, position: start.clone() };
+        this._dragged(event); // from here on the pointer and the ball keep their distance
         // meshcat's camera must not turn while a ball is in the hand.
         this._show.stage.viewer.controls.enabled = false;
         this._show.stage.element.setPointerCapture(event.pointerId);
@@ -110,6 +111,7 @@ export class Grab {
         this._show.stage.viewer.controls.enabled = true;
         this._show.stage.element.classList.remove("grabbing");
         this._show.letGoOfBall(k);
+        this._handlers.onDrop(k);
     }
 
     _hover(k) {

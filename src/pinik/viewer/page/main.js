@@ -126,6 +126,7 @@ class Page {
         this.grab = new Grab(this.show, {
             onGrab: (k) => this.targets.select(k),
             onMove: (k, position) => this._moveBall(k, position),
+            onDrop: (k) => this.connection.flush(`ball ${k}`),
             onHover: (k) => this.show.pointAt(k),
         });
         this.nudge = new Nudge(this.show, (k, position) => {
