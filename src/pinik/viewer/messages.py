@@ -106,7 +106,8 @@ def _truth(what: str, value: Any) -> bool:
     return value
 
 
-def _index(what: str, value: Any) -> int:
+def whole_number(what: str, value: Any) -> int:
+    """A whole number."""
     if isinstance(value, bool) or not isinstance(value, int):
         raise InputError(f"{what} is a whole number; got {value!r}")
     return value
@@ -115,7 +116,7 @@ def _index(what: str, value: Any) -> int:
 def _in_range(name: str, *, whole: bool = False) -> Check:
     def check(what: str, value: Any) -> float:
         low, high = RANGES[name]
-        number = _index(what, value) if whole else as_finite_number(value, what)
+        number = whole_number(what, value) if whole else as_finite_number(value, what)
         if not low <= number <= high:
             raise InputError(f"{what} is a number from {low:g} to {high:g}; got {value!r}")
         return number
@@ -161,11 +162,11 @@ def _run(session: Session, on: bool) -> None:
     session.running = on
 
 
-_INSTANCE: dict[str, Check] = {"instance": _index}
-_BALL: dict[str, Check] = {"index": _index}
+_INSTANCE: dict[str, Check] = {"instance": whole_number}
+_BALL: dict[str, Check] = {"index": whole_number}
 
 _MESSAGES: dict[str, tuple[dict[str, Check], Callable[..., None]]] = {
-    "view": ({"count": _index}, lambda s, count: s.set_view(count)),
+    "view": ({"count": whole_number}, lambda s, count: s.set_view(count)),
     "method": ({**_INSTANCE, "method": text}, lambda s, instance, method: s.set_method(instance, method)),
     "parameter": (
         {**_INSTANCE, "name": text, "value": _parameter_value},

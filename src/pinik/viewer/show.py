@@ -13,7 +13,7 @@ from typing import Any, Protocol
 from ..errors import InputError, PinikError
 from ..robot import Robot
 from .frames import FrameMaker
-from .messages import apply, checked, parse, text
+from .messages import apply, checked, parse, text, whole_number
 from .recording import Recording, animation_page
 from .robots import RobotMenu
 from .scene import Shapes, robot_message
@@ -139,7 +139,7 @@ class Show:
         try:
             message = parse(message_text)
             if message["type"] == "drawn":
-                checked("drawn", message, {"step": _number})
+                checked("drawn", message, {"step": whole_number})
                 self._drawn(tab)
             else:
                 self.do(message)
@@ -331,12 +331,6 @@ def _error(error: PinikError) -> str:
     return json.dumps(
         {"type": "error", "message": words if len(words) <= _LONGEST_ERROR else f"{words[:_LONGEST_ERROR]} …"}
     )
-
-
-def _number(what: str, value: Any) -> int:
-    if isinstance(value, bool) or not isinstance(value, int):
-        raise InputError(f"{what} is a whole number; got {value!r}")
-    return value
 
 
 def _long_text(what: str, value: Any) -> str:
