@@ -105,6 +105,7 @@ def test_dragging_beside_the_ball_turns_the_camera_and_moves_nothing(open_desk):
     drag(desk, (box["x"] + 60, box["y"] + box["height"] - 60), (120, -30))
     desk.wait(lambda: np.abs(camera(desk) - seen_from).max() > 0.05)
     assert desk.state["balls"] == begin
+    desk.expect("camera-iso").to_have_attribute("aria-pressed", "false")
     desk.click("camera-iso")
     desk.settle()
     desk.wait(lambda: np.abs(camera(desk) - seen_from).max() < 1e-2)

@@ -126,6 +126,34 @@ def test_joints_get_numbers_one_by_one_and_lose_them(open_panel):
     desk.expect(f"param-0-stiffness-{first}").to_have_count(0)
 
 
+def test_a_joint_added_before_the_last_one_is_confirmed_keeps_both(open_panel):
+    desk = open_panel("two_link", methods=("ccd",))
+    tab = desk.page.context.new_page()
+    wires, states = [], []
+
+    def carry(wire):
+        wires.append(wire)
+        wire.connect_to_server().on_message(take)
+
+    def take(message):
+        if isinstance(message, str) and message.startswith('{"type": "state"'):
+            states.append(message)
+        if len(states) <= 1:
+            wires[0].send(message)
+
+    tab.route_web_socket("**/ws", carry)
+    tab.goto(desk.view.url)
+    tab.wait_for_function("() => pinik.state")
+    tab.get_by_test_id("parameters-0").locator("summary").click()
+    first, second = desk.state["joint_names"]
+    adder = tab.get_by_test_id("param-0-stiffness")
+    adder.select_option(first)
+    desk.until(lambda s: first in value(s, "stiffness"))
+    wires[0].send(states[0])  # told before the server heard of the first joint
+    adder.select_option(second)
+    assert set(value(desk.until(lambda s: second in value(s, "stiffness")), "stiffness")) == {first, second}
+
+
 def test_another_method_or_instance_keeps_to_its_own_parameters(open_panel):
     desk = open_panel("two_link", methods=("dls", "pinv"), running=True)
     for i in (0, 1):

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 import pinik
-from desk import METHODS, SMALL, need_browser, settings
+from desk import DRAWN, METHODS, SMALL, need_browser, settings
 
 
 def changed(desk):
@@ -129,6 +129,38 @@ def test_the_address_carries_everything_to_another_server(open_panel, two_link):
             np.testing.assert_allclose(after["rpy"], before["rpy"], atol=1e-4)
     for before, after in zip(told["instances"], found["instances"], strict=True):
         assert [after[k] for k in ("method", "parameters")] == [before[k] for k in ("method", "parameters")]
+
+
+def test_a_frame_of_the_robot_before_is_not_drawn_as_the_next_one(open_panel):
+    desk = open_panel("two_link", ("dls",))
+    tab = desk.page.context.new_page()
+    wires, late, holds = [], [], False
+
+    def carry(wire):
+        wires.append(wire)
+        wire.connect_to_server().on_message(lambda message: late.append(message) if holds else wire.send(message))
+
+    def tells_of_lion(message):
+        return isinstance(message, str) and message.startswith('{"type": "state"') and '"robot": "lion"' in message
+
+    tab.route_web_socket("**/ws", carry)
+    tab.set_viewport_size(SMALL)
+    tab.goto(desk.view.url)
+    tab.wait_for_function(f"() => {DRAWN}")
+    holds = True
+    desk.view.send("step")
+    desk.wait(lambda: any(message[:4] == b"PNKF" for message in late))
+    desk.view.send("robot", name="lion", root="fixed")
+    desk.wait(lambda: any(map(tells_of_lion, late)))
+    together = next(k for k, message in enumerate(late) if tells_of_lion(message)) + 1
+    for message in late[:together]:  # the old robot's frame, the new robot, its state: all before the next drawing
+        wires[0].send(message)
+    tab.wait_for_function("() => pinik.state.robot === 'lion'")
+    tab.evaluate("() => new Promise(done => requestAnimationFrame(() => requestAnimationFrame(done)))")
+    holds = False
+    for message in late[together:]:
+        wires[0].send(message)
+    tab.wait_for_function(f"() => {DRAWN}")
 
 
 def test_a_bad_link_is_refused_in_words_and_the_page_lives_on(open_panel):

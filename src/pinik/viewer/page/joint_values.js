@@ -1,7 +1,7 @@
 /** A parameter that gives numbers to some joints: a list of these, and a menu of the others. */
 
 import { icon, make } from "pinik/elements.js";
-import { offer, typed, write } from "pinik/hands.js";
+import { Asked, offer, typed, write } from "pinik/hands.js";
 import { plain } from "pinik/words.js";
 
 export class JointValues {
@@ -9,17 +9,16 @@ export class JointValues {
         this._name = name;
         this._range = { low, high };
         this._testid = testid;
-        this._commit = (value) => {
-            this._value = value;
-            commit(value);
-        };
+        this._asked = new Asked();
+        this._change = (change) => commit(this._asked.ask("", change(this._asked.now("", this._value))));
         this._value = {};
         this._rows = new Map();
         this.list = make("ul", { className: "joint-values" });
         this.adder = make("select", { dataset: { testid }, aria: { label: `${name}: give a joint a value` } });
         this.adder.addEventListener("change", () => {
             const joint = this.adder.value;
-            if (joint) this._commit({ ...this._value, [joint]: this._range.high === null ? 0 : this._range.high / 2 });
+            const number = this._range.high === null ? 0 : this._range.high / 2;
+            if (joint) this._change((value) => ({ ...value, [joint]: number }));
             this.adder.value = "";
         });
     }
@@ -51,17 +50,14 @@ export class JointValues {
         if (high !== null) input.max = high;
         input.addEventListener("change", () => {
             const number = typed(input);
-            if (number !== null) this._commit({ ...this._value, [joint]: number });
+            if (number !== null) this._change((value) => ({ ...value, [joint]: number }));
         });
         const remove = make(
             "button",
             { type: "button", className: "quiet", title: `${joint} as the others`, aria: { label: `Remove ${joint}` } },
             icon("close"),
         );
-        remove.addEventListener("click", () => {
-            const { [joint]: _, ...others } = this._value;
-            this._commit(others);
-        });
+        remove.addEventListener("click", () => this._change(({ [joint]: _, ...others }) => others));
         const row = make("li", {}, make("span", {}, joint), input, remove);
         this.list.append(row);
         return { row, input };

@@ -44,7 +44,7 @@ export class Show {
         this._shapes.clear();
         this.balls.forget();
         this._sight.forget();
-        Object.assign(this, { robot, drawn: "", _parts: null, _frame: null, ground: null, _framed: 0 });
+        Object.assign(this, { robot, drawn: "", _parts: null, _frame: null, _next: null, ground: null, _framed: 0 });
         this.stage.touch();
     }
 
@@ -58,7 +58,7 @@ export class Show {
         for (const instance of this.instances) instance.setRobot(this.robot, this._parts, this.stage.fine);
         this.ground = null;
         this.drawn = "";
-        if (this._frame) this._draw(this._frame);
+        if (this._frame && this._fits(this._frame)) this._draw(this._frame);
         if (!this.camera.moved) this.frameAll(this._framed > 0);
     }
 
@@ -73,7 +73,8 @@ export class Show {
             this._sight.ask();
             this._sight.forget();
         }
-        // A stopped session sends no second frame: one that came before its state is taken now.
+        // A stopped session sends no second frame: one that came before its state is taken now, one of before is not.
+        this._next = null;
         if (this._latest) this.setFrame(this._latest);
         this.stage.touch();
     }
@@ -90,8 +91,13 @@ export class Show {
     setFrame(buffer) {
         const frame = new Frame(buffer);
         this._latest = buffer;
-        if (frame.generation === this.robot?.generation && frame.balls === this.state?.balls.length) this._next = frame;
+        if (this._fits(frame)) this._next = frame;
         return frame;
+    }
+
+    /** Whether it shows the robot and the balls that the page was told of last. */
+    _fits(frame) {
+        return frame.generation === this.robot?.generation && frame.balls === this.state?.balls.length;
     }
 
     _tick(now) {
