@@ -3,6 +3,7 @@
 VENV := .venv
 python := $(VENV)/bin/python
 pip := $(python) -m pip --quiet --quiet --no-input --disable-pip-version-check
+engine := CMakeLists.txt $(wildcard src/native/*)
 
 # A sourced ROS workspace puts another Pinocchio, built for another Python, in front of ours.
 unexport PYTHONPATH
@@ -42,12 +43,12 @@ $(python):
 		echo "Making $(VENV) with $$found ($$("$$found" --version))" && \
 		"$$found" -m venv --clear $(VENV) || { rm -rf $(VENV); exit 1; }
 
-$(VENV)/installed: pyproject.toml $(python)
-	@echo "Installing pinik into $(VENV) (a minute or two the first time)"
+$(VENV)/installed: pyproject.toml $(engine) $(python)
+	@echo "Installing pinik into $(VENV) (two or three minutes, as its engine is compiled)"
 	@$(pip) install --editable .
 	@touch $@
 
-$(VENV)/installed-dev: pyproject.toml $(python)
-	@echo "Installing pinik and its tools into $(VENV) (a minute or two the first time)"
+$(VENV)/installed-dev: pyproject.toml $(engine) $(python)
+	@echo "Installing pinik and its tools into $(VENV) (two or three minutes, as its engine is compiled)"
 	@$(pip) install --editable '.[dev]'
 	@touch $(VENV)/installed $@

@@ -17,9 +17,10 @@ from .joint import Joint
 from .kinematics import Kinematics, Linearization
 from .loading import load
 from .loop import iterate, solve
+from .prepared import Prepared, prepare
 from .robot import Robot
 from .robot_catalog import catalog
-from .solution import Solution, State, Status
+from .solution import Solution
 from .solvers import (
     CCD,
     SOLVERS,
@@ -32,6 +33,7 @@ from .solvers import (
     SweepingSolver,
     parameter,
 )
+from .state import State, Status
 from .targets import Target, TargetError, Tolerance
 from .viewer import live
 
@@ -50,6 +52,7 @@ __all__ = [
     "Linearization",
     "Patience",
     "PinikError",
+    "Prepared",
     "PseudoInverse",
     "Robot",
     "RobotLoadError",
@@ -69,5 +72,6 @@ __all__ = [
     "live",
     "load",
     "parameter",
+    "prepare",
     "solve",
 ]

@@ -1,4 +1,4 @@
-"""The attempts of one solve: restarts, the best so far, and the verdict on it."""
+"""The attempts of one solve: restarts, and the best so far."""
 
 from __future__ import annotations
 
@@ -11,15 +11,14 @@ from numpy.typing import NDArray
 
 from .kinematics import Kinematics
 from .limits import Limits
-from .message import explain
 from .reach import Shortfall, shortfall
 from .run import TO_THE_END, run
-from .solution import Solution, State, Status, measure_errors
 from .solvers import Patience, Solver
-from .starts import random_start
-from .targets import Tolerance
+from .starts import Starts
+from .state import State, Status, measure_errors
+from .targets import TargetError, Tolerance
 
-__all__ = ["Attempts", "Settings"]
+__all__ = ["Outcome", "Settings", "attempt_all"]
 
 Array = NDArray[np.float64]
 
@@ -31,28 +30,65 @@ class Settings(NamedTuple):
     """What a solve was asked for, checked.
 
     Attributes:
+        starts: Where the attempts after the first begin.
         start: The first attempt's configuration (nq,).
+        nearest: Whether the first attempt begins where `starts` says as well; what is not drawn is then as in `start`.
         max_iterations: Of one attempt.
         iterations_to_the_end: Of the last run, which follows the best of the failed attempts.
-        deadline: On `time.perf_counter`'s clock [s].
+        time_limit: Of the whole solve [s]; infinite where there is none.
         target: The number of this problem among many; a key of the drawn starts.
+        trace: Whether every state is kept.
     """
 
     solver: Solver
     kinematics: Kinematics
     limits: Limits
+    starts: Starts
     start: Array
     restarts: int
     seed: int
     max_iterations: int
     iterations_to_the_end: int
     tolerance: Tolerance
-    deadline: float
+    time_limit: float = math.inf
     target: int = 0
+    trace: bool = False
+    nearest: bool = False
 
 
-class Attempts:
-    """The attempts of one solve: the first from the start given, the others from drawn ones.
+class Outcome(NamedTuple):
+    """What the attempts came to.
+
+    Attributes:
+        status: The verdict on `q`, with the errors as plain forward kinematics finds them.
+        q: The best configuration (nq,), inside the limits.
+        errors: Each target's error there.
+        iterations, joint_updates: Of all attempts.
+        restarts: Drawn starts used.
+        proof: Why a target is out of reach, where one is.
+        states: Every state of every attempt, where a trace is wanted.
+    """
+
+    status: Status
+    q: Array
+    errors: tuple[TargetError, ...]
+    iterations: int
+    joint_updates: int
+    restarts: int
+    proof: Shortfall | None
+    states: tuple[State, ...]
+
+
+def attempt_all(settings: Settings, began: float) -> Outcome:
+    """Make the attempts: the first from the start given, the others from drawn ones, until one reaches the targets.
+
+    `began` is when the solve did, on `time.perf_counter`'s clock [s].
+    """
+    return _Attempts(settings, began + settings.time_limit).outcome()
+
+
+class _Attempts:
+    """Attempts under way.
 
     Attributes:
         iterations, joint_updates: Of all attempts so far.
@@ -61,35 +97,36 @@ class Attempts:
         states: Every state so far, where a trace is wanted.
     """
 
-    def __init__(self, settings: Settings, *, trace: bool) -> None:
+    def __init__(self, settings: Settings, deadline: float) -> None:
         self.settings = settings
+        self.deadline = deadline
         self.iterations = 0
         self.joint_updates = 0
         self.restarts = 0
         self.best: State | None = None
-        self.states: list[State] | None = [] if trace else None
+        self.states: list[State] = []
 
-    def solution(self, began: float) -> Solution:
-        """Run them and judge the best; `began` is when the solve did [s]."""
+    def outcome(self) -> Outcome:
+        """Make them and judge the best."""
         asked = self.settings
         proof = shortfall(asked.kinematics, asked.limits)
         if proof is not None and proof.distance <= asked.tolerance.position:
             proof = None
         if not asked.kinematics.free.any():
-            self._attempt(asked.start, TO_THE_END, 0)
+            self._attempt(self._start(), TO_THE_END, 0)
             status = Status.STALLED
         elif asked.restarts == 0:  # the bare method, as `iterate` runs it
-            status = self._attempt(asked.start, TO_THE_END, asked.max_iterations)
+            status = self._attempt(self._start(), TO_THE_END, asked.max_iterations)
         else:
             status = self._attempt_and_restart(proof)
-        return self._judged(status, proof, began)
+        return self._judged(status, proof)
 
     def _attempt_and_restart(self, proof: Shortfall | None) -> Status:
         asked = self.settings
         most = asked.restarts if proof is None else min(asked.restarts, _RESTARTS_WHEN_UNREACHABLE)
         for self.restarts in range(most + 1):
             status = self._attempt(
-                asked.start if self.restarts == 0 else self._drawn_start(),
+                self._start(),
                 asked.solver.patience,
                 asked.max_iterations,
                 judge_limits_at_end=proof is None,
@@ -100,16 +137,10 @@ class Attempts:
         assert self.best is not None
         return self._attempt(self.best.q, TO_THE_END, asked.iterations_to_the_end, downhill=True)
 
-    def _drawn_start(self) -> Array:
+    def _start(self) -> Array:
         asked = self.settings
-        return random_start(
-            asked.kinematics,
-            asked.limits,
-            asked.start,
-            seed=asked.seed,
-            target=asked.target,
-            attempt=self.restarts,
-        )
+        number = self.restarts + asked.nearest
+        return asked.starts.next(asked.start, target=asked.target, number=number) if number else asked.start
 
     def _attempt(
         self,
@@ -134,12 +165,12 @@ class Attempts:
             attempt=self.restarts,
         )
         for state in states:
-            if self.states is not None:
+            if asked.trace:
                 self.states.append(state)
             if (self.best is None or state.residual < self.best.residual) and asked.limits.contains(state.q):
                 self.best = state
             status = state.status
-            if status is None and asked.deadline < math.inf and time.perf_counter() > asked.deadline:
+            if status is None and self.deadline < math.inf and time.perf_counter() > self.deadline:
                 status = Status.TIME_LIMIT
             if status is not None:
                 break
@@ -159,35 +190,15 @@ class Attempts:
         if self.best is None or at.residual < self.best.residual:
             self.best = state._replace(q=at.q, errors=tuple(at.errors), residual=at.residual)
 
-    def _judged(self, status: Status, proof: Shortfall | None, began: float) -> Solution:
+    def _judged(self, status: Status, proof: Shortfall | None) -> Outcome:
         """The best state, measured by plain forward kinematics, which has the last word."""
         assert self.best is not None
-        asked, kinematics, q = self.settings, self.settings.kinematics, self.best.q.copy()
-        robot, targets = kinematics.robot, kinematics.targets
-        errors = measure_errors(robot, targets, q)
+        asked, q = self.settings, self.best.q.copy()
+        errors = measure_errors(asked.kinematics.robot, asked.kinematics.targets, q)
         if all(error.within(asked.tolerance) for error in errors):
             status = Status.CONVERGED
         elif proof is not None:
             status = Status.UNREACHABLE
         elif status is Status.CONVERGED:
             status = Status.STALLED
-        sides = asked.limits.active(q)
-        active = {name: side for name, side in sides.items() if kinematics.free[robot.joint(name).idx_v]}
-        moves = bool(kinematics.free.any())
-        return Solution(
-            robot=robot,
-            targets=targets,
-            status=status,
-            message=explain(status, targets, errors, asked.tolerance, active, proof, moves),
-            q=q,
-            errors=errors,
-            iterations=self.iterations,
-            joint_updates=self.joint_updates,
-            restarts=self.restarts,
-            time=time.perf_counter() - began,
-            active_limits=tuple(active),
-            method=asked.solver.name,
-            parameters=asked.solver.parameters,
-            engine="python",
-            trace=None if self.states is None else tuple(self.states),
-        )
+        return Outcome(status, q, errors, self.iterations, self.joint_updates, self.restarts, proof, tuple(self.states))

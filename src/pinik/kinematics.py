@@ -16,11 +16,12 @@ from .robot import Robot
 from .target_term import TargetTerm
 from .targets import Target, TargetError, as_targets
 
-__all__ = ["Kinematics", "Linearization"]
+__all__ = ["SQUARED_METRES_PER_RADIAN", "Kinematics", "Linearization"]
 
 Array = NDArray[np.float64]
 
-_SQUARED_METRES_PER_RADIAN = 0.3**2
+SQUARED_METRES_PER_RADIAN = 0.3**2
+"""What orientation errors count in a distance."""
 
 
 class Linearization(NamedTuple):
@@ -181,7 +182,7 @@ class Kinematics:
         for term, (position, orientation) in zip(self.terms, errors, strict=True):
             own = 0.0 if position is None else position * position
             if orientation is not None:
-                own += _SQUARED_METRES_PER_RADIAN * orientation * orientation
+                own += SQUARED_METRES_PER_RADIAN * orientation * orientation
             squared += term.weight * term.weight * own
         return math.sqrt(squared)
 

@@ -2,32 +2,31 @@
 
 from __future__ import annotations
 
-import math
-import time
 from collections.abc import Generator, Iterable, Mapping, Sequence
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
-from .attempts import Attempts, Settings
-from .checks import as_finite_number, as_names
-from .errors import EngineError, InputError, UnknownNameError
+from .checks import as_names
+from .errors import InputError
 from .kinematics import Kinematics
 from .limits import Limits
+from .prepared import Prepared, as_count, check_joint_names, prepare
 from .robot import Robot
 from .run import TO_THE_END, run
-from .solution import Solution, State
-from .solvers import JacobianSolver, Solver, make_solver
-from .targets import TARGET_KEYWORDS, Target, Tolerance
+from .solution import Solution
+from .solvers import SOLVERS, JacobianSolver, Solver, make_solver
+from .state import State
+from .targets import TARGET_KEYWORDS, Target, Tolerance, as_targets
 
-__all__ = ["check_joint_names", "iterate", "solve"]
+__all__ = ["iterate", "solve"]
 
-Array = NDArray[np.float64]
+# Kinds of questions that a robot keeps compiled, for each thread; large robots' working memory is too large to keep.
+_MOST_KEPT = 16
+_MOST_FREEDOMS_KEPT = 80
 
-
-# Iterations in which the best of the failed attempts is followed to its end, unless the caller allows fewer.
-_TO_THE_END_AT_MOST = 5000
+_OTHER_KEYWORDS = frozenset(TARGET_KEYWORDS) - {"position", "placement"}
 
 
 def iterate(
@@ -62,12 +61,17 @@ def iterate(
     Raises:
         InputError, UnknownNameError: As `solve`.
     """
+    if not isinstance(robot, Robot):
+        raise InputError(f"robot is what pinik.load returns; got {robot!r}")
     made = make_solver(solver, **solver_parameters)
-    kinematics = _kinematics(robot, targets, made, locked)
+    check_joint_names(robot, made)
+    at_target = isinstance(made, JacobianSolver) and made.target_jacobian
+    held = (*as_names(locked, "locked"), *made.held)
+    kinematics = Kinematics(robot, targets, locked=held, target_jacobian=at_target)
     box = Limits.of(robot, limits)
-    start = _start(robot, box, q0)
-    most = made.max_iterations if max_iterations is None else _count(max_iterations, "max_iterations")
-    return run(made, kinematics, box, start, most, Tolerance.of(tolerance), TO_THE_END)
+    q = robot.neutral() if q0 is None else robot.check_configuration(q0, "q0")
+    most = made.max_iterations if max_iterations is None else as_count(max_iterations, "max_iterations")
+    return run(made, kinematics, box, box.clip(box.wrap(q)), most, Tolerance.of(tolerance), TO_THE_END)
 
 
 def solve(
@@ -119,24 +123,15 @@ def solve(
         InputError: An argument of the wrong shape, kind or range.
         EngineError: The engine asked for is not there.
     """
-    began = time.perf_counter()
-    _check_engine(engine)
-    solver = make_solver(method, **solver_parameters)
-    kinematics = _kinematics(robot, targets, solver, locked)
-    box = Limits.of(robot, limits)
-    settings = Settings(
-        solver,
-        kinematics,
-        box,
-        start=_start(robot, box, q0),
-        restarts=solver.restarts if restarts is None else _count(restarts, "restarts", least=0),
-        seed=_count(seed, "seed", least=0),
-        max_iterations=solver.max_iterations if max_iterations is None else _count(max_iterations, "max_iterations"),
-        iterations_to_the_end=_TO_THE_END_AT_MOST if max_iterations is None else max_iterations,
-        tolerance=Tolerance.of(tolerance),
-        deadline=math.inf if time_limit is None else began + _seconds(time_limit),
-    )
-    return Attempts(settings, trace=trace).solution(began)
+    asked = as_targets(targets)
+    if not isinstance(locked, (str, tuple)) and isinstance(locked, Iterable):
+        locked = tuple(locked)
+    prepared = _prepared(
+        robot, asked, method, limits=limits, locked=locked, restarts=restarts, seed=seed,
+        max_iterations=max_iterations, tolerance=tolerance, time_limit=time_limit, engine=engine, trace=trace,
+        **solver_parameters,
+    )  # fmt: skip
+    return prepared(asked, q0)
 
 
 def solve_from_keywords(
@@ -144,55 +139,70 @@ def solve_from_keywords(
     targets: str | Target | Sequence[Target],
     position: ArrayLike | None,
     method: str | type[Solver] | Solver,
-    options: Mapping[str, Any],
+    options: dict[str, Any],
 ) -> Solution:
     """`Robot.solve`: sort the keywords into those of one Target and those of `solve`."""
-    options = dict(options)
     if not isinstance(targets, str):
         if position is not None or any(name in options for name in TARGET_KEYWORDS):
             raise InputError("with Target objects the target's keywords belong into Target(...)")
         return solve(robot, targets, method, **options)
+    key = _key_of_a_place(robot, targets, position, method, options)
+    if key is not None and key in robot.kept:
+        place = options["placement"] if position is None else _as_array(position)
+        solution: Solution | None = robot.kept[key].at(place, options.get("q0"))
+        if solution is not None:
+            return solution
     fields = {name: options.pop(name) for name in TARGET_KEYWORDS if name in options}
-    return solve(robot, Target(targets, position, **fields), method, **options)
+    target = Target(targets, position, **fields)
+    if key is None:
+        return solve(robot, target, method, **options)
+    q0 = options.pop("q0", None)
+    prepared = robot.kept.get(key) or _keep(robot, key, prepare(robot, target, method, **options))
+    return prepared(target, q0)
 
 
-def _kinematics(robot: Robot, targets: Target | Sequence[Target], solver: Solver, locked: Iterable[str]) -> Kinematics:
+def _key_of_a_place(
+    robot: Robot, frame: str, position: ArrayLike | None, method: object, options: Mapping[str, Any]
+) -> tuple[object, ...] | None:
+    """What to keep the compiled question under, where it asks one frame for a position, or for a placement."""
+    if (position is None) is not ("placement" in options) or not _OTHER_KEYWORDS.isdisjoint(options):
+        return None
+    if type(method) is not str:
+        return None
+    settings = [(name, type(value), value) for name, value in options.items() if name not in ("placement", "q0")]
+    key = (frame, position is None, method, SOLVERS.get(method), *settings)
+    try:
+        hash(key)
+    except TypeError:
+        return None
+    return key
+
+
+def _as_array(position: ArrayLike) -> object:
+    if type(position) in (list, tuple) and [type(x) for x in position] == [float, float, float]:  # type: ignore[union-attr]
+        return np.array(position)
+    return position
+
+
+def _prepared(
+    robot: Robot, targets: tuple[Target, ...], method: str | type[Solver] | Solver, /, **options: Any
+) -> Prepared:
+    """The question, compiled; of the last few kinds that this thread asked, what was compiled then."""
     if not isinstance(robot, Robot):
         raise InputError(f"robot is what pinik.load returns; got {robot!r}")
-    at_target = isinstance(solver, JacobianSolver) and solver.target_jacobian
-    check_joint_names(robot, solver)
-    held = (*as_names(locked, "locked"), *solver.held)
-    return Kinematics(robot, targets, locked=held, target_jacobian=at_target)
+    try:
+        shapes = tuple(target.shape for target in targets)
+        meant = SOLVERS.get(method) if isinstance(method, str) else None
+        key = (shapes, method, meant, *((name, type(value), value) for name, value in options.items()))
+        found = robot.kept.get(key)
+    except TypeError:  # something in it cannot be a key
+        return prepare(robot, targets, method, **options)
+    return found or _keep(robot, key, prepare(robot, targets, method, **options))
 
 
-def check_joint_names(robot: Robot, solver: Solver) -> None:
-    """See that the joints which a solver's parameters name are there and can be set."""
-    for value in solver.parameters.values():
-        if isinstance(value, Mapping):
-            for name in value:
-                robot.settable_joint(name)
-
-
-def _start(robot: Robot, limits: Limits, q0: ArrayLike | None) -> Array:
-    q = robot.neutral() if q0 is None else robot.check_configuration(q0, "q0")
-    return limits.clip(limits.wrap(q))
-
-
-def _check_engine(engine: str) -> None:
-    if engine not in ("auto", "python", "native"):
-        raise UnknownNameError("engine", engine, ("auto", "python", "native"))
-    if engine == "native":
-        raise EngineError("this version of pinik has no compiled engine; use engine='auto' or 'python'")
-
-
-def _count(value: object, what: str, least: int = 1) -> int:
-    if isinstance(value, bool) or not isinstance(value, (int, np.integer)) or value < least:
-        raise InputError(f"{what} is a whole number of at least {least}; got {value!r}")
-    return int(value)
-
-
-def _seconds(value: object) -> float:
-    seconds = as_finite_number(value, "time_limit")
-    if seconds <= 0.0:
-        raise InputError(f"time_limit is a positive number of seconds; got {value!r}")
-    return seconds
+def _keep(robot: Robot, key: tuple[object, ...], prepared: Prepared) -> Prepared:
+    if robot.model.nv <= _MOST_FREEDOMS_KEPT:
+        robot.kept[key] = prepared
+        if len(robot.kept) > _MOST_KEPT:
+            del robot.kept[next(iter(robot.kept))]
+    return prepared

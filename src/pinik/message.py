@@ -6,7 +6,7 @@ import math
 from collections.abc import Mapping, Sequence
 
 from .reach import Shortfall
-from .solution import Status
+from .state import Status
 from .targets import Target, TargetError, Tolerance, largest_of
 
 __all__ = ["explain"]

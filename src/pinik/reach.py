@@ -8,13 +8,14 @@ from typing import NamedTuple
 
 import numpy as np
 import pinocchio
+from numpy.typing import NDArray
 
 from .joint import Joint
 from .kinematics import Kinematics
 from .limits import Limits
 from .target_term import TargetTerm
 
-__all__ = ["Shortfall", "shortfall"]
+__all__ = ["Bounds", "Shortfall", "reach_bounds", "shortfall"]
 
 Vector = Sequence[float]  # three plain numbers: every solve asks, and numpy is slow with so few
 
@@ -71,25 +72,45 @@ def shortfall(kinematics: Kinematics, limits: Limits) -> Shortfall | None:
 
 
 def _term_shortfall(index: int, term: TargetTerm, model: pinocchio.Model, limits: Limits) -> Shortfall | None:
-    position = term.target.position
-    # A reference that moves makes the chain go down one branch and up another; that one gets no bound.
-    if position is None or not term.movers or any(j.id in term.reference_support for j in term.movers):
+    position, bounds = term.target.position, reach_bounds(term, model, limits)
+    if position is None or bounds is None:
         return None
-    if any(not joint.has_one_axis for joint in term.movers):
-        return None
-    base = model.jointPlacements[term.movers[0].id].translation
-    if term.reference_placement is not None:
-        base = term.reference_placement.actInv(base)
+    base, reach, hole = bounds
     distance = float(np.linalg.norm(position - base))
-    reach, hole = _bounds(_spans(term, model, limits), len(term.movers) + 1)
-    if not math.isfinite(reach):
-        return None
     slack = _ROUNDING * (reach + float(np.linalg.norm(position)) + float(np.linalg.norm(base)))
     if distance > reach + slack:
         return Shortfall(index, distance - reach, reach, False)
     if distance < hole - slack:
         return Shortfall(index, hole - distance, hole, True)
     return None
+
+
+class Bounds(NamedTuple):
+    """Where a chain's frame can be at all.
+
+    Attributes:
+        base: The chain's first joint (3,) [m], in the reference's axes where the target has one.
+        reach: The frame is never farther from it [m].
+        hole: Nor nearer [m].
+    """
+
+    base: NDArray[np.float64]
+    reach: float
+    hole: float
+
+
+def reach_bounds(term: TargetTerm, model: pinocchio.Model, limits: Limits) -> Bounds | None:
+    """The bounds of a target's chain; None where it has none."""
+    # A reference that moves makes the chain go down one branch and up another; that one gets no bound.
+    if not term.movers or any(j.id in term.reference_support for j in term.movers):
+        return None
+    if any(not joint.has_one_axis for joint in term.movers):
+        return None
+    base = model.jointPlacements[term.movers[0].id].translation
+    if term.reference_placement is not None:
+        base = term.reference_placement.actInv(base)
+    reach, hole = _bounds(_spans(term, model, limits), len(term.movers) + 1)
+    return Bounds(np.array(base), reach, hole) if math.isfinite(reach) else None
 
 
 def _bounds(spans: list[_Span], end: int) -> tuple[float, float]:

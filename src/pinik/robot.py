@@ -112,6 +112,13 @@ class Robot:
         return self._local.data
 
     @property
+    def kept(self) -> dict[Any, Any]:
+        """This thread's own store for what others compiled for this robot."""
+        if not hasattr(self._local, "kept"):
+            self._local.kept = {}
+        return self._local.kept  # type: ignore[no-any-return]
+
+    @property
     def poses(self) -> dict[str, Array]:
         """Named configurations from the SRDF beside the URDF: name → q (nq,), read-only; copy one to change it.
 
@@ -246,6 +253,8 @@ class Robot:
             InputError: Wrong shape, not finite, or a (cos, sin) pair or quaternion that is not of unit length.
         """
         values = as_vector(q, self.model.nq, what, f"the configuration of {self.name!r}")
+        if self.model.nq == self.model.nv:  # only numbers, each for itself
+            return values
         for joint in self.joints:
             circle = joint.circle(values)
             if circle is not None and abs(float(circle[0] @ circle[0]) - 1.0) > 1e-3:

@@ -10,8 +10,8 @@ from numpy.typing import NDArray
 
 from .kinematics import Kinematics, Linearization
 from .limits import Limits
-from .solution import State, Status
 from .solvers import JacobianSolver, Patience, Solver, SweepingSolver
+from .state import State, Status
 from .stepping import advance
 from .targets import Target, Tolerance
 

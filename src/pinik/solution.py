@@ -2,108 +2,138 @@
 
 from __future__ import annotations
 
-import dataclasses
 import math
-from collections.abc import Sequence
-from dataclasses import dataclass
-from enum import Enum
-from typing import Any, NamedTuple
+from collections.abc import Callable
+from functools import cached_property
+from typing import Any
 
 import numpy as np
 import pinocchio
 from numpy.typing import NDArray
 
+from .attempts import Outcome, Settings
 from .errors import SolveError
+from .message import explain
+from .native import Answer
 from .robot import Robot
-from .targets import NO_DIRECTION, Target, TargetError, largest_of
+from .state import State, Status
+from .targets import Target, TargetError, largest_of
 
-__all__ = ["Solution", "State", "Status", "measure_errors"]
+__all__ = ["Solution"]
 
 Array = NDArray[np.float64]
 
-
-class Status(Enum):
-    """Why a solve ended; `str()` gives the words."""
-
-    CONVERGED = "every target is within tolerance"
-    STALLED = "progress stopped short of the target"
-    MAX_ITERATIONS = "the iterations ran out"
-    TIME_LIMIT = "the time ran out"
-    UNREACHABLE = "the target lies outside the chain's reach"
-
-    def __str__(self) -> str:
-        return self.value
+_IN_WORDS = (
+    "robot", "targets", "status", "q", "errors", "iterations", "joint_updates", "restarts", "trace", "method",
+    "message", "active_limits", "parameters",
+)  # fmt: skip
 
 
-class State(NamedTuple):
-    """One iteration of a run.
-
-    Attributes:
-        q: The configuration (nq,), read-only.
-        iteration: 0 at the start, then 1 for each step (for CCD, each sweep).
-        joint_updates: Single joints updated so far, for sweeping methods.
-        errors: Each target's error.
-        residual: Norm of the weighted residual, which the steps work on.
-        attempt: 0, or the number of the restart.
-        status: None while running; the reason in a run's last state.
-    """
-
-    q: Array
-    iteration: int
-    joint_updates: int
-    errors: tuple[TargetError, ...]
-    residual: float
-    attempt: int = 0
-    status: Status | None = None
-
-    @property
-    def position_error(self) -> float | None:
-        """The largest of the targets' [m]."""
-        return largest_of(self.errors).position
-
-    @property
-    def orientation_error(self) -> float | None:
-        """The largest of the targets' [rad]."""
-        return largest_of(self.errors).orientation
-
-
-@dataclass(frozen=True, eq=False)
 class Solution:
     """The answer of a solve, checked by plain Pinocchio.
 
     Attributes:
-        robot: The robot.
-        targets: What was asked for.
-        status: Why the solve ended.
-        message: The same in one sentence, with what is missing and which joints sit at their limits.
-        q: The best configuration found (nq,), also on failure.
-        errors: Each target's error at `q`, recomputed by plain forward kinematics.
-        iterations: Steps taken in all attempts; sweeps for CCD.
-        joint_updates: Single joints updated in all attempts, for CCD; 0 for methods that take whole steps.
-        restarts: Fresh starts used.
-        time: Seconds.
-        active_limits: Names of the joints that sit at a limit.
-        method: The solver's short name.
-        parameters: The solver's parameters.
         engine: "python" or "native".
-        trace: Every state of every attempt when asked for, else None.
+        time: Seconds.
     """
 
-    robot: Robot
-    targets: tuple[Target, ...]
-    status: Status
-    message: str
-    q: Array
-    errors: tuple[TargetError, ...]
-    iterations: int
-    joint_updates: int
-    restarts: int
-    time: float
-    active_limits: tuple[str, ...]
-    method: str
-    parameters: dict[str, Any]
-    engine: str
-    trace: tuple[State, ...] | None = dataclasses.field(default=None, repr=False)
+    def __init__(
+        self,
+        outcome: Outcome | Answer,
+        asked: Settings,
+        targets: tuple[Target, ...] | Callable[[], tuple[Target, ...]],
+        engine: str,
+        time: float,
+    ) -> None:
+        """Put together what a solve came to; `targets` may wait until somebody looks at them."""
+        self._outcome = outcome
+        self._asked = asked
+        self._targets = targets
+        self.engine = engine
+        self.time = time
+
+    def __getstate__(self) -> dict[str, Any]:
+        """Everything in words and numbers: what it was computed with stays here."""
+        kept = {name: getattr(self, name) for name in _IN_WORDS}
+        return kept | {"engine": self.engine, "time": self.time}
+
+    @cached_property
+    def robot(self) -> Robot:
+        """The robot."""
+        return self._asked.kinematics.robot
+
+    @cached_property
+    def targets(self) -> tuple[Target, ...]:
+        """What was asked for."""
+        return self._targets() if callable(self._targets) else self._targets
+
+    @cached_property
+    def status(self) -> Status:
+        """Why the solve ended."""
+        return self._outcome.status
+
+    @cached_property
+    def q(self) -> Array:
+        """The best configuration found (nq,), also on failure."""
+        return self._outcome.q
+
+    @cached_property
+    def errors(self) -> tuple[TargetError, ...]:
+        """Each target's error at `q`, recomputed by plain forward kinematics."""
+        return self._outcome.errors
+
+    @cached_property
+    def iterations(self) -> int:
+        """Steps taken in all attempts; sweeps for CCD."""
+        return self._outcome.iterations
+
+    @cached_property
+    def joint_updates(self) -> int:
+        """Single joints updated in all attempts, for CCD; 0 for methods that take whole steps."""
+        return self._outcome.joint_updates
+
+    @cached_property
+    def restarts(self) -> int:
+        """Fresh starts used."""
+        return self._outcome.restarts
+
+    @cached_property
+    def method(self) -> str:
+        """The solver's short name."""
+        return self._asked.solver.name
+
+    @cached_property
+    def trace(self) -> tuple[State, ...] | None:
+        """Every state of every attempt when asked for, else None."""
+        return self._outcome.states if self._asked.trace else None
+
+    @cached_property
+    def message(self) -> str:
+        """The status in one sentence, with what is missing and which joints sit at their limits."""
+        asked, outcome = self._asked, self._outcome
+        moves = bool(asked.kinematics.free.any())
+        return explain(
+            outcome.status, self.targets, outcome.errors, asked.tolerance, self._sides_of_limits, outcome.proof, moves
+        )
+
+    @cached_property
+    def active_limits(self) -> tuple[str, ...]:
+        """Names of the joints that sit at a limit and could have moved a target."""
+        return tuple(self._sides_of_limits)
+
+    @cached_property
+    def parameters(self) -> dict[str, Any]:
+        """The solver's parameters."""
+        return self._asked.solver.parameters
+
+    @property
+    def _sides_of_limits(self) -> dict[str, str]:
+        free = self._asked.kinematics.free
+        sides = self._asked.limits.active(self.q)
+        return {name: side for name, side in sides.items() if free[self.robot.joint(name).idx_v]}
+
+    def __repr__(self) -> str:
+        return f"Solution({self.status.name}: {self.message}; {self.method}, {self.engine} engine, q={self.q})"
 
     def __bool__(self) -> bool:
         return self.success
@@ -172,30 +202,6 @@ class Solution:
             "parameters": {name: _jsonable(value) for name, value in self.parameters.items()},
             "engine": self.engine,
         }
-
-
-def measure_errors(robot: Robot, targets: Sequence[Target], q: Array) -> tuple[TargetError, ...]:
-    """Each target's error at `q`, by plain forward kinematics and nothing that the solvers use."""
-    return tuple(_measure(robot, target, q) for target in targets)
-
-
-def _measure(robot: Robot, target: Target, q: Array) -> TargetError:
-    placement = robot.placement(target.frame, q, target.relative_to)
-    if target.tool is not None:
-        placement = placement * target.tool
-    position, orientation = None, None
-    if target.position is not None:
-        position = float(np.linalg.norm(target.position - placement.translation))
-    if target.rotation is not None:
-        orientation = float(np.linalg.norm(pinocchio.log3(target.rotation @ placement.rotation.T)))
-    elif target.axis is not None:
-        axis = placement.rotation @ target.axis
-        direction = target.direction if target.at is None else target.at - placement.translation
-        assert direction is not None
-        if target.at is not None and np.linalg.norm(direction) < NO_DIRECTION:
-            return TargetError(position, 0.0)
-        orientation = math.atan2(float(np.linalg.norm(np.cross(axis, direction))), float(axis @ direction))
-    return TargetError(position, orientation)
 
 
 def _jsonable(value: Any) -> Any:

@@ -94,6 +94,13 @@ class TargetTerm:
         if self._reference is not None:
             pinocchio.updateFramePlacement(self._model, self._data, self._reference)
 
+    def seen_from_reference(self) -> tuple[Array, Array]:
+        """(position, rotation) of the frame in the axes that the target's numbers are in, as last evaluated."""
+        if self._reference is None:
+            return self.p, self.R
+        R = self._reference_R.T
+        return R.dot(self.p - self._reference_p), R.dot(self.R)
+
     def linearize(self, q: Array) -> tuple[Array, Array, TargetError]:
         """(e, J, error) of this target alone, weighted but for the error."""
         J = self._frame_jacobian(q, self._frame)

@@ -195,6 +195,33 @@ class Target:
         parts = (self.position is not None, self.rotation is not None, self.axis is not None, self.at is not None)
         return self.frame, self.relative_to, self.weight, self.tool, parts
 
+    def moved_to(self, place: pinocchio.SE3 | ArrayLike) -> Target:
+        """The same target elsewhere.
+
+        Args:
+            place: An SE3 or 4×4 matrix where position and rotation are asked for, the parts that are asked for taken
+                from it; or a position (3,) [m] where only that is.
+
+        Raises:
+            InputError: It is neither, or the target asks for an axis, or for more than a position alone says.
+        """
+        what = f"target {self.frame!r}"
+        if self.axis is not None:
+            raise InputError(f"{what} asks for an axis's direction; give a Target")
+        if not isinstance(place, pinocchio.SE3) and np.shape(place) == (3,):
+            if self.rotation is not None:
+                raise InputError(f"{what} asks for an orientation too; give an SE3 or a 4×4 matrix")
+            place = pinocchio.SE3(np.eye(3), as_point(place, f"{what}: position"))
+        pose = as_se3(place, f"{what}: placement")
+        moved = object.__new__(Target)
+        fields = dict(vars(self))
+        for name, value in (("position", pose.translation), ("rotation", pose.rotation)):
+            if fields[name] is not None:
+                fields[name] = value.copy()
+                fields[name].setflags(write=False)
+        vars(moved).update(fields)
+        return moved
+
     @classmethod
     def from_dict(cls, fields: Mapping[str, Any]) -> Target:
         """A target from its JSON form: `Target`'s own keywords, `frame` among them.

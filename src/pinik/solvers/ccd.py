@@ -80,7 +80,7 @@ class CCD(SweepingSolver):
         model, data = kinematics.model, kinematics.data
         q = q.copy()
         chasers = self._chasers(q, kinematics)
-        relaxation = self._relaxation(kinematics)
+        relaxation = self.relaxation_for(kinematics)
         updates = 0
         for coordinate in kinematics.coordinates:
             if all([chaser.within(tolerance) for chaser in chasers]):
@@ -114,7 +114,8 @@ class CCD(SweepingSolver):
         """Joints of stiffness 0, which no restart may move either."""
         return tuple(name for name, part in self.stiffness.items() if part == 0.0)
 
-    def _relaxation(self, kinematics: Kinematics) -> float:
+    def relaxation_for(self, kinematics: Kinematics) -> float:
+        """The relaxation, or what it is for these targets where it is None."""
         if self.relaxation is not None:
             return self.relaxation
         return _RELAXATION_OF_POSES if any(t.asks_orientation for t in kinematics.targets) else 1.0

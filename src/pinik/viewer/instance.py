@@ -18,8 +18,8 @@ from ..message import explain
 from ..reach import shortfall
 from ..robot import Robot
 from ..run import TO_THE_END, run
-from ..solution import State, Status, measure_errors
 from ..solvers import JacobianSolver, Solver
+from ..state import State, Status, measure_errors
 from ..targets import Target, Tolerance, largest_of
 from .statistics import Statistics, StepFigures
 

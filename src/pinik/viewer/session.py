@@ -10,7 +10,7 @@ from typing import Any
 from numpy.typing import ArrayLike
 
 from ..errors import InputError, UnknownNameError
-from ..loop import check_joint_names
+from ..prepared import check_joint_names
 from ..robot import Robot
 from ..solvers import SOLVERS, Solver, make_solver
 from ..targets import Tolerance

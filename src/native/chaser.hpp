@@ -1,0 +1,127 @@
+// One target during a sweep of cyclic coordinate descent, after pinik.solvers.chaser.
+#pragma once
+
+#include "kinematics.hpp"
+
+namespace pinik {
+
+// Effector and goal, carried along without a forward kinematics.
+struct Chaser {
+  const Term* term = nullptr;
+  double weight = 1.0, alpha = 0.0, max_residual = infinity;
+  int axes = 0;           // columns of U and V that matter: 0, 1 or 3
+  bool has_goal = false, has_at = false;
+  Vec3 p, goal, at;
+  Mat3 U, V;              // the effector's axes, and where they should be
+
+  template <int Rows>
+  Chaser(const Kinematics<Rows>& kinematics, std::size_t index, double alpha, double max_residual)
+      : term(&kinematics.problem.terms[index]), weight(term->weight * term->weight), alpha(alpha),
+        max_residual(max_residual) {
+    const Placement frame = kinematics.frame(*term);
+    const Goal wanted = kinematics.wanted(index);
+    p = frame.p;
+    goal = wanted.position;
+    at = wanted.at;
+    has_goal = term->asks_position;
+    if (term->asks_rotation) {
+      axes = 3;
+      U = frame.R;
+      V = wanted.rotation;
+    } else if (term->asks_axis) {
+      axes = 1;
+      has_at = term->asks_at;
+      U.col(0) = frame.R * term->axis;
+      V.col(0) = wanted.direction;
+    }
+  }
+
+  bool moved_by(int joint) const {
+    return term->in_frame_support[static_cast<std::size_t>(joint)] !=
+           term->in_reference_support[static_cast<std::size_t>(joint)];
+  }
+
+  bool moves_frame(int joint) const { return term->in_frame_support[static_cast<std::size_t>(joint)]; }
+
+  bool within(const Tolerance& tolerance) const {
+    if (has_goal && (goal - p).squaredNorm() > tolerance.position * tolerance.position) return false;
+    return axes == 0 || angle() <= tolerance.orientation;
+  }
+
+  // The orientation error [rad].
+  double angle() const {
+    double angle = 0.0;
+    if (axes == 3) {
+      log3(V * U.transpose(), angle);
+      return angle;
+    }
+    const Vec3 u = U.col(0), v = facing();
+    return std::atan2(u.cross(v).norm(), u.dot(v));
+  }
+
+  // Σ w c dᵀ of what the joint carries (c) and where it should go (d), seen from `origin`.
+  Mat3 correlation(int joint, const Vec3& origin) const {
+    Mat3 M = Mat3::Zero();
+    if (axes == 3)
+      M.noalias() = U * V.transpose();
+    else if (axes == 1 && !has_at)
+      M.noalias() = U.col(0) * V.col(0).transpose();
+    for_each_pair(origin, [&](const Vec3& c, const Vec3& d, double w) {
+      M.noalias() += (w * (c - origin)) * (d - origin).transpose();
+    });
+    if (weight != 1.0) M *= weight;
+    if (!moves_frame(joint)) M.transposeInPlace();
+    return M;
+  }
+
+  // Calls `see` with each pair of effector's point, its goal and their weight.
+  template <class See>
+  void for_each_pair(const Vec3& origin, See see) const {
+    if (has_goal) {
+      const Vec3 drawn = drawn_goal();
+      double w = alpha;
+      if (axes > 0) {
+        const double c = (p - origin).squaredNorm(), d = (drawn - origin).squaredNorm(), longer = std::max(c, d);
+        w *= 1.0 + (longer > 0.0 ? std::sqrt(std::min(c, d) / longer) : 1.0);
+      }
+      see(p, drawn, w);
+    }
+    if (has_at) {
+      const double squared = (at - p).squaredNorm();
+      if (squared > no_direction * no_direction) see(Vec3(p + std::sqrt(squared) * U.col(0)), at, 1.0 / squared);
+    }
+  }
+
+  // Turn about `origin`, or shift, what the joint moves: effector, goal, or both.
+  void carry(int joint, const Vec3& origin, const Mat3* R, const Vec3& shift) {
+    auto moved = [&](const Vec3& point) -> Vec3 { return R ? Vec3(origin + *R * (point - origin)) : Vec3(point + shift); };
+    if (term->in_frame_support[static_cast<std::size_t>(joint)]) {
+      p = moved(p);
+      if (R && axes > 0) U = *R * U;
+    }
+    if (term->in_reference_support[static_cast<std::size_t>(joint)]) {
+      if (has_goal) goal = moved(goal);
+      if (has_at) at = moved(at);
+      if (R && axes > 0) V = *R * V;
+    }
+  }
+
+ private:
+  // The goal, or the point on the way to it that D_max allows.
+  Vec3 drawn_goal() const {
+    if (max_residual == infinity) return goal;
+    const Vec3 e = goal - p;
+    const double length = e.norm();
+    return length <= max_residual ? goal : Vec3(p + e * (max_residual / length));
+  }
+
+  // The direction of the point to look at; the axis itself where that has none.
+  Vec3 facing() const {
+    if (!has_at) return V.col(0);
+    const Vec3 line = at - p;
+    const double distance = line.norm();
+    return distance < no_direction ? Vec3(U.col(0)) : Vec3(line / distance);
+  }
+};
+
+}  // namespace pinik

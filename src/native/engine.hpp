@@ -1,0 +1,146 @@
+// One problem with one method and its settings, ready to be solved again and again, from any thread.
+#pragma once
+
+#include <condition_variable>
+#include <memory>
+#include <mutex>
+#include <thread>
+#include <variant>
+
+#include "attempts.hpp"
+#include "certifier.hpp"
+
+namespace pinik {
+
+// A robot as the engine knows it.
+struct Robot {
+  Mechanism mechanism;
+  std::unique_ptr<Certifier> certifier;
+
+  void finish() { certifier = std::make_unique<Certifier>(mechanism); }
+};
+
+// An outcome whose errors plain Pinocchio has measured; it has the last word on the status.
+struct Answer : Outcome {
+  std::vector<TargetError> errors;
+};
+
+class Engine {
+ public:
+  Engine(std::shared_ptr<const Robot> robot, const Problem& problem, const Settings& settings)
+      : robot_(std::move(robot)), problem_(problem), settings_(settings) {}
+
+  const Problem& problem() const { return problem_; }
+
+  const Mechanism& mechanism() const { return robot_->mechanism; }
+
+  Answer solve(const Vector& start, const std::vector<Goal>& goals, bool nearest) {
+    std::unique_ptr<Worker> worker = borrow();
+    Answer answer = worker->solve(*robot_, settings_, start, goals, 0, nearest, nullptr);
+    give_back(std::move(worker));
+    return answer;
+  }
+
+  // Solve `count` problems from threads of their own, `take` telling start and goals of each and `put` taking its
+  // answer; numbers decide what is drawn, not threads. `pause` is called now and then and says whether to go on.
+  template <class Take, class Put, class Pause>
+  void solve_many(std::uint64_t count, int threads, bool nearest, Take take, Put put, Pause pause) {
+    std::atomic<std::uint64_t> next{0};
+    std::atomic<int> working{threads};
+    std::atomic<bool> stop{false};
+    std::mutex mutex;
+    std::condition_variable finished;
+    std::vector<std::thread> pool;
+    for (int t = 0; t < threads; ++t)
+      pool.emplace_back([&] {
+        std::unique_ptr<Worker> worker = borrow();
+        Vector start;
+        std::vector<Goal> goals;
+        for (std::uint64_t i = next++; i < count && !stop; i = next++) {
+          const Clock::time_point began = Clock::now();
+          take(i, start, goals);
+          const Answer answer = worker->solve(*robot_, settings_, start, goals, i, nearest, &stop);
+          put(i, answer, std::chrono::duration<double>(Clock::now() - began).count());
+        }
+        give_back(std::move(worker));
+        const std::lock_guard<std::mutex> lock(mutex);
+        if (--working == 0) finished.notify_one();
+      });
+    {
+      std::unique_lock<std::mutex> lock(mutex);
+      while (!finished.wait_for(lock, std::chrono::milliseconds(20), [&] { return working == 0; })) {
+        lock.unlock();
+        if (!pause()) stop = true;
+        lock.lock();
+      }
+    }
+    for (std::thread& thread : pool) thread.join();
+  }
+
+ private:
+  // The working memory of one thread.
+  struct Worker {
+    Problem problem;
+    Certifier::Memory memory;
+    StopFlag stop = nullptr;
+    std::variant<std::monostate, Attempts<3>, Attempts<6>, Attempts<Eigen::Dynamic>> attempts;
+
+    Worker(const Robot& robot, const Problem& asked, const Settings& settings)
+        : problem(asked), memory(*robot.certifier) {
+      if (problem.rows == 3)
+        attempts.emplace<1>(problem, settings, stop);
+      else if (problem.rows == 6)
+        attempts.emplace<2>(problem, settings, stop);
+      else
+        attempts.emplace<3>(problem, settings, stop);
+    }
+
+    Answer solve(const Robot& robot, const Settings& settings, const Vector& start, const std::vector<Goal>& goals,
+                 std::uint64_t target, bool nearest, StopFlag stop_flag) {
+      problem.goals = goals;
+      stop = stop_flag;
+      Answer answer;
+      std::visit(
+          [&](auto& method) {
+            if constexpr (!std::is_same_v<std::decay_t<decltype(method)>, std::monostate>)
+              static_cast<Outcome&>(answer) = method(start, target, nearest);
+          },
+          attempts);
+      answer.errors = robot.certifier->errors(problem, answer.q, memory);
+      bool within = true;
+      for (const TargetError& error : answer.errors) within = within && error.within(settings.tolerance);
+      if (within)
+        answer.status = Status::converged;
+      else if (answer.proof)
+        answer.status = Status::unreachable;
+      else if (answer.status == Status::converged)
+        answer.status = Status::stalled;
+      return answer;
+    }
+  };
+
+  const std::shared_ptr<const Robot> robot_;
+  const Problem problem_;
+  const Settings settings_;
+  std::mutex mutex_;
+  std::vector<std::unique_ptr<Worker>> idle_;
+
+  std::unique_ptr<Worker> borrow() {
+    {
+      const std::lock_guard<std::mutex> lock(mutex_);
+      if (!idle_.empty()) {
+        std::unique_ptr<Worker> worker = std::move(idle_.back());
+        idle_.pop_back();
+        return worker;
+      }
+    }
+    return std::make_unique<Worker>(*robot_, problem_, settings_);
+  }
+
+  void give_back(std::unique_ptr<Worker> worker) {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    idle_.push_back(std::move(worker));
+  }
+};
+
+}  // namespace pinik

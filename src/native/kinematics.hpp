@@ -1,0 +1,191 @@
+// Residual and Jacobian of a problem at one configuration, after pinik.target_term and pinik.kinematics.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "chain.hpp"
+
+namespace pinik {
+
+struct Tolerance {
+  double position = 1e-4, orientation = 1e-3;
+};
+
+// How far a target is missed; NaN for what it does not ask for.
+struct TargetError {
+  double position = std::nan(""), orientation = std::nan("");
+
+  bool within(const Tolerance& t) const {
+    return !(position > t.position) && !(orientation > t.orientation);
+  }
+};
+
+// The targets seen from one configuration; Rows is 3, 6 or Eigen::Dynamic.
+template <int Rows>
+struct Linearization {
+  Vector q;
+  Eigen::Matrix<double, Rows, 1> e;
+  Eigen::Matrix<double, Rows, Eigen::Dynamic> J;  // a column for each coordinate of the problem
+  std::vector<TargetError> errors;
+  double residual = 0.0;  // ‖e‖
+  double distance = 0.0;  // how far off in all [m], a radian counted as 0.3 m
+};
+
+constexpr double squared_metres_per_radian = 0.3 * 0.3;  // what orientation errors count in a distance
+
+// Forward kinematics and what follows from it; holds the working memory of one thread.
+template <int Rows>
+class Kinematics {
+ public:
+  const Problem& problem;
+  bool target_jacobian = false;  // take the Jacobian at the target instead of the effector (thesis, eq. 3.9)
+  std::vector<Placement> world;  // by joint, of the last forward()
+
+  explicit Kinematics(const Problem& problem) : problem(problem), world(problem.mechanism->joints.size()) {
+    if (Rows != Eigen::Dynamic && Chain::fits(problem)) chain_.emplace(problem);
+  }
+
+  void forward(const Vector& q) {
+    for (int j : problem.joints) {
+      const Joint& joint = problem.mechanism->joints[j];
+      world[j] = problem.mechanism->moved(world[joint.parent], joint, q.data());
+    }
+  }
+
+  Placement frame(const Term& term) const { return world[term.frame_joint] * term.frame; }
+
+  // The frame in the axes that the target's numbers are in.
+  Placement seen_from_reference(const Term& term) const {
+    const Placement at = frame(term);
+    if (!term.has_reference) return at;
+    const Placement reference = world[term.reference_joint] * term.reference;
+    return {reference.R.transpose() * at.R, reference.R.transpose() * (at.p - reference.p)};
+  }
+
+  // The goal in the world, at the configuration of the last forward().
+  Goal wanted(std::size_t index) const {
+    const Term& term = problem.terms[index];
+    const Goal& goal = problem.goals[index];
+    if (!term.has_reference) return goal;
+    const Placement at = world[term.reference_joint] * term.reference;
+    return {at.p + at.R * goal.position, at.R * goal.rotation, at.R * goal.direction, at.p + at.R * goal.at};
+  }
+
+  void linearize(Linearization<Rows>& at) {
+    const auto columns = static_cast<Eigen::Index>(problem.coordinates.size());
+    at.errors.resize(problem.terms.size());
+    if constexpr (Rows != Eigen::Dynamic) {
+      if (chain_) {
+        at.J.resize(Rows, columns);
+        linearize_chain(at);
+        return;
+      }
+    }
+    forward(at.q);
+    at.e.resize(problem.rows);
+    at.J.setZero(problem.rows, columns);
+    double distance = 0.0;
+    for (std::size_t t = 0; t < problem.terms.size(); ++t) distance += linearize_term(t, at);
+    at.residual = at.e.norm();
+    at.distance = std::sqrt(distance);
+  }
+
+ private:
+  std::optional<Chain> chain_;
+
+  void linearize_chain(Linearization<Rows>& at) {
+    const Goal& goal = problem.goals.front();
+    const Placement frame = chain_->forward(at.q.data());
+    const Vec3 e = goal.position - frame.p;
+    at.e.template head<3>() = e;
+    const double squared = e.squaredNorm();
+    TargetError& error = at.errors.front();
+    error.position = std::sqrt(squared);
+    double turned = 0.0;
+    if constexpr (Rows == 6) {
+      at.e.template tail<3>() = log3(goal.rotation * frame.R.transpose(), error.orientation);
+      turned = error.orientation * error.orientation;
+    }
+    at.residual = std::sqrt(squared + turned);
+    at.distance = std::sqrt(squared + squared_metres_per_radian * turned);
+    chain_->jacobian(target_jacobian ? goal.position : frame.p, at.J);
+  }
+
+  // Write one term's rows; its squared, weighted share in the distance.
+  double linearize_term(std::size_t index, Linearization<Rows>& at) const {
+    const Term& term = problem.terms[index];
+    const Placement frame = this->frame(term);
+    const Goal goal = wanted(index);
+    TargetError& error = at.errors[index];
+    error = TargetError();
+    double own = 0.0;
+    int row = term.row;
+    if (term.asks_position) {
+      const Vec3 e = goal.position - frame.p;
+      at.e.template segment<3>(row) = term.weight * e;
+      error.position = e.norm();
+      own += error.position * error.position;
+      const Vec3 point = target_jacobian ? goal.position : frame.p;
+      for (const Part& part : problem.parts[index]) {
+        auto column = at.J.template block<3, 1>(row, part.coordinate);
+        if (part.moves_frame) column += term.weight * velocity(part, point);
+        if (part.moves_reference) column -= term.weight * velocity(part, goal.position);
+      }
+      row += 3;
+    }
+    if (term.asks_orientation()) {
+      at.e.template segment<3>(row) = term.weight * orientation(index, term, frame, goal, row, at, error.orientation);
+      own += squared_metres_per_radian * error.orientation * error.orientation;
+    }
+    return term.weight * term.weight * own;
+  }
+
+  Vec3 orientation(std::size_t index, const Term& term, const Placement& frame, const Goal& goal, int row,
+                   Linearization<Rows>& at, double& angle) const {
+    const std::vector<Part>& parts = problem.parts[index];
+    auto column = [&](const Part& part) { return at.J.template block<3, 1>(row, part.coordinate); };
+    if (term.asks_rotation) {
+      for (const Part& part : parts)
+        if (!part.slides && part.moves_frame != part.moves_reference)
+          column(part) += (part.moves_frame ? term.weight : -term.weight) * turn(part);
+      return log3(goal.rotation * frame.R.transpose(), angle);
+    }
+    const Vec3 axis = frame.R * term.axis;
+    if (!term.asks_at) {
+      for (const Part& part : parts)
+        if (!part.slides && part.moves_frame != part.moves_reference)
+          column(part) += (part.moves_frame ? term.weight : -term.weight) * across(axis, turn(part));
+      return shortest_rotation(axis, goal.direction, angle);
+    }
+    const Vec3 line = goal.at - frame.p;
+    const double distance = line.norm();
+    angle = 0.0;
+    if (distance < no_direction) return Vec3::Zero();
+    const Vec3 direction = line / distance;
+    for (const Part& part : parts) {
+      Vec3 turning = Vec3::Zero(), shift = Vec3::Zero();
+      if (part.moves_frame) {
+        if (!part.slides) turning = across(axis, turn(part));
+        shift = velocity(part, frame.p);
+      }
+      if (part.moves_reference) shift -= velocity(part, goal.at);
+      column(part) += term.weight * (turning + direction.cross(shift) / distance);
+    }
+    return shortest_rotation(axis, direction, angle);
+  }
+
+  static Vec3 across(const Vec3& axis, const Vec3& vector) { return vector - axis * axis.dot(vector); }
+
+  // How fast a hinge's coordinate turns what it carries.
+  Vec3 turn(const Part& part) const { return part.multiplier * world[part.joint].R.col(part.axis); }
+
+  // How fast a coordinate moves a point that it carries.
+  Vec3 velocity(const Part& part, const Vec3& point) const {
+    const Placement& joint = world[part.joint];
+    const Vec3 axis = part.multiplier * joint.R.col(part.axis);
+    return part.slides ? axis : Vec3(axis.cross(point - joint.p));
+  }
+};
+
+}  // namespace pinik

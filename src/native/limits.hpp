@@ -1,0 +1,63 @@
+// Joint limits as a box in which configurations are kept, after pinik.limits.
+#pragma once
+
+#include "problem.hpp"
+
+namespace pinik {
+
+struct Limits {
+  bool enabled = true;
+  Vector lower, upper;         // of the entries of q; infinite where there are none
+  std::vector<char> turning;   // which entries are hinge angles, equal when whole turns apart
+
+  static Limits of(const Mechanism& mechanism, bool enabled) {
+    Limits limits;
+    limits.enabled = enabled;
+    limits.lower = Vector::Constant(mechanism.nq, -infinity);
+    limits.upper = Vector::Constant(mechanism.nq, infinity);
+    limits.turning.assign(static_cast<std::size_t>(mechanism.nq), 0);
+    for (const Joint& joint : mechanism.joints)
+      if (joint.nq == 1) {
+        limits.turning[static_cast<std::size_t>(joint.idx_q)] = !joint.slides() && !joint.shared;
+        if (enabled) {
+          limits.lower[joint.idx_q] = joint.lower;
+          limits.upper[joint.idx_q] = joint.upper;
+        }
+      }
+    return limits;
+  }
+
+  // Without the limits, but for those that leave a joint only one value.
+  Limits loosened() const {
+    Limits loose = *this;
+    loose.enabled = false;
+    for (Eigen::Index i = 0; i < lower.size(); ++i)
+      if (lower[i] != upper[i]) {
+        loose.lower[i] = -infinity;
+        loose.upper[i] = infinity;
+      } else {
+        loose.enabled = true;
+      }
+    return loose;
+  }
+
+  void clip(Vector& q) const {
+    if (enabled) q = q.cwiseMax(lower).cwiseMin(upper);
+  }
+
+  bool contains(const Vector& q) const {
+    return !enabled || ((q.array() >= lower.array()) && (q.array() <= upper.array())).all();
+  }
+
+  // Turn hinge angles that lie outside by whole turns, as near to their limits as they get.
+  void wrap(Vector& q) const {
+    if (!enabled) return;
+    for (Eigen::Index i = 0; i < q.size(); ++i)
+      if (turning[static_cast<std::size_t>(i)] && (q[i] < lower[i] || q[i] > upper[i])) {
+        const double middle = 0.5 * (lower[i] + upper[i]);
+        q[i] -= 2.0 * M_PI * std::nearbyint((q[i] - middle) / (2.0 * M_PI));
+      }
+  }
+};
+
+}  // namespace pinik

@@ -1,0 +1,104 @@
+// A robot's joints, made ready for fast forward kinematics.
+#pragma once
+
+#include <vector>
+
+#include "spatial.hpp"
+
+namespace pinik {
+
+enum class JointKind { revolute, continuous, prismatic, floating, planar };
+
+// One movable joint as pinik.Joint describes it; index 0 of a mechanism's joints is the world.
+struct Joint {
+  JointKind kind = JointKind::revolute;
+  int parent = 0;
+  Placement placement;         // in the parent joint, both turned so that their lines are their z axes
+  Mat3 to_line = Mat3::Identity();  // what turns z onto the joint's own axis
+  int idx_q = 0, nq = 0;       // a follower has no entries of its own: nq = 0 and its leader's idx_q
+  int idx_v = 0, nv = 0;
+  bool follows = false;
+  double multiplier = 1.0, offset = 0.0;
+  double lower = 0.0, upper = 0.0;  // [rad or m], a leader's cut by its followers'; infinite where there are none
+  bool shared = false;              // whether others follow it
+
+  bool has_one_axis() const { return kind != JointKind::floating && kind != JointKind::planar; }
+  bool slides() const { return kind == JointKind::prismatic; }
+};
+
+// The entries of a floating or planar joint moved by a tangent step, in place.
+void integrate_free(JointKind kind, double* own, const double* step);
+
+// A robot: its joints in the order of Pinocchio's model.
+class Mechanism {
+ public:
+  std::vector<Joint> joints{Joint()};  // the world
+  int nq = 0, nv = 0;
+
+  // Where a joint with these values is, its parent being at `parent`.
+  Placement moved(const Placement& parent, const Joint& joint, const double* q) const {
+    Placement at = parent * joint.placement;
+    const double* own = q + joint.idx_q;
+    switch (joint.kind) {
+      case JointKind::prismatic:
+        at.p += at.R.col(2) * (joint.multiplier * own[0] + joint.offset);
+        break;
+      case JointKind::floating: {
+        const Eigen::Map<const Eigen::Quaterniond> turn(own + 3);
+        at = at * Placement{turn.toRotationMatrix(), Vec3(own[0], own[1], own[2])};
+        break;
+      }
+      case JointKind::planar:
+        at.p += at.R.col(0) * own[0] + at.R.col(1) * own[1];
+        turn_about_z(at.R, own[2], own[3]);
+        break;
+      default:
+        if (joint.nq == 2) {
+          turn_about_z(at.R, own[0], own[1]);
+        } else {
+          const double angle = joint.multiplier * own[0] + joint.offset;
+          turn_about_z(at.R, std::cos(angle), std::sin(angle));
+        }
+    }
+    return at;
+  }
+
+  // q moved by a tangent step of one joint, in place; `step` points at the joint's own entries.
+  void integrate(const Joint& joint, double* q, const double* step) const {
+    double* own = q + joint.idx_q;
+    if (joint.nq == 1) {
+      own[0] += step[0];
+    } else if (joint.nq == 2) {
+      const double c = std::cos(step[0]), s = std::sin(step[0]);
+      const double x = c * own[0] - s * own[1], y = s * own[0] + c * own[1];
+      const double scale = 0.5 * (3.0 - x * x - y * y);  // one Newton step towards unit length
+      own[0] = scale * x;
+      own[1] = scale * y;
+    } else {
+      integrate_free(joint.kind, own, step);
+    }
+  }
+
+  // Whether all numbers are finite, and (cos, sin) pairs and quaternions of unit length.
+  bool is_configuration(const double* q) const {
+    constexpr double largest_error = 1e-3;
+    for (int i = 0; i < nq; ++i)
+      if (!std::isfinite(q[i])) return false;
+    for (const Joint& joint : joints) {
+      const int circle = joint.kind == JointKind::floating ? 4 : joint.nq == 2 || joint.nq == 4 ? 2 : 0;
+      double squared = 0.0;
+      for (int i = joint.nq - circle; i < joint.nq; ++i) squared += q[joint.idx_q + i] * q[joint.idx_q + i];
+      if (circle > 0 && std::abs(squared - 1.0) > largest_error) return false;
+    }
+    return true;
+  }
+
+ private:
+  static void turn_about_z(Mat3& R, double c, double s) {
+    const Vec3 x = R.col(0), y = R.col(1);
+    R.col(0) = c * x + s * y;
+    R.col(1) = c * y - s * x;
+  }
+};
+
+}  // namespace pinik

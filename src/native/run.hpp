@@ -1,0 +1,95 @@
+// One run of one method from one start, after pinik.run: the loop.
+#pragma once
+
+#include "stepping.hpp"
+
+namespace pinik {
+
+// Why a run ended, numbered as the members of pinik.Status; `running` where it has not.
+enum class Status { converged, stalled, max_iterations, time_limit, unreachable, running };
+
+struct State {
+  Vector q;
+  long iteration = 0, joint_updates = 0;
+  std::vector<TargetError> errors;
+  double residual = infinity;
+  int attempt = 0;
+  Status status = Status::running;
+};
+
+struct RunSettings {
+  long max_iterations = 100;
+  Tolerance tolerance;
+  Patience patience;
+  bool judge_limits_at_end = false, downhill = false;
+  int attempt = 0;
+};
+
+template <int Rows>
+class Run {
+ public:
+  Run(const Solver& solver, Kinematics<Rows>& kinematics)
+      : solver_(solver), kinematics_(kinematics), stepping_(solver, kinematics) {}
+
+  // Run from `start`, which is inside the limits. `see(at, iteration, updates, status)` is called with every state,
+  // the start's too, and says whether to go on.
+  template <class See>
+  void operator()(const Vector& start, const Limits& limits, const Limits& loose, const RunSettings& settings, See see) {
+    const bool free = settings.judge_limits_at_end && limits.enabled && !solver_.sweeps();
+    const Limits* box = free ? &loose : &limits;
+    at_.q = start;
+    kinematics_.linearize(at_);
+    double milestone = at_.residual, scale = 1.0;
+    long since = 0, iteration = 0, updates = 0;
+    for (;;) {
+      bool reached = all_within(settings.tolerance);
+      if (reached && !limits.contains(at_.q)) {  // only a run that steps freely gets there
+        box = &limits;
+        limits.wrap(at_.q);
+        limits.clip(at_.q);
+        kinematics_.linearize(at_);
+        milestone = at_.residual;
+        since = 0;
+        reached = all_within(settings.tolerance);
+      }
+      if (at_.residual < milestone * (1.0 - settings.patience.progress)) {
+        milestone = at_.residual;
+        since = 0;
+      }
+      Status status = Status::running;
+      if (reached)
+        status = Status::converged;
+      else if (since >= settings.patience.iterations)
+        status = Status::stalled;
+      else if (iteration >= settings.max_iterations)
+        status = Status::max_iterations;
+      if (!see(at_, iteration, updates, status) || status != Status::running) return;
+      updates += stepping_.advance(at_, *box, settings.tolerance, scale, next_.q);
+      kinematics_.linearize(next_);
+      if (!settings.downhill || solver_.sweeps()) {
+        std::swap(at_, next_);
+      } else if (next_.residual < at_.residual) {
+        std::swap(at_, next_);
+        scale = std::min(2.0 * scale, 1.0);
+      } else {
+        scale /= 4.0;
+      }
+      ++iteration;
+      ++since;
+    }
+  }
+
+ private:
+  const Solver& solver_;
+  Kinematics<Rows>& kinematics_;
+  Stepping<Rows> stepping_;
+  Linearization<Rows> at_, next_;
+
+  bool all_within(const Tolerance& tolerance) const {
+    for (const TargetError& error : at_.errors)
+      if (!error.within(tolerance)) return false;
+    return true;
+  }
+};
+
+}  // namespace pinik

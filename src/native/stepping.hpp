@@ -1,0 +1,105 @@
+// One step of any method: clamped, scaled, and along the limits where it meets them; after pinik.stepping.
+#pragma once
+
+#include "sweep.hpp"
+
+namespace pinik {
+
+template <int Rows>
+class Stepping {
+ public:
+  Stepping(const Solver& solver, Kinematics<Rows>& kinematics)
+      : solver_(solver), kinematics_(kinematics), directions_(solver, kinematics.problem), sweep_(solver, kinematics) {}
+
+  // The configuration after the next step from `at` into `q`; how many joints were updated one by one.
+  int advance(const Linearization<Rows>& from, const Limits& limits, const Tolerance& tolerance, double scale, Vector& q) {
+    if (solver_.sweeps()) {
+      q = from.q;
+      const int updates = sweep_(q, limits, tolerance);
+      if (!q.allFinite()) q = from.q;
+      limits.clip(q);
+      return updates;
+    }
+    const Linearization<Rows>* at = &from;
+    if (solver_.max_residual < infinity) {
+      shortened_ = from;
+      shorten(shortened_.e);
+      at = &shortened_;
+    }
+    held_.assign(kinematics_.problem.coordinates.size(), 0);
+    step(*at, scale, q);
+    if (!limits.enabled) return 0;
+    inside_ = q;
+    limits.clip(inside_);
+    if (inside_ != q) along_limits(*at, limits, scale, q);
+    return 0;
+  }
+
+ private:
+  const Solver& solver_;
+  Kinematics<Rows>& kinematics_;
+  Directions<Rows> directions_;
+  Sweep<Rows> sweep_;
+  Linearization<Rows> shortened_, free_;
+  std::vector<char> held_;
+  Vector dq_, inside_;
+
+  void step(const Linearization<Rows>& at, double scale, Vector& q) {
+    const Problem& problem = kinematics_.problem;
+    directions_.step(at, held_, dq_);
+    for (std::size_t c = 0; c < held_.size(); ++c)
+      if (held_[c]) dq_[static_cast<Eigen::Index>(c)] = 0.0;
+    q = at.q;
+    const double length = dq_.norm();
+    if (!std::isfinite(length)) return;  // no step: the loop will say that it stalled
+    if (length > solver_.max_step) {
+      const double largest = dq_.cwiseAbs().maxCoeff();
+      if (largest > solver_.max_step) dq_ *= solver_.max_step / largest;
+    }
+    dq_ *= scale * solver_.step_size;
+    if (problem.is_plain) {
+      for (std::size_t c = 0; c < held_.size(); ++c) q[problem.coordinates[c].entry] += dq_[static_cast<Eigen::Index>(c)];
+      return;
+    }
+    for (const MovingJoint& moving : problem.moving) {
+      const Joint& joint = problem.mechanism->joints[static_cast<std::size_t>(moving.joint)];
+      double own[6];
+      for (int i = 0; i < joint.nv; ++i) own[i] = moving.coordinates[i] < 0 ? 0.0 : dq_[moving.coordinates[i]];
+      problem.mechanism->integrate(joint, q.data(), own);
+    }
+  }
+
+  // The step again, after the first try `q` left the limits: joints that sat at a limit already and would go further
+  // out hold still and leave their part to the others, until none does; what is outside then is clipped.
+  void along_limits(const Linearization<Rows>& at, const Limits& limits, double scale, Vector& q) {
+    const Problem& problem = kinematics_.problem;
+    for (;;) {
+      inside_ = q;
+      limits.clip(inside_);
+      bool pushes = false;
+      for (std::size_t c = 0; c < held_.size(); ++c) {
+        const int entry = problem.coordinates[c].entry;
+        if (entry < 0 || held_[c]) continue;
+        if (inside_[entry] != q[entry] && inside_[entry] == at.q[entry]) held_[c] = pushes = true;
+      }
+      if (!pushes) break;
+      free_ = at;
+      for (std::size_t c = 0; c < held_.size(); ++c)
+        if (held_[c]) free_.J.col(static_cast<Eigen::Index>(c)).setZero();
+      step(free_, scale, q);
+    }
+    q = inside_;
+  }
+
+  // Cut each position part to D_max, its direction kept: ClampMag of the thesis.
+  void shorten(Eigen::Matrix<double, Rows, 1>& e) const {
+    for (const Term& term : kinematics_.problem.terms)
+      if (term.asks_position) {
+        auto part = e.template segment<3>(term.row);
+        const double length = part.norm() / term.weight;
+        if (length > solver_.max_residual) part *= solver_.max_residual / length;
+      }
+  }
+};
+
+}  // namespace pinik

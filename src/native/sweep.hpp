@@ -1,0 +1,177 @@
+// Cyclic coordinate descent: one pass over the joints, after pinik.solvers.ccd.
+#pragma once
+
+#include "chaser.hpp"
+#include "limits.hpp"
+#include "solver.hpp"
+
+namespace pinik {
+
+template <int Rows>
+class Sweep {
+ public:
+  Sweep(const Solver& solver, Kinematics<Rows>& kinematics) : solver_(solver), kinematics_(kinematics) {}
+
+  // One pass from the distal joints to the base, in place; how many joints were updated.
+  int operator()(Vector& q, const Limits& limits, const Tolerance& tolerance) {
+    const Problem& problem = kinematics_.problem;
+    look(q);
+    int updates = 0;
+    for (std::size_t c = 0; c < problem.coordinates.size(); ++c) {
+      const Coordinate& coordinate = problem.coordinates[c];
+      if (all_within(tolerance)) break;
+      ++updates;
+      const double part = solver_.stiffness.empty() ? 1.0 : solver_.stiffness[c];
+      if (coordinate.movers.size() > 1) {
+        advance(coordinate, downhill_change(c, q, limits, part), q, limits);
+        look(q);
+        continue;
+      }
+      const int mover = coordinate.movers.front().joint;
+      const Placement& joint = kinematics_.world[static_cast<std::size_t>(mover)];
+      const Vec3 axis = joint.R.col(problem.axis_of(mover, coordinate.index)), origin = joint.p;
+      const double change = best_change(coordinate, axis, origin, q, limits, part * solver_.relaxation);
+      advance(coordinate, change, q, limits);
+      if (problem.mechanism->joints[static_cast<std::size_t>(coordinate.joint)].nv == 1)
+        carry(coordinate, axis, origin, change);
+      else
+        look(q);  // the joint's other coordinates turned with it
+    }
+    return updates;
+  }
+
+ private:
+  static constexpr int halvings = 12;
+
+  const Solver& solver_;
+  Kinematics<Rows>& kinematics_;
+  std::vector<Chaser> chasers_;
+  Linearization<Rows> at_;
+
+  void look(const Vector& q) {
+    kinematics_.forward(q);
+    const double size = kinematics_.problem.size_of_chain;
+    const double alpha = solver_.position_weight / (solver_.printed_scaling ? size : size * size);
+    chasers_.clear();
+    for (std::size_t t = 0; t < kinematics_.problem.terms.size(); ++t)
+      chasers_.emplace_back(kinematics_, t, alpha, solver_.max_residual);
+  }
+
+  bool all_within(const Tolerance& tolerance) const {
+    for (const Chaser& chaser : chasers_)
+      if (!chaser.within(tolerance)) return false;
+    return true;
+  }
+
+  // How far a coordinate may change, downwards and upwards.
+  static std::pair<double, double> room(const Coordinate& coordinate, const Vector& q, const Limits& limits) {
+    if (coordinate.entry < 0 || !limits.enabled) return {-infinity, infinity};
+    const double value = q[coordinate.entry];
+    return {std::min(limits.lower[coordinate.entry] - value, 0.0), std::max(limits.upper[coordinate.entry] - value, 0.0)};
+  }
+
+  void advance(const Coordinate& coordinate, double change, Vector& q, const Limits& limits) const {
+    const Mechanism& mechanism = *kinematics_.problem.mechanism;
+    const Joint& joint = mechanism.joints[static_cast<std::size_t>(coordinate.joint)];
+    double step[6] = {};
+    step[coordinate.index] = change;
+    mechanism.integrate(joint, q.data(), step);
+    if (joint.nq == 1 && limits.enabled)
+      q[joint.idx_q] = std::min(std::max(q[joint.idx_q], limits.lower[joint.idx_q]), limits.upper[joint.idx_q]);
+  }
+
+  // The exact solution of the coordinate's own problem, scaled, inside its room.
+  double best_change(const Coordinate& coordinate, const Vec3& axis, const Vec3& origin, const Vector& q,
+                     const Limits& limits, double scale) const {
+    const auto [mover, multiplier] = coordinate.movers.front();
+    auto [low, high] = room(coordinate, q, limits);
+    if (multiplier != 1.0) {
+      low *= multiplier;
+      high *= multiplier;
+      if (low > high) std::swap(low, high);
+    }
+    double change;
+    if (coordinate.slides) {
+      change = std::min(std::max(best_slide(mover, axis, origin), low), high);
+    } else {
+      Mat3 M = Mat3::Zero();
+      for (const Chaser& chaser : chasers_)
+        if (chaser.moved_by(mover)) M += chaser.correlation(mover, origin);
+      change = best_turn(M, axis, low, high, scale < 1.0 || solver_.max_step < M_PI);
+      // The long way round to a goal has none of its own to overshoot into.
+      if (scale > 1.0 && std::abs(change) > M_PI) scale = 1.0;
+    }
+    change = std::min(std::max(scale * change, low), high) / multiplier;
+    return std::min(std::max(change, -solver_.max_step), solver_.max_step);
+  }
+
+  // Σ w (d − c)·a / Σ w over the pairs that the joint changes; Welman's eq. 4.24 for one.
+  double best_slide(int joint, const Vec3& axis, const Vec3& origin) const {
+    double pull = 0.0, weight = 0.0;
+    for (const Chaser& chaser : chasers_) {
+      if (!chaser.moved_by(joint)) continue;
+      const double sign = chaser.moves_frame(joint) ? 1.0 : -1.0;
+      chaser.for_each_pair(origin, [&](const Vec3& c, const Vec3& d, double w) {
+        pull += sign * chaser.weight * w * (d - c).dot(axis);
+        weight += chaser.weight * w;
+      });
+    }
+    return weight > 0.0 ? pull / weight : 0.0;
+  }
+
+  // The φ in [low, high] that maximises g (Welman's eq. 4.19) for M = Σ w c dᵀ.
+  static double best_turn(const Mat3& M, const Vec3& axis, double low, double high, bool shortest) {
+    const double k1 = axis.dot(M * axis), k2 = M.trace();
+    const double k3 = axis.dot(Vec3(M(1, 2) - M(2, 1), M(2, 0) - M(0, 2), M(0, 1) - M(1, 0)));
+    constexpr double indifferent = 1e-14;  // a turn that changes g by less than rounding is none
+    if (std::hypot(k3, k2 - k1) <= indifferent * (std::abs(k1) + std::abs(k2) + std::abs(k3))) return 0.0;
+    const double best = std::atan2(k3, k2 - k1);
+    if (low <= best && best <= high) return best;
+    if (shortest) return std::min(std::max(best, low), high);
+    for (double other : {best - 2.0 * M_PI, best + 2.0 * M_PI})
+      if (low <= other && other <= high) return other;
+    double chosen = 0.0, most = -infinity;
+    for (double end : {low, 0.0, high})
+      if (std::isfinite(end) && std::cos(end - best) > most) {
+        most = std::cos(end - best);
+        chosen = end;
+      }
+    return chosen;
+  }
+
+  void carry(const Coordinate& coordinate, const Vec3& axis, const Vec3& origin, double change) {
+    const auto [mover, multiplier] = coordinate.movers.front();
+    const double amount = change * multiplier;
+    if (coordinate.slides) {
+      for (Chaser& chaser : chasers_) chaser.carry(mover, origin, nullptr, axis * amount);
+    } else {
+      const Mat3 R = rotation_about(axis, amount);
+      for (Chaser& chaser : chasers_) chaser.carry(mover, origin, &R, Vec3::Zero());
+    }
+  }
+
+  // A change that lowers the residual, for a leader whose followers move the targets as well: it turns about several
+  // lines at once and has no closed form, so a Gauss-Newton step along its column is halved until the residual falls.
+  double downhill_change(std::size_t c, const Vector& q, const Limits& limits, double part) {
+    const Coordinate& coordinate = kinematics_.problem.coordinates[c];
+    at_.q = q;
+    kinematics_.linearize(at_);
+    const auto column = at_.J.col(static_cast<Eigen::Index>(c));
+    const double squared = column.squaredNorm();
+    if (squared == 0.0) return 0.0;
+    const auto [low, high] = room(coordinate, q, limits);
+    const double wanted = part * column.dot(at_.e) / squared;
+    double change = std::min({std::max({wanted, low, -solver_.max_step}), high, solver_.max_step});
+    const double before = at_.e.squaredNorm();
+    for (int k = 0; k < halvings; ++k) {
+      at_.q = q;
+      advance(coordinate, change, at_.q, limits);
+      kinematics_.linearize(at_);
+      if (at_.e.squaredNorm() < before) return change;
+      change /= 2.0;
+    }
+    return 0.0;
+  }
+};
+
+}  // namespace pinik

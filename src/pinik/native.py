@@ -1,0 +1,261 @@
+"""The bridge to the compiled engine, and why it is not there when it is not."""
+
+from __future__ import annotations
+
+import functools
+import math
+from typing import Any
+
+import numpy as np
+import pinocchio
+from numpy.typing import NDArray
+
+from .attempts import Settings
+from .kinematics import Kinematics
+from .limits import Limits
+from .reach import Shortfall, reach_bounds
+from .robot import Robot
+from .solvers import CCD, DampedLeastSquares, JacobianTranspose, PseudoInverse, Solver
+from .state import State, Status
+from .targets import Target, TargetError
+
+__all__ = ["Answer", "attempt_all", "attempt_at", "make_engine", "why_not"]
+
+Array = NDArray[np.float64]
+
+_KINDS = ("revolute", "continuous", "prismatic", "floating", "planar")
+_METHODS: tuple[type[Solver], ...] = (CCD, JacobianTranspose, PseudoInverse, DampedLeastSquares)
+_RULES = ("constant", "residual", "sugihara", "manipulability")
+_STATUSES = tuple(Status)
+_IDENTITY = pinocchio.SE3.Identity()
+
+
+@functools.cache
+def _load() -> Any:
+    """The compiled module, or a sentence that says why there is none."""
+    try:
+        from . import _native
+    except ImportError as error:
+        return f"it was not built when pinik was installed, as no C++ compiler worked ({error})"
+    if _native.pinocchio_version != pinocchio.__version__:
+        return (
+            f"it was built against Pinocchio {_native.pinocchio_version}, and {pinocchio.__version__} is installed; "
+            "install pinik again"
+        )
+    return _native
+
+
+def why_not(solver: Solver | None = None) -> str | None:
+    """Why the compiled engine cannot be used (for this solver); None where it can."""
+    module = _load()
+    if isinstance(module, str):
+        return module
+    if solver is not None and type(solver) not in _METHODS:
+        return f"the method {solver.name!r} is written in Python"
+    return None
+
+
+def attempt_all(engine: Any, targets: tuple[Target, ...], start: Array, nearest: bool) -> Answer:
+    """What `attempts.attempt_all` does, by the compiled engine: `make_engine` made it."""
+    return Answer(engine.solve(start, _goals(targets), nearest))
+
+
+def attempt_at(engine: Any, place: object, start: object, nearest: bool) -> Answer | None:
+    """The same for one target at a 4×4 matrix or a position (3,); None where these are not beyond doubt."""
+    answer = engine.solve_at(place, start, nearest)
+    return None if answer is None else Answer(answer)
+
+
+class Answer:
+    """What the attempts came to, as `attempts.Outcome` tells it; made into Python's numbers when looked at."""
+
+    __slots__ = ("_answer",)
+
+    def __init__(self, answer: Any) -> None:
+        self._answer = answer
+
+    @property
+    def status(self) -> Status:
+        """The verdict."""
+        return _STATUSES[self._answer.status]
+
+    @property
+    def q(self) -> Array:
+        """A fresh copy of the best configuration (nq,)."""
+        return self._answer.q  # type: ignore[no-any-return]
+
+    @property
+    def errors(self) -> tuple[TargetError, ...]:
+        """Each target's error there."""
+        return _errors(self._answer.errors)
+
+    @property
+    def iterations(self) -> int:
+        """Of all attempts."""
+        return self._answer.iterations  # type: ignore[no-any-return]
+
+    @property
+    def joint_updates(self) -> int:
+        """Of all attempts."""
+        return self._answer.joint_updates  # type: ignore[no-any-return]
+
+    @property
+    def restarts(self) -> int:
+        """Attempts after the first."""
+        return self._answer.restarts  # type: ignore[no-any-return]
+
+    @property
+    def proof(self) -> Shortfall | None:
+        """Why a target is out of reach, where one is."""
+        proof = self._answer.proof
+        return None if proof is None else Shortfall(*proof)
+
+    @property
+    def states(self) -> tuple[State, ...]:
+        """Every state, where a trace is wanted."""
+        return tuple([_state(*state) for state in self._answer.states])
+
+
+def _errors(pairs: Any) -> tuple[TargetError, ...]:
+    return tuple([TargetError(position, orientation) for position, orientation in pairs])
+
+
+def _state(q: Array, iteration: int, updates: int, errors: Any, residual: float, attempt: int, status: int) -> State:
+    q.setflags(write=False)
+    ended = _STATUSES[status] if status < len(_STATUSES) else None
+    return State(q, iteration, updates, _errors(errors), residual, attempt, ended)
+
+
+def make_engine(settings: Settings) -> Any:
+    """The compiled engine for these settings; their start is not read."""
+    module = _load()
+    kinematics, limits = settings.kinematics, settings.limits
+    robot = _robot(kinematics.robot)
+    problem = _problem(robot, kinematics)
+    asked = module.Settings()
+    asked.solver = _solver(settings.solver, kinematics)
+    asked.patience = settings.solver.patience.iterations, settings.solver.patience.progress
+    asked.tolerance = tuple(settings.tolerance)
+    asked.limits = limits.enabled
+    asked.restarts = settings.restarts
+    asked.seed = settings.seed & 0xFFFFFFFFFFFFFFFF
+    asked.max_iterations = settings.max_iterations
+    asked.iterations_to_the_end = settings.iterations_to_the_end
+    asked.time_limit = settings.time_limit
+    asked.trace = settings.trace
+    return module.Engine(robot, problem, asked)
+
+
+def _robot(robot: Robot) -> Any:
+    """The robot as the engine knows it, made once."""
+    if "native" not in robot.kept:
+        robot.kept["native"] = _make_robot(robot)
+    return robot.kept["native"]
+
+
+def _make_robot(robot: Robot) -> Any:
+    native = _load().Robot()
+    leaders = {joint.leader for joint in robot.joints}
+    model = robot.model
+    for joint in robot.joints:
+        placement = model.jointPlacements[joint.id]
+        native.add_joint(
+            kind=_KINDS.index(joint.kind),
+            parent=model.parents[joint.id],
+            rotation=placement.rotation,
+            translation=placement.translation,
+            axis=np.array(joint.axis),
+            idx_q=joint.idx_q,
+            nq=joint.nq,
+            idx_v=joint.idx_v,
+            nv=joint.nv,
+            follows=joint.leader is not None,
+            multiplier=joint.multiplier,
+            offset=joint.offset,
+            lower=float(robot.lower_q[joint.idx_q]) if joint.nq == 1 else -math.inf,
+            upper=float(robot.upper_q[joint.idx_q]) if joint.nq == 1 else math.inf,
+            shared=joint.name in leaders,
+        )
+    native.finish()
+    return native
+
+
+def _problem(robot: Any, kinematics: Kinematics) -> Any:
+    problem = _load().Problem(robot)
+    free, limited = Limits.of(kinematics.robot, False), Limits.of(kinematics.robot)
+    for term in kinematics.terms:
+        target = term.target
+        bounds = [reach_bounds(term, kinematics.model, limits) for limits in (free, limited)]
+        base = next((b.base for b in bounds if b is not None), np.zeros(3))
+        reference = term.reference_placement or _IDENTITY
+        problem.add_term(
+            robot=robot,
+            frame_joint=term.frame_joint,
+            frame_rotation=term.frame_placement.rotation,
+            frame_translation=term.frame_placement.translation,
+            has_reference=term.reference_placement is not None,
+            reference_joint=term.reference_joint,
+            reference_rotation=reference.rotation,
+            reference_translation=reference.translation,
+            asks_position=target.position is not None,
+            asks_rotation=target.rotation is not None,
+            asks_axis=target.axis is not None,
+            asks_at=target.at is not None,
+            axis=np.array([1.0, 0.0, 0.0]) if target.axis is None else target.axis,
+            weight=term.weight,
+            has_bounds=any(b is not None for b in bounds),
+            base=base,
+            reach=[math.inf if b is None else b.reach for b in bounds],
+            hole=[0.0 if b is None else b.hole for b in bounds],
+        )
+    for coordinate in kinematics.coordinates:
+        joint = coordinate.joint
+        problem.add_coordinate(
+            joint=joint.id,
+            index=coordinate.index,
+            column=joint.idx_v + coordinate.index,
+            entry=joint.idx_q if joint.nq == 1 else -1,
+            movers=[(mover.id, multiplier) for mover, multiplier in coordinate.movers],
+        )
+    problem.finish(lightest=kinematics.lightest, size_of_chain=kinematics.size_of_chain)
+    return problem
+
+
+def _solver(solver: Solver, kinematics: Kinematics) -> Any:
+    native = _load().Solver()
+    native.method = _METHODS.index(type(solver))
+    native.max_step, native.max_residual = solver.max_step, solver.max_residual
+    if isinstance(solver, CCD):
+        stiffness = solver.stiffness
+        if stiffness:
+            native.stiffness = [stiffness.get(c.joint.name, 1.0) for c in kinematics.coordinates]
+        native.relaxation = solver.relaxation_for(kinematics)
+        native.position_weight = solver.position_weight
+        native.printed_scaling = solver.scaling == "printed"
+        return native
+    native.step_size, native.target_jacobian = solver.step_size, solver.target_jacobian  # type: ignore[attr-defined]
+    if isinstance(solver, JacobianTranspose):
+        native.alpha = solver.alpha or 0.0
+    elif isinstance(solver, PseudoInverse):
+        native.cutoff, native.rest_gain = solver.cutoff, solver.rest_gain
+        robot = kinematics.robot
+        native.rest_posture = [(robot.joint(name).id, angle) for name, angle in solver.rest_posture.items()]
+    elif isinstance(solver, DampedLeastSquares):
+        native.damping, native.manipulability = solver.damping, solver.manipulability
+        native.rule, native.by_svd = _RULES.index(solver.rule), solver.factorization == "svd"
+    return native
+
+
+def _goals(targets: tuple[Target, ...]) -> Array:
+    """What each target wants, as the engine reads it: position, rotation by rows, direction, at (n, 18)."""
+    goals = np.zeros((len(targets), 18))
+    for row, target in zip(goals, targets, strict=True):
+        if target.position is not None:
+            row[:3] = target.position
+        if target.rotation is not None:
+            row[3:12] = target.rotation.ravel()
+        if target.direction is not None:
+            row[12:15] = target.direction
+        if target.at is not None:
+            row[15:] = target.at
+    return goals
