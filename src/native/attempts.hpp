@@ -141,8 +141,8 @@ class Attempts {
     return drawn_;
   }
 
-  Status attempt(const Vector& start, Patience patience, long max_iterations, bool judge_limits_at_end, bool downhill) {
-    RunSettings run{max_iterations, settings_.tolerance, patience, judge_limits_at_end, downhill, outcome_.restarts};
+  Status attempt(const Vector& start, Patience patience, long max_iterations, bool bold, bool downhill) {
+    RunSettings run{max_iterations, settings_.tolerance, patience, bold, downhill, outcome_.restarts};
     Status ended = Status::running;
     long iterations = 0, updates = 0;
     run_(start, limits_, loose_, run, [&](const Linearization<Rows>& at, long iteration, long updated, Status status) {

@@ -126,13 +126,12 @@ std::optional<Goal> goal_from(const Term& term, nb::handle place) {
 }
 
 std::optional<Answer> solve_at(Engine& engine, nb::handle place, nb::handle start, bool nearest) {
-  const Mechanism& mechanism = engine.mechanism();
-  nb::ndarray<const double, nb::ndim<1>, nb::c_contig, nb::device::cpu> q;
-  if (engine.problem().terms.size() != 1 || !nb::try_cast(start, q, false)) return std::nullopt;
+  nb::ndarray<const double, nb::ndim<1>, nb::c_contig, nb::device::cpu> numbers;
+  if (engine.problem().terms.size() != 1 || !nb::try_cast(start, numbers, false)) return std::nullopt;
   const std::optional<Goal> goal = goal_from(engine.problem().terms.front(), place);
-  const auto size = static_cast<std::size_t>(mechanism.nq);
-  if (!goal || q.shape(0) != size || !mechanism.is_configuration(q.data())) return std::nullopt;
-  return solve(engine, Eigen::Map<const Vector>(q.data(), mechanism.nq), {*goal}, nearest);
+  Vector q = Eigen::Map<const Vector>(numbers.data(), static_cast<Eigen::Index>(numbers.shape(0)));
+  if (!goal || !engine.mechanism().normalize(q)) return std::nullopt;
+  return solve(engine, q, {*goal}, nearest);
 }
 
 template <class T>
@@ -300,12 +299,15 @@ NB_MODULE(_native, m) {
   nb::class_<Answer>(m, "Answer")
       .def_prop_ro("status", [](const Answer& a) { return static_cast<int>(a.status); })
       .def_prop_ro("q", [](const Answer& a) { return Vector(a.q); })
-      .def_prop_ro("errors", [](const Answer& a) { return as_tuple(a.errors); })
+      .def_prop_ro("errors", [](const Answer& a) { return as_tuple(a.errors); },
+                   nb::sig("def errors(self) -> tuple[tuple[float | None, float | None], ...]"))
       .def_ro("iterations", &Answer::iterations)
       .def_ro("joint_updates", &Answer::joint_updates)
       .def_ro("restarts", &Answer::restarts)
-      .def_prop_ro("proof", &proof_of)
-      .def_prop_ro("states", &states_of);
+      .def_prop_ro("proof", &proof_of, nb::sig("def proof(self) -> tuple[int, float, float, bool] | None"))
+      .def_prop_ro("states", &states_of,
+                   nb::sig("def states(self) -> tuple[tuple[NDArray[numpy.float64], int, int, "
+                           "tuple[tuple[float | None, float | None], ...], float, int, int], ...]"));
 
   nb::class_<Engine>(m, "Engine")
       .def("__init__",
@@ -318,5 +320,9 @@ NB_MODULE(_native, m) {
               bool nearest) { return solve(self, start, goals_from(goals.data(), goals.shape(0)), nearest); },
            "start"_a, "goals"_a, "nearest"_a)
       .def("solve_at", &solve_at, "place"_a, "start"_a, "nearest"_a)
-      .def("solve_many", &solve_many, "starts"_a, "goals"_a, "nearest"_a, "threads"_a);
+      .def("solve_many", &solve_many, "starts"_a, "goals"_a, "nearest"_a, "threads"_a,
+           nb::sig("def solve_many(self, starts: NDArray[numpy.float64], goals: NDArray[numpy.float64], "
+                   "nearest: bool, threads: int) -> tuple[NDArray[numpy.float64], NDArray[numpy.int32], "
+                   "NDArray[numpy.float64], NDArray[numpy.float64], NDArray[numpy.int64], NDArray[numpy.int64], "
+                   "NDArray[numpy.int64], NDArray[numpy.float64]]"));
 }

@@ -3,7 +3,7 @@
 
 #include <memory>
 
-#include "kinematics.hpp"
+#include "problem.hpp"
 
 namespace pinik {
 

@@ -1,9 +1,11 @@
 // The commonest question made fast: one frame, carried by a chain of one-axis joints that mimic nothing.
 #pragma once
 
+#include <cstring>
 #include <vector>
 
 #include "problem.hpp"
+#include "trigonometry.hpp"
 
 namespace pinik {
 
@@ -13,11 +15,17 @@ class Chain {
   explicit Chain(const Problem& problem) {
     for (int j : problem.joints) {
       const Joint& joint = problem.mechanism->joints[static_cast<std::size_t>(j)];
-      links_.push_back({joint.placement, joint.idx_q, joint.nq == 2, joint.slides(), -1, Vec3::Zero(), Vec3::Zero()});
+      Link link;
+      link.placement = joint.placement;
+      link.entry = joint.idx_q;
+      link.is_circle = joint.nq == 2;
+      link.slides = joint.slides();
       for (std::size_t c = 0; c < problem.coordinates.size(); ++c)
-        if (problem.coordinates[c].joint == j) links_.back().column = static_cast<int>(c);
+        if (problem.coordinates[c].joint == j) link.column = static_cast<int>(c);
+      links_.push_back(link);
     }
     tip_ = problem.terms.front().frame;
+    for (std::vector<double>* numbers : {&angles_, &sines_, &cosines_}) numbers->resize(links_.size() + 3);
   }
 
   // Whether a problem is of that kind.
@@ -36,32 +44,39 @@ class Chain {
 
   // Where the frame is with the values q; keeps the joints' lines for jacobian().
   Placement forward(const double* q) {
-    Vec3 x = Vec3::UnitX(), y = Vec3::UnitY(), z = Vec3::UnitZ(), p = Vec3::Zero();
-    for (Link& link : links_) {
+    const int count = static_cast<int>(links_.size());
+    for (int k = 0; k < count; ++k) angles_[k] = q[links_[k].entry];
+    sines_and_cosines(angles_.data(), count, sines_.data(), cosines_.data());
+    Column x{1.0, 0.0, 0.0}, y{0.0, 1.0, 0.0}, z{0.0, 0.0, 1.0}, p{};
+    for (int k = 0; k < count; ++k) {
+      Link& link = links_[k];
       const Mat3& R = link.placement.R;
       const Vec3& t = link.placement.p;
-      p += t[0] * x + t[1] * y + t[2] * z;
-      const Vec3 a = R(0, 0) * x + R(1, 0) * y + R(2, 0) * z;
-      const Vec3 b = R(0, 1) * x + R(1, 1) * y + R(2, 1) * z;
-      const Vec3 c = R(0, 2) * x + R(1, 2) * y + R(2, 2) * z;
-      z = c;
-      const double* own = q + link.entry;
+      double cosine = cosines_[k], sine = sines_[k], shift = 0.0;
       if (link.slides) {
-        x = a;
-        y = b;
-        p += own[0] * z;
-      } else {
-        const double cosine = link.is_circle ? own[0] : std::cos(own[0]);
-        const double sine = link.is_circle ? own[1] : std::sin(own[0]);
-        x = cosine * a + sine * b;
-        y = cosine * b - sine * a;
+        shift = angles_[k];
+        cosine = 1.0;
+        sine = 0.0;
+      } else if (link.is_circle) {
+        cosine = angles_[k];
+        sine = q[link.entry + 1];
       }
-      link.axis = z;
-      link.origin = p;
+      // The joint's own turn goes into its placement first, which leaves the shorter way from link to link.
+      const Vec3 a = cosine * R.col(0) + sine * R.col(1), b = cosine * R.col(1) - sine * R.col(0), c = R.col(2);
+      const Vec3 moved = t + shift * c;
+      p += x * moved[0] + y * moved[1] + z * moved[2];
+      const Column next_x = x * a[0] + y * a[1] + z * a[2];
+      const Column next_y = x * b[0] + y * b[1] + z * b[2];
+      z = x * c[0] + y * c[1] + z * c[2];
+      x = next_x;
+      y = next_y;
+      std::memcpy(link.axis, &z, sizeof z);
+      std::memcpy(link.origin, &p, sizeof p);
     }
+    p += x * tip_.p[0] + y * tip_.p[1] + z * tip_.p[2];
     Placement at;
-    at.p = p + tip_.p[0] * x + tip_.p[1] * y + tip_.p[2] * z;
-    for (int k = 0; k < 3; ++k) at.R.col(k) = tip_.R(0, k) * x + tip_.R(1, k) * y + tip_.R(2, k) * z;
+    at.p = as_vector(p);
+    for (int k = 0; k < 3; ++k) at.R.col(k) = as_vector(x * tip_.R(0, k) + y * tip_.R(1, k) + z * tip_.R(2, k));
     return at;
   }
 
@@ -71,30 +86,28 @@ class Chain {
     for (const Link& link : links_) {
       if (link.column < 0) continue;
       auto column = J.col(link.column);
-      if (link.slides)
-        column.template head<3>() = link.axis;
-      else
-        column.template head<3>() = link.axis.cross(point - link.origin);
-      if constexpr (Rows == 6) {
-        if (link.slides)
-          column.template tail<3>().setZero();
-        else
-          column.template tail<3>() = link.axis;
-      }
+      const Eigen::Map<const Vec3> axis(link.axis), origin(link.origin);
+      column.template head<3>() = link.slides ? Vec3(axis) : Vec3(axis.cross(point - origin));
+      if constexpr (Rows == 6) column.template tail<3>() = link.slides ? Vec3(Vec3::Zero()) : Vec3(axis);
     }
   }
 
  private:
+  using Column = double __attribute__((vector_size(32)));  // of a matrix with three rows
+
+  static Vec3 as_vector(const Column& column) { return {column[0], column[1], column[2]}; }
+
   struct Link {
     Placement placement;  // in the link before
-    int entry;            // of q
-    bool is_circle, slides;
-    int column;         // of the Jacobian; −1 for a joint that holds still
-    Vec3 axis, origin;  // in the world
+    int entry = 0;  // of q
+    bool is_circle = false, slides = false;
+    int column = -1;          // of the Jacobian; −1 for a joint that holds still
+    double axis[4] = {}, origin[4] = {};  // in the world; the fourth is nothing
   };
 
   std::vector<Link> links_;
   Placement tip_;
+  std::vector<double> angles_, sines_, cosines_;
 };
 
 }  // namespace pinik

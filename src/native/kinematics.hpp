@@ -5,21 +5,9 @@
 #include <vector>
 
 #include "chain.hpp"
+#include "fast.hpp"
 
 namespace pinik {
-
-struct Tolerance {
-  double position = 1e-4, orientation = 1e-3;
-};
-
-// How far a target is missed; NaN for what it does not ask for.
-struct TargetError {
-  double position = std::nan(""), orientation = std::nan("");
-
-  bool within(const Tolerance& t) const {
-    return !(position > t.position) && !(orientation > t.orientation);
-  }
-};
 
 // The targets seen from one configuration; Rows is 3, 6 or Eigen::Dynamic.
 template <int Rows>
@@ -33,6 +21,32 @@ struct Linearization {
 };
 
 constexpr double squared_metres_per_radian = 0.3 * 0.3;  // what orientation errors count in a distance
+
+template <int Rows>
+inline void see_chain(Chain& chain, const Goal& goal, bool at_target, Linearization<Rows>& at) {
+  const Placement frame = chain.forward(at.q.data());
+  const Vec3 e = goal.position - frame.p;
+  at.e.template head<3>() = e;
+  const double squared = e.squaredNorm();
+  TargetError& error = at.errors.front();
+  error.position = std::sqrt(squared);
+  double turned = 0.0;
+  if constexpr (Rows == 6) {
+    at.e.template tail<3>() = log3(goal.rotation * frame.R.transpose(), error.orientation);
+    turned = error.orientation * error.orientation;
+  }
+  at.residual = std::sqrt(squared + turned);
+  at.distance = std::sqrt(squared + squared_metres_per_radian * turned);
+  chain.jacobian(at_target ? goal.position : frame.p, at.J);
+}
+
+PINIK_FAST static void see(Chain& chain, const Goal& goal, bool at_target, Linearization<3>& at) {
+  see_chain(chain, goal, at_target, at);
+}
+
+PINIK_FAST static void see(Chain& chain, const Goal& goal, bool at_target, Linearization<6>& at) {
+  see_chain(chain, goal, at_target, at);
+}
 
 // Forward kinematics and what follows from it; holds the working memory of one thread.
 template <int Rows>
@@ -78,8 +92,7 @@ class Kinematics {
     if constexpr (Rows != Eigen::Dynamic) {
       if (chain_) {
         at.J.resize(Rows, columns);
-        linearize_chain(at);
-        return;
+        return see(*chain_, problem.goals.front(), target_jacobian, at);
       }
     }
     forward(at.q);
@@ -93,24 +106,6 @@ class Kinematics {
 
  private:
   std::optional<Chain> chain_;
-
-  void linearize_chain(Linearization<Rows>& at) {
-    const Goal& goal = problem.goals.front();
-    const Placement frame = chain_->forward(at.q.data());
-    const Vec3 e = goal.position - frame.p;
-    at.e.template head<3>() = e;
-    const double squared = e.squaredNorm();
-    TargetError& error = at.errors.front();
-    error.position = std::sqrt(squared);
-    double turned = 0.0;
-    if constexpr (Rows == 6) {
-      at.e.template tail<3>() = log3(goal.rotation * frame.R.transpose(), error.orientation);
-      turned = error.orientation * error.orientation;
-    }
-    at.residual = std::sqrt(squared + turned);
-    at.distance = std::sqrt(squared + squared_metres_per_radian * turned);
-    chain_->jacobian(target_jacobian ? goal.position : frame.p, at.J);
-  }
 
   // Write one term's rows; its squared, weighted share in the distance.
   double linearize_term(std::size_t index, Linearization<Rows>& at) const {

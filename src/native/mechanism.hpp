@@ -79,16 +79,17 @@ class Mechanism {
     }
   }
 
-  // Whether all numbers are finite, and (cos, sin) pairs and quaternions of unit length.
-  bool is_configuration(const double* q) const {
+  // Scale (cos, sin) pairs and quaternions to unit length; false where they are far from it, or a number is not finite.
+  bool normalize(Vector& q) const {
     constexpr double largest_error = 1e-3;
-    for (int i = 0; i < nq; ++i)
-      if (!std::isfinite(q[i])) return false;
+    if (q.size() != nq || !q.allFinite()) return false;
     for (const Joint& joint : joints) {
-      const int circle = joint.kind == JointKind::floating ? 4 : joint.nq == 2 || joint.nq == 4 ? 2 : 0;
-      double squared = 0.0;
-      for (int i = joint.nq - circle; i < joint.nq; ++i) squared += q[joint.idx_q + i] * q[joint.idx_q + i];
-      if (circle > 0 && std::abs(squared - 1.0) > largest_error) return false;
+      const int size = joint.kind == JointKind::floating ? 4 : joint.kind == JointKind::planar || joint.nq == 2 ? 2 : 0;
+      if (size == 0) continue;
+      auto circle = q.segment(joint.idx_q + joint.nq - size, size);
+      const double squared = circle.squaredNorm();
+      if (std::abs(squared - 1.0) > largest_error) return false;
+      circle /= std::sqrt(squared);
     }
     return true;
   }

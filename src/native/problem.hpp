@@ -11,6 +11,19 @@ namespace pinik {
 constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr double no_direction = 1e-9;  // [m] nearer than this to the point that it looks at, a frame looks at it
 
+struct Tolerance {
+  double position = 1e-4, orientation = 1e-3;
+};
+
+// How far a target is missed; NaN for what it does not ask for.
+struct TargetError {
+  double position = std::nan(""), orientation = std::nan("");
+
+  bool within(const Tolerance& t) const {
+    return !(position > t.position) && !(orientation > t.orientation);
+  }
+};
+
 // Where one target wants its frame; what it does not ask for is not read. In the reference's axes, where there is one.
 struct Goal {
   Vec3 position = Vec3::Zero();

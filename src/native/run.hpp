@@ -21,9 +21,12 @@ struct RunSettings {
   long max_iterations = 100;
   Tolerance tolerance;
   Patience patience;
-  bool judge_limits_at_end = false, downhill = false;
+  bool bold = false, downhill = false;
   int attempt = 0;
 };
+
+// What a bold run's damping goes by, of the distance.
+inline const double of_the_distance = std::sqrt(0.1);
 
 template <int Rows>
 class Run {
@@ -35,8 +38,8 @@ class Run {
   // the start's too, and says whether to go on.
   template <class See>
   void operator()(const Vector& start, const Limits& limits, const Limits& loose, const RunSettings& settings, See see) {
-    const bool free = settings.judge_limits_at_end && limits.enabled && !solver_.sweeps();
-    const Limits* box = free ? &loose : &limits;
+    const bool bold = settings.bold && !solver_.sweeps();
+    const Limits* box = bold && limits.enabled ? &loose : &limits;
     at_.q = start;
     kinematics_.linearize(at_);
     double milestone = at_.residual, scale = 1.0;
@@ -64,6 +67,7 @@ class Run {
       else if (iteration >= settings.max_iterations)
         status = Status::max_iterations;
       if (!see(at_, iteration, updates, status) || status != Status::running) return;
+      if (bold) at_.distance *= of_the_distance;
       updates += stepping_.advance(at_, *box, settings.tolerance, scale, next_.q);
       kinematics_.linearize(next_);
       if (!settings.downhill || solver_.sweeps()) {

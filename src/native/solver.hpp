@@ -73,6 +73,63 @@ Eigen::Matrix<double, Rows, 1> solve_definite(Eigen::Matrix<double, Rows, Rows>&
   }
 }
 
+// JJᵀ, its lower triangle.
+inline void square(const Eigen::Matrix<double, 6, Eigen::Dynamic>& J, Eigen::Matrix<double, 6, 6>& A) {
+  // Two rows at a time, all sums in registers.
+  using Pair = Eigen::Array2d;
+  Pair sums[6][3];
+  for (auto& row : sums)
+    for (Pair& sum : row) sum.setZero();
+  for (Eigen::Index c = 0; c < J.cols(); ++c) {
+    const double* column = J.data() + 6 * c;
+    const Pair pairs[3] = {Eigen::Map<const Pair>(column), Eigen::Map<const Pair>(column + 2),
+                           Eigen::Map<const Pair>(column + 4)};
+#pragma GCC unroll 8
+    for (int j = 0; j < 6; ++j)
+#pragma GCC unroll 8
+      for (int r = j / 2; r < 3; ++r) sums[j][r] += column[j] * pairs[r];
+  }
+#pragma GCC unroll 8
+  for (int j = 0; j < 6; ++j)
+#pragma GCC unroll 8
+    for (int r = j / 2; r < 3; ++r) A.block<2, 1>(2 * r, j) = sums[j][r].matrix();
+}
+
+inline void square(const Eigen::Matrix<double, 3, Eigen::Dynamic>& J, Eigen::Matrix3d& A) {
+  A.setZero();
+  for (Eigen::Index c = 0; c < J.cols(); ++c) A += J.col(c) * J.col(c).transpose();
+}
+
+inline void square(const Eigen::MatrixXd& J, Eigen::MatrixXd& A) {
+  A.setZero(J.rows(), J.rows());
+  A.selfadjointView<Eigen::Lower>().rankUpdate(J);
+}
+
+// Jᵀ(JJᵀ + λ²I)⁻¹e (thesis, eq. 3.2.9).
+template <int Rows>
+inline void damped_step(const Eigen::Matrix<double, Rows, Eigen::Dynamic>& J, const Eigen::Matrix<double, Rows, 1>& e,
+                        double damping_squared, Eigen::Matrix<double, Rows, Rows>& A, Vector& dq) {
+  square(J, A);
+  A.diagonal().array() += damping_squared;
+  const Eigen::Matrix<double, Rows, 1> x = solve_definite<Rows>(A, e);
+  dq.resize(J.cols());
+  for (Eigen::Index c = 0; c < J.cols(); ++c) dq[c] = J.col(c).dot(x);
+}
+
+PINIK_FAST static void damp(const Eigen::Matrix<double, 3, Eigen::Dynamic>& J, const Eigen::Vector3d& e,
+                            double damping_squared, Eigen::Matrix3d& A, Vector& dq) {
+  damped_step<3>(J, e, damping_squared, A, dq);
+}
+
+PINIK_FAST static void damp(const Eigen::Matrix<double, 6, Eigen::Dynamic>& J, const Eigen::Matrix<double, 6, 1>& e,
+                            double damping_squared, Eigen::Matrix<double, 6, 6>& A, Vector& dq) {
+  damped_step<6>(J, e, damping_squared, A, dq);
+}
+
+inline void damp(const Eigen::MatrixXd& J, const Vector& e, double damping_squared, Eigen::MatrixXd& A, Vector& dq) {
+  damped_step<Eigen::Dynamic>(J, e, damping_squared, A, dq);
+}
+
 // Steps of the Jacobian methods, after pinik.solvers; holds the working memory of one thread.
 template <int Rows>
 class Directions {
@@ -115,27 +172,23 @@ class Directions {
   }
 
   void damped_least_squares(const Linearization<Rows>& at, Vector& dq) {
-    square(at.J);
     const double damping_squared = this->damping_squared(at);
-    if (solver_.by_svd) {
-      const Eigen::JacobiSVD<Eigen::MatrixXd> svd(at.J, Eigen::ComputeThinU | Eigen::ComputeThinV);
-      const auto& sigma = svd.singularValues();
-      const Vector part = sigma.array() / (sigma.array().square() + damping_squared) *
-                          (svd.matrixU().transpose() * at.e).array();
-      dq.noalias() = svd.matrixV() * part;
-      return;
-    }
-    A_.diagonal().array() += damping_squared;
-    dq.noalias() = at.J.transpose() * solve_definite<Rows>(A_, at.e);
+    if (!solver_.by_svd) return damp(at.J, at.e, damping_squared, A_, dq);
+    const Eigen::JacobiSVD<Eigen::MatrixXd> svd(at.J, Eigen::ComputeThinU | Eigen::ComputeThinV);
+    const auto& sigma = svd.singularValues();
+    const Vector part =
+        sigma.array() / (sigma.array().square() + damping_squared) * (svd.matrixU().transpose() * at.e).array();
+    dq.noalias() = svd.matrixV() * part;
   }
 
-  double damping_squared(const Linearization<Rows>& at) const {
+  double damping_squared(const Linearization<Rows>& at) {
     double squared = solver_.damping * solver_.damping;
     if (solver_.rule == DampingRule::residual) {
       squared *= at.distance * at.distance;
     } else if (solver_.rule == DampingRule::sugihara) {
       squared += 0.5 * at.distance * at.distance;
     } else if (solver_.rule == DampingRule::manipulability) {
+      square(at.J, A_);
       const Square full = A_.template selfadjointView<Eigen::Lower>();
       const double w = std::sqrt(std::max(full.determinant(), 0.0));
       const double missing = std::max(0.0, 1.0 - w / solver_.manipulability);
@@ -170,7 +223,7 @@ class Directions {
       return false;
     } else {
       if (at.J.cols() < Rows) return false;
-      square(at.J);
+      square(at.J, A_);
       const Square full = A_.template selfadjointView<Eigen::Lower>();
       const Eigen::LLT<Square> factor(full);
       if (factor.info() != Eigen::Success) return false;
@@ -198,36 +251,6 @@ class Directions {
           pull[static_cast<Eigen::Index>(c)] = solver_.rest_gain * left;
         }
     return pull;
-  }
-
-  // JJᵀ into A_, its lower triangle.
-  void square(const Jacobian& J) {
-    const Eigen::Index columns = J.cols();
-    if constexpr (Rows == 6) {  // two rows at a time, all sums in registers
-      using Pair = Eigen::Array2d;
-      Pair sums[6][3];
-      for (auto& row : sums)
-        for (Pair& sum : row) sum.setZero();
-      for (Eigen::Index c = 0; c < columns; ++c) {
-        const double* column = J.data() + Rows * c;
-        const Pair pairs[3] = {Eigen::Map<const Pair>(column), Eigen::Map<const Pair>(column + 2),
-                               Eigen::Map<const Pair>(column + 4)};
-#pragma GCC unroll 8
-        for (int j = 0; j < 6; ++j)
-#pragma GCC unroll 8
-          for (int r = j / 2; r < 3; ++r) sums[j][r] += column[j] * pairs[r];
-      }
-#pragma GCC unroll 8
-      for (int j = 0; j < 6; ++j)
-#pragma GCC unroll 8
-        for (int r = j / 2; r < 3; ++r) A_.template block<2, 1>(2 * r, j) = sums[j][r].matrix();
-    } else if constexpr (Rows == Eigen::Dynamic) {
-      A_.setZero(J.rows(), J.rows());
-      A_.template selfadjointView<Eigen::Lower>().rankUpdate(J);
-    } else {
-      A_.setZero();
-      for (Eigen::Index c = 0; c < columns; ++c) A_ += J.col(c) * J.col(c).transpose();
-    }
   }
 };
 

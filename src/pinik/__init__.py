@@ -17,6 +17,7 @@ from .joint import Joint
 from .kinematics import Kinematics, Linearization
 from .loading import load
 from .loop import iterate, solve
+from .many import Solutions, solve_many
 from .prepared import Prepared, prepare
 from .robot import Robot
 from .robot_catalog import catalog
@@ -57,6 +58,7 @@ __all__ = [
     "Robot",
     "RobotLoadError",
     "Solution",
+    "Solutions",
     "SolveError",
     "Solver",
     "State",
@@ -74,4 +76,5 @@ __all__ = [
     "parameter",
     "prepare",
     "solve",
+    "solve_many",
 ]

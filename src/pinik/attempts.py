@@ -129,7 +129,7 @@ class _Attempts:
                 self._start(),
                 asked.solver.patience,
                 asked.max_iterations,
-                judge_limits_at_end=proof is None,
+                bold=proof is None,
                 downhill=proof is not None,
             )
             if status in (Status.CONVERGED, Status.TIME_LIMIT):
@@ -148,7 +148,7 @@ class _Attempts:
         patience: Patience,
         max_iterations: int,
         *,
-        judge_limits_at_end: bool = False,
+        bold: bool = False,
         downhill: bool = False,
     ) -> Status:
         asked = self.settings
@@ -160,7 +160,7 @@ class _Attempts:
             max_iterations,
             asked.tolerance,
             patience,
-            judge_limits_at_end=judge_limits_at_end,
+            bold=bold,
             downhill=downhill,
             attempt=self.restarts,
         )

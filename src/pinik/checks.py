@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 
 import numpy as np
 import pinocchio
@@ -11,7 +11,19 @@ from numpy.typing import ArrayLike, NDArray
 
 from .errors import InputError
 
-__all__ = ["as_finite_number", "as_names", "as_point", "as_rotation", "as_se3", "as_unit_vector", "as_vector"]
+__all__ = [
+    "as_array",
+    "as_finite_number",
+    "as_many",
+    "as_names",
+    "as_point",
+    "as_points",
+    "as_rotation",
+    "as_rotations",
+    "as_se3",
+    "as_unit_vector",
+    "as_vector",
+]
 
 _FARTHEST = 1e9  # [m]: beyond, squares of distances lose all meaning
 
@@ -55,6 +67,24 @@ def as_array(value: ArrayLike, shape: tuple[int, ...], what: str, of: str = "") 
     return array
 
 
+def as_many(values: ArrayLike, shape: tuple[int, ...], what: str) -> Array:
+    """`values` as a fresh float64 array (n, *shape); InputError names the first that is not finite."""
+    size = "×".join(map(str, shape))
+    try:
+        array = np.array(values)
+    except ValueError:
+        raise InputError(f"{what} takes N times {size} finite numbers; got rows of different lengths") from None
+    if array.dtype.kind not in "iuf":
+        raise InputError(f"{what} takes N times {size} finite numbers; got {array.dtype} values")
+    if array.shape[1:] != shape or array.ndim != len(shape) + 1:
+        raise InputError(f"{what} takes N times {size} finite numbers; got an array of shape {array.shape}")
+    finite = np.isfinite(array).all(axis=tuple(range(1, array.ndim)))
+    if not finite.all():
+        k = int(np.argmin(finite))
+        raise InputError(f"{what}[{k}] takes {size} finite numbers; got {array[k].tolist()}")
+    return array.astype(np.float64)
+
+
 def as_vector(value: ArrayLike, size: int, what: str, of: str = "") -> Array:
     """`value` as a finite vector (size,)."""
     return as_array(value, (size,), what, of)
@@ -96,6 +126,33 @@ def as_rotation(value: ArrayLike, what: str) -> Array:
         return matrix
     left, _, right = np.linalg.svd(matrix)
     return np.array(left @ right)
+
+
+def as_points(values: ArrayLike, what: str) -> Array:
+    """`values` as points (n, 3) [m], each as `as_point` takes it."""
+    points = as_many(values, (3,), what)
+    _refuse_the_first(np.abs(points).max(axis=1, initial=0.0) > _FARTHEST, points, as_point, what)
+    return points
+
+
+def as_rotations(values: ArrayLike, what: str) -> Array:
+    """`values` as rotation matrices (n, 3, 3), each as `as_rotation` takes it."""
+    matrices = as_many(values, (3, 3), what)
+    with np.errstate(over="ignore", invalid="ignore"):
+        off = np.abs(matrices @ matrices.transpose(0, 2, 1) - _IDENTITY).max(axis=(1, 2), initial=0.0)
+        wrong = ~(off <= 1e-6) | ~(np.linalg.det(matrices) > 0.0)
+    _refuse_the_first(wrong, matrices, as_rotation, what)
+    for k in np.flatnonzero(off >= 1e-14):
+        matrices[k] = as_rotation(matrices[k], what)
+    return matrices
+
+
+def _refuse_the_first(
+    wrong: NDArray[np.bool_], values: Array, check: Callable[[ArrayLike, str], object], what: str
+) -> None:
+    """Let the check of one value say what is wrong with the first that is."""
+    for k in np.flatnonzero(wrong)[:1]:
+        check(values[k], f"{what}[{k}]")
 
 
 def _determinant(matrix: Array) -> float:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import functools
 import math
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 import pinocchio
@@ -19,7 +19,17 @@ from .solvers import CCD, DampedLeastSquares, JacobianTranspose, PseudoInverse, 
 from .state import State, Status
 from .targets import Target, TargetError
 
-__all__ = ["Answer", "attempt_all", "attempt_at", "make_engine", "why_not"]
+__all__ = [
+    "Answer",
+    "Answers",
+    "attempt_all",
+    "attempt_at",
+    "attempt_many",
+    "goals_of",
+    "make_engine",
+    "targets_of",
+    "why_not",
+]
 
 Array = NDArray[np.float64]
 
@@ -57,13 +67,32 @@ def why_not(solver: Solver | None = None) -> str | None:
 
 def attempt_all(engine: Any, targets: tuple[Target, ...], start: Array, nearest: bool) -> Answer:
     """What `attempts.attempt_all` does, by the compiled engine: `make_engine` made it."""
-    return Answer(engine.solve(start, _goals(targets), nearest))
+    return Answer(engine.solve(start, goals_of(targets), nearest))
 
 
 def attempt_at(engine: Any, place: object, start: object, nearest: bool) -> Answer | None:
     """The same for one target at a 4×4 matrix or a position (3,); None where these are not beyond doubt."""
     answer = engine.solve_at(place, start, nearest)
     return None if answer is None else Answer(answer)
+
+
+class Answers(NamedTuple):
+    """What N solves came to, an entry each: see `many.Solutions`."""
+
+    q: Array
+    status: NDArray[np.object_]
+    position_error: Array
+    orientation_error: Array
+    iterations: NDArray[np.int64]
+    joint_updates: NDArray[np.int64]
+    restarts: NDArray[np.int64]
+    time: Array
+
+
+def attempt_many(engine: Any, goals: Array, starts: Array, nearest: bool, threads: int) -> Answers:
+    """Solve for goals (N, n, 18) from starts (N or 1, nq), question k drawing by the number k."""
+    q, status, *others = engine.solve_many(starts, goals, nearest, threads)
+    return Answers(q, np.array(_STATUSES, dtype=object)[status], *others)
 
 
 class Answer:
@@ -246,7 +275,7 @@ def _solver(solver: Solver, kinematics: Kinematics) -> Any:
     return native
 
 
-def _goals(targets: tuple[Target, ...]) -> Array:
+def goals_of(targets: tuple[Target, ...]) -> Array:
     """What each target wants, as the engine reads it: position, rotation by rows, direction, at (n, 18)."""
     goals = np.zeros((len(targets), 18))
     for row, target in zip(goals, targets, strict=True):
@@ -259,3 +288,11 @@ def _goals(targets: tuple[Target, ...]) -> Array:
         if target.at is not None:
             row[15:] = target.at
     return goals
+
+
+def targets_of(pattern: tuple[Target, ...], goals: Array) -> tuple[Target, ...]:
+    """The targets that `goals_of` read: what is asked as in the pattern, where as in the numbers."""
+    return tuple(
+        target.with_numbers(goal[:3], goal[3:12].reshape(3, 3), goal[12:15], goal[15:])
+        for target, goal in zip(pattern, goals, strict=True)
+    )

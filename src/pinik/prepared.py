@@ -114,6 +114,8 @@ class Prepared:
         targets: What was asked last.
         solver: The method with its parameters.
         engine: "python" or "native".
+        settings: The same and the rest, as the attempts take it.
+        native: The compiled engine's own object, where it is used.
     """
 
     def __init__(
@@ -141,7 +143,7 @@ class Prepared:
         self.targets = self._kinematics.targets
         self._shape = [target.shape for target in self.targets]
         box = Limits.of(robot, limits)
-        self._settings = Settings(
+        self.settings = Settings(
             solver,
             self._kinematics,
             box,
@@ -155,7 +157,7 @@ class Prepared:
             time_limit=time_limit,
             trace=trace,
         )
-        self._native = native.make_engine(self._settings) if self.engine == "native" else None
+        self.native = native.make_engine(self.settings) if self.engine == "native" else None
 
     def __call__(
         self,
@@ -179,14 +181,14 @@ class Prepared:
         if targets is not None:
             self.targets = self._as_asked(targets)
         nearest = isinstance(q0, str) and q0 == "nearest"
-        start = self._settings.start if q0 is None or nearest else self.robot.check_configuration(q0, "q0")
+        start = self.settings.start if q0 is None or nearest else self.robot.check_configuration(q0, "q0")
         outcome: Outcome | native.Answer
-        if self._native is not None:
-            outcome = native.attempt_all(self._native, self.targets, start, nearest)
+        if self.native is not None:
+            outcome = native.attempt_all(self.native, self.targets, start, nearest)
         else:
             self._kinematics.retarget(self.targets)
-            outcome = attempt_all(self._settings._replace(start=start, nearest=nearest), began)
-        return Solution(outcome, self._settings, self.targets, self.engine, time.perf_counter() - began)
+            outcome = attempt_all(self.settings._replace(start=start, nearest=nearest), began)
+        return Solution(outcome, self.settings, self.targets, self.engine, time.perf_counter() - began)
 
     def at(self, place: object, q0: object = None) -> Solution | None:
         """The same for one frame, in the fewest microseconds, where the compiled engine finds nothing to object to.
@@ -198,23 +200,23 @@ class Prepared:
         Returns:
             None where it is not so: a call finds out why, and takes more kinds of things.
         """
-        if self._native is None:
+        if self.native is None:
             return None
         began = time.perf_counter()
         start, nearest = q0, False
         if q0 is None:
-            start = self._settings.start
+            start = self.settings.start
         elif type(q0) is str:
-            start, nearest = self._settings.start, q0 == "nearest"
+            start, nearest = self.settings.start, q0 == "nearest"
             if not nearest:
                 return None
         array = place.homogeneous if isinstance(place, pinocchio.SE3) else place
-        answer = native.attempt_at(self._native, array, start, nearest)
+        answer = native.attempt_at(self.native, array, start, nearest)
         if answer is None:
             return None
         assert isinstance(array, np.ndarray)
         targets = functools.partial(self._moved, array.copy())
-        return Solution(answer, self._settings, targets, "native", time.perf_counter() - began)
+        return Solution(answer, self.settings, targets, "native", time.perf_counter() - began)
 
     def _moved(self, place: Array) -> tuple[Target, ...]:
         return (self.targets[0].moved_to(place),)

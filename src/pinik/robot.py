@@ -15,7 +15,7 @@ import pinocchio
 from numpy.typing import ArrayLike, NDArray
 
 from . import urdf
-from .checks import as_finite_number, as_se3, as_vector
+from .checks import as_many, as_finite_number, as_se3, as_vector
 from .errors import InputError, RobotLoadError, UnknownNameError
 from .joint import Joint, joints_of, limits_cut_by_followers
 from .model import build_model
@@ -263,6 +263,18 @@ class Robot:
                     f"{what}: {joint.kind} joint {joint.name!r} holds {words}, of unit length; got {got.tolist()}"
                 )
         return np.array(pinocchio.normalize(self.model, values))
+
+    def check_configurations(self, q: ArrayLike, what: str = "q") -> Array:
+        """A fresh float64 copy of N configurations (N, nq), each checked as `check_configuration` does."""
+        values = as_many(q, (self.model.nq,), what)
+        for joint in self.joints:
+            circle = joint.circle(values.T)
+            if circle is not None:
+                lengths = np.linalg.norm(circle[0], axis=0)
+                for k in np.flatnonzero(np.abs(lengths**2 - 1.0) > 1e-3)[:1]:
+                    self.check_configuration(values[k], f"{what}[{k}]")
+                circle[0][:] /= lengths
+        return values
 
     def placement(self, frame: str, q: ArrayLike, relative_to: str | None = None) -> pinocchio.SE3:
         """Where a frame is.

@@ -22,6 +22,8 @@ Array = NDArray[np.float64]
 TO_THE_END = Patience(50, 1e-4)
 """How patiently a run is followed to its end when no other attempt waits."""
 
+_OF_THE_DISTANCE = math.sqrt(0.1)  # what a bold run's damping goes by
+
 
 def run(
     solver: Solver,
@@ -32,18 +34,19 @@ def run(
     tolerance: Tolerance,
     patience: Patience,
     *,
-    judge_limits_at_end: bool = False,
+    bold: bool = False,
     downhill: bool = False,
     attempt: int = 0,
 ) -> Generator[State, Target | Sequence[Target] | None, None]:
     """States of one attempt.
 
-    With `judge_limits_at_end` a Jacobian method steps freely until it has converged; what then lies outside the
-    limits is turned by whole turns, and where that is not enough put inside and led on inside. With `downhill` a
+    A `bold` run of a Jacobian method dares more, as another attempt waits: damping that follows the distance goes by a
+    third of it, and limits hold only in the end. What lies outside them once the targets are reached is turned by whole
+    turns, and where that is not enough put inside and led on inside. With `downhill` a
     Jacobian method's step is cut until the residual falls, so that it comes to rest where it would swing about.
     """
-    unlimited = judge_limits_at_end and limits.enabled and isinstance(solver, JacobianSolver)
-    box = limits.loosened() if unlimited else limits
+    bold = bold and isinstance(solver, JacobianSolver)
+    box = limits.loosened() if bold and limits.enabled else limits
     at = kinematics.linearize(start)
     milestone, since = at.residual, 0
     iteration, last, updates, scale = 0, max_iterations, 0, 1.0
@@ -70,7 +73,8 @@ def run(
             milestone, since, last = math.inf, 0, iteration + max_iterations
         elif status is not None:
             return
-        q, updated = advance(solver, kinematics, box, at, tolerance, scale)
+        seen = at._replace(distance=_OF_THE_DISTANCE * at.distance) if bold else at
+        q, updated = advance(solver, kinematics, box, seen, tolerance, scale)
         there = kinematics.linearize(q)
         if not downhill or isinstance(solver, SweepingSolver):
             at = there

@@ -213,10 +213,16 @@ class Target:
                 raise InputError(f"{what} asks for an orientation too; give an SE3 or a 4×4 matrix")
             place = pinocchio.SE3(np.eye(3), as_point(place, f"{what}: position"))
         pose = as_se3(place, f"{what}: placement")
+        return self.with_numbers(pose.translation, pose.rotation)
+
+    def with_numbers(
+        self, position: Array, rotation: Array, direction: Array | None = None, at: Array | None = None
+    ) -> Target:
+        """The same target with other numbers, which are right: those that it does not ask for are not read."""
         moved = object.__new__(Target)
         fields = dict(vars(self))
-        for name, value in (("position", pose.translation), ("rotation", pose.rotation)):
-            if fields[name] is not None:
+        for name, value in (("position", position), ("rotation", rotation), ("direction", direction), ("at", at)):
+            if fields[name] is not None and value is not None:
                 fields[name] = value.copy()
                 fields[name].setflags(write=False)
         vars(moved).update(fields)

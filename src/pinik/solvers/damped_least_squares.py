@@ -34,7 +34,8 @@ class DampedLeastSquares(JacobianSolver):
     * "manipulability" (Nakamura and Hanafusa 1986): λ² = damping² (1 − w/w₀)² where w = √det JJᵀ is below w₀; that
       is everywhere where rows of J always depend on each other, as those of a planar chain do.
 
-    In a solve ‖e‖ stands for `Linearization.distance`: metres, and a radian for 0.3 m.
+    In a solve ‖e‖ stands for `Linearization.distance`: metres, and a radian for 0.3 m. Of attempts behind which others
+    wait, only √0.1 of it counts: they swing rather than crawl, and the next start is cheap.
 
     Source: thesis, §3.3–3.4, eqs. 3.3.6 and 3.4.9 (Wampler 1986; Nakamura and Hanafusa 1986).
     """
@@ -44,7 +45,7 @@ class DampedLeastSquares(JacobianSolver):
     about = "the default; careful near singular configurations"
     max_iterations = 200
     restarts = 60
-    patience = Patience(3, 0.05)
+    patience = Patience(3, 0.2)
 
     damping: float = parameter(
         math.sqrt(0.5), "λ, or what the rule makes λ from", low=1e-9, high=100.0, slider=(1e-3, 10.0)
