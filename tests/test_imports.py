@@ -53,7 +53,8 @@ def module_name(path: Path) -> str:
     return ".".join(parts[:-1] if parts[-1] == "__init__" else parts) or "pinik"
 
 
-FILES = {module_name(path): path for path in SOURCE.rglob("*.py")}
+# The compiled module is known by its stub.
+FILES = {module_name(path): path for pattern in ("*.py", "*.pyi") for path in SOURCE.rglob(pattern)}
 
 
 def for_type_checkers(node: ast.AST) -> bool:

@@ -298,7 +298,8 @@ NB_MODULE(_native, m) {
 
   nb::class_<Answer>(m, "Answer")
       .def_prop_ro("status", [](const Answer& a) { return static_cast<int>(a.status); })
-      .def_prop_ro("q", [](const Answer& a) { return Vector(a.q); })
+      .def_prop_ro("q", [](const Answer& a) { return Vector(a.q); },
+                   nb::sig("def q(self) -> NDArray[numpy.float64]"))
       .def_prop_ro("errors", [](const Answer& a) { return as_tuple(a.errors); },
                    nb::sig("def errors(self) -> tuple[tuple[float | None, float | None], ...]"))
       .def_ro("iterations", &Answer::iterations)
@@ -319,7 +320,8 @@ NB_MODULE(_native, m) {
            [](Engine& self, const Vector& start, nb::ndarray<const double, nb::shape<-1, 18>, nb::c_contig> goals,
               bool nearest) { return solve(self, start, goals_from(goals.data(), goals.shape(0)), nearest); },
            "start"_a, "goals"_a, "nearest"_a)
-      .def("solve_at", &solve_at, "place"_a, "start"_a, "nearest"_a)
+      .def("solve_at", &solve_at, "place"_a, "start"_a, "nearest"_a,
+           nb::sig("def solve_at(self, place: object, start: object, nearest: bool) -> Answer | None"))
       .def("solve_many", &solve_many, "starts"_a, "goals"_a, "nearest"_a, "threads"_a,
            nb::sig("def solve_many(self, starts: NDArray[numpy.float64], goals: NDArray[numpy.float64], "
                    "nearest: bool, threads: int) -> tuple[NDArray[numpy.float64], NDArray[numpy.int32], "

@@ -179,7 +179,8 @@ def _key_of_a_place(
 
 
 def _as_array(position: ArrayLike) -> object:
-    if type(position) in (list, tuple) and [type(x) for x in position] == [float, float, float]:  # type: ignore[union-attr]
+    """Three plain numbers as an array; anything else as it is, for others to judge."""
+    if isinstance(position, (list, tuple)) and [type(x) for x in position] == [float, float, float]:
         return np.array(position)
     return position
 

@@ -50,7 +50,8 @@ def solve_many(
             sequences of as many targets of the same kinds.
         places: (N, 4, 4) homogeneous matrices or N SE3, for positions and rotations; or positions (N, 3) [m].
         method: As for `pinik.solve`.
-        q0: One start (nq,), or N of them (N, nq); neutral when None; "nearest" for starts near each target, from a table.
+        q0: One start (nq,), or N of them (N, nq); neutral when None; "nearest" for starts near each target, from a
+            table.
         threads: How many share the work; one for each processor that is free to this process when None. Of the
             compiled engine; the Python one takes one.
         **options: `pinik.solve`'s (limits, locked, restarts, seed, max_iterations, tolerance, time_limit for each,
@@ -152,7 +153,9 @@ def _questions(robot: Robot, targets: Any, places: Any) -> tuple[tuple[Target, .
         kind = [target.shape for target in asked[0]]
         for number, each in enumerate(asked):
             if [target.shape for target in each] != kind:
-                raise InputError(f"targets[{number}] asks for something else than targets[0]; solve each kind for itself")
+                raise InputError(
+                    f"targets[{number}] asks for something else than targets[0]; solve each kind for itself"
+                )
         return asked[0], np.array([native.goals_of(each) for each in asked])
     if isinstance(places, Sequence) and any(isinstance(place, pinocchio.SE3) for place in places):
         places = np.array([as_se3(place, f"places[{k}]").homogeneous for k, place in enumerate(places)])
@@ -211,7 +214,9 @@ def _attempt_one_by_one(prepared: Prepared, goals: Array, starts: Array, nearest
         np.array([outcome.status for outcome in outcomes], dtype=object),
         largest[:, 0],
         largest[:, 1],
-        *(np.array([getattr(o, name) for o in outcomes]) for name in ("iterations", "joint_updates", "restarts")),
+        np.array([outcome.iterations for outcome in outcomes]),
+        np.array([outcome.joint_updates for outcome in outcomes]),
+        np.array([outcome.restarts for outcome in outcomes]),
         np.array(seconds),
     )
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import functools
 import math
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 import pinocchio
@@ -30,6 +30,10 @@ __all__ = [
     "targets_of",
     "why_not",
 ]
+
+if TYPE_CHECKING:
+    from . import _native
+    from ._native import Engine
 
 Array = NDArray[np.float64]
 
@@ -65,12 +69,12 @@ def why_not(solver: Solver | None = None) -> str | None:
     return None
 
 
-def attempt_all(engine: Any, targets: tuple[Target, ...], start: Array, nearest: bool) -> Answer:
+def attempt_all(engine: Engine, targets: tuple[Target, ...], start: Array, nearest: bool) -> Answer:
     """What `attempts.attempt_all` does, by the compiled engine: `make_engine` made it."""
     return Answer(engine.solve(start, goals_of(targets), nearest))
 
 
-def attempt_at(engine: Any, place: object, start: object, nearest: bool) -> Answer | None:
+def attempt_at(engine: Engine, place: object, start: object, nearest: bool) -> Answer | None:
     """The same for one target at a 4×4 matrix or a position (3,); None where these are not beyond doubt."""
     answer = engine.solve_at(place, start, nearest)
     return None if answer is None else Answer(answer)
@@ -89,10 +93,11 @@ class Answers(NamedTuple):
     time: Array
 
 
-def attempt_many(engine: Any, goals: Array, starts: Array, nearest: bool, threads: int) -> Answers:
+def attempt_many(engine: Engine, goals: Array, starts: Array, nearest: bool, threads: int) -> Answers:
     """Solve for goals (N, n, 18) from starts (N or 1, nq), question k drawing by the number k."""
-    q, status, *others = engine.solve_many(starts, goals, nearest, threads)
-    return Answers(q, np.array(_STATUSES, dtype=object)[status], *others)
+    q, status, *figures = engine.solve_many(starts, goals, nearest, threads)
+    names = Answers._fields[2:]
+    return Answers(q=q, status=np.array(_STATUSES, dtype=object)[status], **dict(zip(names, figures, strict=True)))
 
 
 class Answer:
@@ -100,7 +105,7 @@ class Answer:
 
     __slots__ = ("_answer",)
 
-    def __init__(self, answer: Any) -> None:
+    def __init__(self, answer: _native.Answer) -> None:
         self._answer = answer
 
     @property
@@ -111,7 +116,7 @@ class Answer:
     @property
     def q(self) -> Array:
         """A fresh copy of the best configuration (nq,)."""
-        return self._answer.q  # type: ignore[no-any-return]
+        return self._answer.q
 
     @property
     def errors(self) -> tuple[TargetError, ...]:
@@ -121,17 +126,17 @@ class Answer:
     @property
     def iterations(self) -> int:
         """Of all attempts."""
-        return self._answer.iterations  # type: ignore[no-any-return]
+        return self._answer.iterations
 
     @property
     def joint_updates(self) -> int:
         """Of all attempts."""
-        return self._answer.joint_updates  # type: ignore[no-any-return]
+        return self._answer.joint_updates
 
     @property
     def restarts(self) -> int:
         """Attempts after the first."""
-        return self._answer.restarts  # type: ignore[no-any-return]
+        return self._answer.restarts
 
     @property
     def proof(self) -> Shortfall | None:
@@ -155,7 +160,7 @@ def _state(q: Array, iteration: int, updates: int, errors: Any, residual: float,
     return State(q, iteration, updates, _errors(errors), residual, attempt, ended)
 
 
-def make_engine(settings: Settings) -> Any:
+def make_engine(settings: Settings) -> Engine:
     """The compiled engine for these settings; their start is not read."""
     module = _load()
     kinematics, limits = settings.kinematics, settings.limits
@@ -172,7 +177,8 @@ def make_engine(settings: Settings) -> Any:
     asked.iterations_to_the_end = settings.iterations_to_the_end
     asked.time_limit = settings.time_limit
     asked.trace = settings.trace
-    return module.Engine(robot, problem, asked)
+    engine: Engine = module.Engine(robot, problem, asked)
+    return engine
 
 
 def _robot(robot: Robot) -> Any:

@@ -15,7 +15,7 @@ import pinocchio
 from numpy.typing import ArrayLike, NDArray
 
 from . import urdf
-from .checks import as_many, as_finite_number, as_se3, as_vector
+from .checks import as_finite_number, as_many, as_se3, as_vector
 from .errors import InputError, RobotLoadError, UnknownNameError
 from .joint import Joint, joints_of, limits_cut_by_followers
 from .model import build_model

@@ -27,8 +27,8 @@ _OF_THE_TABLE = _MASK  # the table's key in place of a target's number
 class Starts:
     """Where attempts begin that are given no start: near the target, as far as a table knows.
 
-    The first take the configurations of a table whose frames are nearest to their targets, the nearest first; the others
-    are drawn anew. The table is drawn too, once for all targets, when it is first wanted.
+    The first take the configurations of a table whose frames are nearest to their targets, the nearest first; the
+    others are drawn anew. The table is drawn too, once for all targets, when it is first wanted.
     """
 
     def __init__(self, kinematics: Kinematics, limits: Limits, seed: int) -> None:
@@ -57,9 +57,7 @@ class Starts:
         All that is not drawn stays as in `q0`.
         """
         if number > _NEAREST:
-            return random_start(
-                self._kinematics, self._limits, q0, seed=self._seed, target=target, attempt=number
-            )
+            return random_start(self._kinematics, self._limits, q0, seed=self._seed, target=target, attempt=number)
         if number == 1:
             self._rank(q0)
         assert self._table is not None
@@ -119,7 +117,7 @@ def _seen(term: TargetTerm) -> tuple[float, Array]:
         parts.append(-2.0 * weight * p)
     if target.rotation is not None:
         parts.append(-weight * SQUARED_METRES_PER_RADIAN * R.ravel())
-    elif target.direction is not None:
+    elif target.axis is not None and target.direction is not None:
         parts.append(-2.0 * weight * SQUARED_METRES_PER_RADIAN * R.dot(target.axis))
     return length, np.concatenate(parts)
 

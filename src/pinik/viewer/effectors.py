@@ -13,7 +13,7 @@ from ..kinematics import Kinematics
 from ..limits import Limits
 from ..loop import iterate
 from ..robot import Robot
-from ..solution import Status
+from ..state import Status
 from ..targets import Target
 from .curves import Curve, polyline
 
