@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import functools
+import importlib.util
 import math
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -47,10 +48,12 @@ _IDENTITY = pinocchio.SE3.Identity()
 @functools.cache
 def _load() -> Any:
     """The compiled module, or a sentence that says why there is none."""
+    if importlib.util.find_spec("._native", __package__) is None:
+        return "it was not built when pinik was installed, as no C++ compiler worked"
     try:
         from . import _native
     except ImportError as error:
-        return f"it was not built when pinik was installed, as no C++ compiler worked ({error})"
+        return f"it does not load: {error}"
     if _native.pinocchio_version != pinocchio.__version__:
         return (
             f"it was built against Pinocchio {_native.pinocchio_version}, and {pinocchio.__version__} is installed; "
@@ -95,9 +98,11 @@ class Answers(NamedTuple):
 
 def attempt_many(engine: Engine, goals: Array, starts: Array, nearest: bool, threads: int) -> Answers:
     """Solve for goals (N, n, 18) from starts (N or 1, nq), question k drawing by the number k."""
-    q, status, *figures = engine.solve_many(starts, goals, nearest, threads)
-    names = Answers._fields[2:]
-    return Answers(q=q, status=np.array(_STATUSES, dtype=object)[status], **dict(zip(names, figures, strict=True)))
+    q, status, position, orientation, iterations, updates, restarts, seconds = engine.solve_many(
+        starts, goals, nearest, threads
+    )
+    statuses = np.array(_STATUSES, dtype=object)[status]
+    return Answers(q, statuses, position, orientation, iterations, updates, restarts, seconds)
 
 
 class Answer:

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from .attempts import Outcome, Settings
 from .errors import SolveError
 from .message import explain
-from .native import Answer
+from .native import Answer, why_not
 from .robot import Robot
 from .state import State, Status
 from .targets import Target, TargetError, largest_of
@@ -25,7 +25,7 @@ Array = NDArray[np.float64]
 
 _IN_WORDS = (
     "robot", "targets", "status", "q", "errors", "iterations", "joint_updates", "restarts", "trace", "method",
-    "message", "active_limits", "parameters",
+    "message", "active_limits", "parameters", "why_not_native",
 )  # fmt: skip
 
 
@@ -140,6 +140,13 @@ class Solution:
 
     def __str__(self) -> str:
         return self.message
+
+    @cached_property
+    def why_not_native(self) -> str | None:
+        """Why the compiled engine was not used, where it was not."""
+        if self.engine == "native":
+            return None
+        return why_not(self._asked.solver) or "the Python engine was asked for"
 
     @property
     def success(self) -> bool:

@@ -9,6 +9,7 @@ from typing import Any
 
 import pinocchio
 
+from .. import native
 from ..joint import Joint
 from ..robot import Robot
 from . import output
@@ -19,9 +20,6 @@ from .tables import emit_table
 from .units import Units, counted
 
 __all__ = ["info"]
-
-# The engines that this installation can solve with, the one that "auto" takes first.
-_ENGINE = "python"
 
 
 def info(
@@ -64,10 +62,16 @@ def _fields(robot: Robot) -> dict[str, Any]:
         "frames": list(robot.frame_names),
         "poses": {name: {"angles": robot.angles(q), "q": q.tolist()} for name, q in robot.poses.items()},
         "warnings": list(robot.warnings),
-        "engine": _ENGINE,
+        "engine": _engine(),
+        "why_not_native": native.why_not(),
         "version": _version(),
         "pinocchio": pinocchio.__version__,
     }
+
+
+def _engine() -> str:
+    """The engine that `engine="auto"` takes for pinik's own methods."""
+    return "python" if native.why_not() else "native"
 
 
 def _joint_fields(robot: Robot, joint: Joint) -> dict[str, Any]:
@@ -109,7 +113,10 @@ def _emit(robot: Robot, units: Units) -> None:
         f"size      {counted(len(robot.joint_names), 'joint')} to set, {counted(len(robot.frame_names), 'frame')}, "
         f"nq {model.nq}, nv {model.nv}"
     )
-    output.emit(f"engine    {_ENGINE}, pinik {_version()}, Pinocchio {pinocchio.__version__}")
+    output.emit(f"engine    {_engine()}, pinik {_version()}, Pinocchio {pinocchio.__version__}")
+    why = native.why_not()
+    if why:
+        output.emit(textwrap.fill(why, _width(), initial_indent=" " * 10, subsequent_indent=" " * 10))
     output.emit("")
     if robot.joints:
         rows = [_row(robot, joint, units) for joint in robot.joints]
@@ -136,7 +143,10 @@ def _following(joint: Joint) -> str:
     return f"follows {joint.leader}{factor}{offset}"
 
 
+def _width() -> int:
+    return shutil.get_terminal_size().columns if output.is_terminal(sys.stdout) else 100
+
+
 def _wrapped(title: str, names: tuple[str, ...]) -> str:
-    width = shutil.get_terminal_size().columns if output.is_terminal(sys.stdout) else 100
     text = f"{title:8}  " + ", ".join(names)
-    return textwrap.fill(text, width, subsequent_indent=" " * 10, break_long_words=False, break_on_hyphens=False)
+    return textwrap.fill(text, _width(), subsequent_indent=" " * 10, break_long_words=False, break_on_hyphens=False)

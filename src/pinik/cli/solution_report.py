@@ -25,7 +25,8 @@ def emit_solution(solution: Solution, units: Units) -> None:
     emit(f"error       {_errors(TargetError(solution.position_error, solution.orientation_error), units)}")
     emit(f"iterations  {solution.iterations}{_updates(solution)}, {counted(solution.restarts, 'restart')}")
     emit(f"time        {duration(solution.time)}")
-    emit(f"method      {solution.method}, {solution.engine} engine")
+    why = f" ({solution.why_not_native})" if solution.why_not_native else ""
+    emit(f"method      {solution.method}, {solution.engine} engine{why}")
 
 
 def _emit_joints(solution: Solution, units: Units) -> None:
