@@ -23,7 +23,7 @@ import numpy as np
 from comparison.arms import ARMS, Arm, write_arm
 from comparison.environments import CannotInstallError, python_of
 from comparison.judge import NEAR, STRICT, judged
-from comparison.peer_list import PEERS, Peer, pinik_rows
+from comparison.peer_list import PEERS, Peer, pinik_by
 from comparison.problems import TASKS, Problems, make_problems
 from comparison.tables import Measured, Row, as_json, as_text, row_of
 from comparison.workers import Worker, WorkerError
@@ -157,7 +157,7 @@ def main() -> None:
 
 def _arguments() -> argparse.Namespace:
     keys = [peer.key for peer in PEERS]
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])  # type: ignore[union-attr]
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--robots", type=_names(list(ARMS)), default=list(ARMS), help=f"of {','.join(ARMS)}")
     parser.add_argument("--peers", type=_names(keys), default=keys, help=f"of {','.join(keys)}")
     parser.add_argument("--methods", type=_names(["pinv", "jt", "ccd"]), default=[], help="further rows of pinik's")
@@ -193,8 +193,7 @@ def _positive(kind: type) -> Any:
 
 def _chosen_peers(arguments: argparse.Namespace) -> list[Peer]:
     chosen = [peer for peer in PEERS if peer.key in arguments.peers]
-    others = [pinik_rows(method, f"-{method}")[0] for method in arguments.methods]
-    return [*chosen, *others]
+    return [*chosen, *map(pinik_by, arguments.methods)]
 
 
 def _python_or_reason(peer: Peer) -> Path | str:

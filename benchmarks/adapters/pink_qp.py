@@ -43,7 +43,9 @@ class Pink:
         self._task.set_target(target)
         tasks = [self._task]
         for _ in range(self.STEPS):
-            velocity = pink.solve_ik(configuration, tasks, self.DT, solver="daqp", limits=self._limits)
+            velocity = pink.solve_ik(
+                configuration, tasks, self.DT, solver="daqp", limits=self._limits, safety_break=False
+            )
             configuration.integrate_inplace(velocity, self.DT)
             error = self._task.compute_error(configuration)
             if np.linalg.norm(error[:3]) < 1e-4 and np.linalg.norm(error[3:]) < 1e-3:

@@ -21,9 +21,8 @@ class Tracik:
         self._solver = TracIK(
             arm["base"], arm["tip"], arm["urdf"], timeout=0.005, epsilon=self.EPSILON, solver_type="Speed"
         )
-        lower, upper = self._solver.joint_limits
-        if not (np.allclose(lower, arm["lower"]) and np.allclose(upper, arm["upper"])):
-            raise ValueError(f"it read other joint limits: {lower} .. {upper}")
+        # It reads limits in single precision, and would stop up to 1e-7 rad beyond them.
+        self._solver.joint_limits = (arm["lower"], arm["upper"])
 
     def target(self, matrix: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         return matrix[:3, 3].copy(), matrix[:3, :3].copy()

@@ -68,10 +68,10 @@ class Worker:
         targets = [_matrix(target) for target in solve]
         if starts is not None:
             self._last = np.array(starts[0])
-        self._run_warm_up(seconds=0.02)
         gc.collect()
         gc.disable()
         try:
+            self._run_warm_up(seconds=0.02)
             if hasattr(self._adapter, "solve_all"):
                 return self._solve_batch(targets, np.array(starts))
             return self._solve_one_by_one(targets, None if carry else np.array(starts), seconds)

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass, field
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
 
-__all__ = ["PEERS", "REFERENCES", "Peer", "pinik_rows"]
+__all__ = ["PEERS", "REFERENCES", "Peer", "pinik_by"]
 
 
 @dataclass(frozen=True)
@@ -28,27 +28,45 @@ class Peer:
     adapter: tuple[str, str]
     packages: tuple[str, ...]
     requirements: tuple[str, ...] = ()
-    options: dict[str, object] = field(default_factory=dict)
+    options: Mapping[str, object] = field(default_factory=dict)
     batch: bool = False
     not_on_path: str = ""
 
 
-def pinik_rows(method: str, suffix: str = "") -> list[Peer]:
-    """pinik's rows by one method; the suffix tells other methods from the default one."""
-
-    def row(key: str, label: str, adapter: str, **rest: object) -> Peer:
-        options = {"method": method, **rest.pop("options", {})}  # type: ignore[dict-item]
-        tail = f" ({method})" if suffix else ""
-        return Peer(key + suffix, label + tail, ("pinik_itself.py", adapter), ("pinik", "pin"), options=options, **rest)  # type: ignore[arg-type]
-
-    many = {"batch": True, "not_on_path": "a batch knows no last answer to start from"}
-    return [
-        row("pinik", "pinik solve", "Solve"),
-        row("pinik-prepared", "pinik prepared", "SolvePrepared"),
-        row("pinik-own-starts", "pinik solve, own starts", "SolveFromOwnStarts", not_on_path="it takes no start"),
-        row("pinik-many-1", "pinik solve_many, 1 thread", "SolveMany", options={"threads": 1}, **many),
-        row("pinik-many-2", "pinik solve_many, 2 threads", "SolveMany", options={"threads": 2}, **many),
+def pinik_rows(method: str) -> list[Peer]:
+    """pinik's rows by one method."""
+    file, packages, options = "pinik_itself.py", ("pinik", "pin"), {"method": method}
+    one_by_one = [
+        Peer("pinik", "pinik solve", (file, "Solve"), packages, options=options),
+        Peer("pinik-prepared", "pinik prepared", (file, "SolvePrepared"), packages, options=options),
+        Peer(
+            "pinik-own-starts",
+            "pinik solve, own starts",
+            (file, "SolveFromOwnStarts"),
+            packages,
+            options=options,
+            not_on_path="it takes no start",
+        ),
     ]
+    batches = [
+        Peer(
+            f"pinik-many-{threads}",
+            f"pinik solve_many, {threads} thread{'s' if threads > 1 else ''}",
+            (file, "SolveMany"),
+            packages,
+            options={**options, "threads": threads},
+            batch=True,
+            not_on_path="a batch knows no last answer to start from",
+        )
+        for threads in (1, 2)
+    ]
+    return [*one_by_one, *batches]
+
+
+def pinik_by(method: str) -> Peer:
+    """The row "pinik solve" by another method than the default."""
+    row = pinik_rows(method)[0]
+    return replace(row, key=f"{row.key}-{method}", label=f"{row.label} ({method})")
 
 
 PEERS = [
@@ -72,14 +90,14 @@ PEERS = [
     Peer("ssik", "ssik", ("ssik_analytic.py", "Ssik"), ("ssik",), ("ssik[urdf]==8.2.0",)),
     Peer(
         "ikpy",
-        "ikpy (JAX)",
-        ("ikpy_jax.py", "Ikpy"),
-        ("ikpy", "jax", "scipy"),
-        ("ikpy[jax]==4.2.1", "jax==0.10.2", "jaxlib==0.10.2"),
+        "ikpy",
+        ("ikpy_scipy.py", "Ikpy"),
+        ("ikpy", "scipy"),
+        ("ikpy==4.2.1",),
     ),
     Peer("drake", "Drake (SNOPT)", ("drake_snopt.py", "Drake"), ("drake",), ("drake==1.51.1",)),
     Peer("pinocchio", "Pinocchio's example", ("pinocchio_example.py", "PinocchioExample"), ("pin",)),
 ]
 
 # What every row is compared with: short name and key.
-REFERENCES: Sequence[tuple[str, str]] = (("RTB", "rtb"), ("TRAC", "tracik"))
+REFERENCES: Sequence[tuple[str, str]] = (("pinik", "pinik"), ("RTB", "rtb"), ("TRAC", "tracik"))

@@ -67,11 +67,10 @@ def row_of(robot: str, task: str, peer: Peer, measured: Measured) -> Row:
 
 def as_text(rows: list[Row]) -> str:
     """A table of the rows of one arm and task."""
-    ratios = "".join(f"{name + ' med':>10}{name + ' mean':>10}" for name, _ in REFERENCES)
+    ratios = "".join(f"{name + ' med':>11}{name + ' mean':>11}" for name, _ in REFERENCES)
     lines = [
-        f"## {rows[0].robot}, {rows[0].task}",
-        f"{'':27} {'count':>6} {'solved':>7} {'strict':>7} "
-        f"{'median':>9} {'mean':>9} {'p90':>9} {'p99':>9} µs {ratios} times as long",
+        f"## {rows[0].robot}, {rows[0].task}; at the right: how many times as fast as …, by median and by mean",
+        f"{'':27} {'count':>6} {'solved':>7} {'strict':>7} {'median':>9} {'mean':>9} {'p90':>9} {'p99':>9} µs {ratios}",
     ]
     lines += [_line(row, rows) for row in rows]
     return "\n".join(lines)
@@ -85,14 +84,14 @@ def as_json(rows: list[Row]) -> list[dict[str, Any]]:
             name: {"median": median, "mean": mean}
             for name, (median, mean) in _ratios(row, [other for other in rows if _same_problems(row, other)]).items()
         }
-        found.append(_without_nan({**asdict(row), "times_as_long": ratios}))
+        found.append(_without_nan({**asdict(row), "times_as_fast_as": ratios}))
     return found
 
 
 def _line(row: Row, rows: list[Row]) -> str:
     if not row.count:
         return f"{row.label:27} {row.reason}"
-    ratios = "".join(f"{_short(median):>10}{_short(mean):>10}" for median, mean in _ratios(row, rows).values())
+    ratios = "".join(f"{_short(median):>11}{_short(mean):>11}" for median, mean in _ratios(row, rows).values())
     note = f"  (some raised {row.note})" if row.note else ""
     return (
         f"{row.label:27} {row.count:6} {row.solved:6.2f}% {row.strict:6.2f}% "
@@ -101,7 +100,7 @@ def _line(row: Row, rows: list[Row]) -> str:
 
 
 def _ratios(row: Row, rows: list[Row]) -> dict[str, tuple[float, float]]:
-    """How many times as long the references take as this row, by median and by mean."""
+    """How many times as fast as each reference a row is, by median and by mean."""
     by_key = {other.peer: other for other in rows}
     ratios = {}
     for _, key in REFERENCES:
@@ -115,7 +114,7 @@ def _same_problems(row: Row, other: Row) -> bool:
 
 
 def _short(ratio: float) -> str:
-    return "–" if math.isnan(ratio) else f"{ratio:.2f}"
+    return "–" if math.isnan(ratio) else f"{ratio:.3g}"
 
 
 def _without_nan(value: Any) -> Any:
