@@ -15,6 +15,7 @@ import math
 import platform
 import statistics
 import tempfile
+import textwrap
 from contextlib import ExitStack
 from pathlib import Path
 from typing import Any
@@ -65,7 +66,7 @@ class Contestant:
                 self._solve_next(self._worker, chunk, self._left / rounds_left)
         except WorkerError as error:
             self._worker = None
-            self.measured.reason = self.measured.note = _one_line(error)
+            self.measured.reason, self.measured.note = _one_line(error), f"stopped early: {_one_line(error)}"
 
     def finish(self) -> None:
         """Judge a batch's answers; of its rounds the one that took the median time counts."""
@@ -95,7 +96,8 @@ class Contestant:
             measured.verdicts.append(judged(self._arm, target, answer))
         measured.nanoseconds += reply["nanoseconds"]
         measured.wall += reply["wall"]
-        measured.note = measured.note or next(iter(reply["errors"]), "")
+        if reply["errors"] and not measured.note:
+            measured.note = f"some raised {_one_line(reply['errors'][0])}"
 
 
 def compare(
@@ -203,8 +205,8 @@ def _python_or_reason(peer: Peer) -> Path | str:
         return f"cannot be installed: {_one_line(error)}"
 
 
-def _one_line(error: Exception) -> str:
-    return " ".join(str(error).split())[:300]
+def _one_line(words: object) -> str:
+    return textwrap.shorten(str(words), 200, placeholder=" …")
 
 
 def _processor() -> str:

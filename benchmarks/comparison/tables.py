@@ -22,7 +22,7 @@ class Measured:
         verdicts: One for each target that it got to.
         nanoseconds: The time of each.
         wall: The time of all together [ns]; what counts for the mean of a batch on several threads.
-        note: An exception that some of its solves raised.
+        note: What went wrong with some of its targets.
         reason: Why there is nothing to report; empty when there is.
     """
 
@@ -92,7 +92,7 @@ def _line(row: Row, rows: list[Row]) -> str:
     if not row.count:
         return f"{row.label:27} {row.reason}"
     ratios = "".join(f"{_short(median):>11}{_short(mean):>11}" for median, mean in _ratios(row, rows).values())
-    note = f"  (some raised {row.note})" if row.note else ""
+    note = f"  ({row.note})" if row.note else ""
     return (
         f"{row.label:27} {row.count:6} {row.solved:6.2f}% {row.strict:6.2f}% "
         f"{row.median:9.1f} {row.mean:9.1f} {row.p90:9.1f} {row.p99:9.1f}    {ratios}{note}"
