@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import os
 import subprocess
 import tempfile
 import threading
@@ -46,6 +47,7 @@ class Worker:
             stdout=subprocess.PIPE,
             stderr=self._log,
             text=True,
+            env=_environment(peer),
         )
         try:
             reply = self._ask(
@@ -124,3 +126,8 @@ class Worker:
         self._log.seek(0)
         said = self._log.read().strip().splitlines()
         return f"its process ended with status {status}" + (f": {said[-1]}" if said else "")
+
+
+def _environment(peer: Peer) -> dict[str, str]:
+    """The variables of this process; what PYTHONPATH names is not for an environment of a peer's own."""
+    return {name: value for name, value in os.environ.items() if name != "PYTHONPATH" or not peer.requirements}
