@@ -1,0 +1,41 @@
+"""ssik: analytic solutions by the module that `ssik build` writes for an arm."""
+
+from __future__ import annotations
+
+import contextlib
+import importlib.util
+import io
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from ssik.cli import main as ssik
+
+
+class Ssik:
+    """The module of the arm's own URDF, asked for the one solution nearest to the start (its documented quick call)."""
+
+    def __init__(self, arm: dict[str, Any]) -> None:
+        urdf = Path(arm["urdf"])
+        module = urdf.with_name(f"{urdf.stem}_ik.py")
+        said = io.StringIO()
+        with contextlib.redirect_stdout(said), contextlib.redirect_stderr(said):
+            words = ["build", str(urdf), "--base", arm["base"], "--ee", arm["tip"], "--out", str(module)]
+            status = ssik([*words, "--no-validate"])
+        if status:
+            raise RuntimeError(f"ssik build failed: {said.getvalue().strip().splitlines()[-1]}")
+        specification = importlib.util.spec_from_file_location(module.stem, module)
+        self._arm = importlib.util.module_from_spec(specification)
+        specification.loader.exec_module(self._arm)
+
+    def target(self, matrix: np.ndarray) -> np.ndarray:
+        return matrix
+
+    def start(self, q: np.ndarray) -> np.ndarray:
+        return q
+
+    def solve(self, target: np.ndarray, start: np.ndarray) -> Any:
+        return self._arm.solve(target, max_solutions=1, q_seed=start)
+
+    def answer(self, solved: Any) -> Any:
+        return solved[0].q if solved else None

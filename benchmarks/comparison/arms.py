@@ -1,0 +1,152 @@
+"""The arms that all peers are asked about, and the one URDF file of each that all of them read."""
+
+from __future__ import annotations
+
+import xml.etree.ElementTree as ElementTree
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+import pinocchio
+from numpy.typing import NDArray
+
+from pinik import robot_catalog
+
+__all__ = ["ARMS", "Arm", "ArmSource", "write_arm"]
+
+Array = NDArray[np.float64]
+
+# What says nothing about kinematics, or, like the Panda's soft limits of 0, is read by some peers alone.
+LEFT_OUT_OF_ROBOT = ("gazebo", "transmission", "material")
+LEFT_OUT_OF_LINK = ("visual", "collision")
+LEFT_OUT_OF_JOINT = ("safety_controller",)
+
+
+@dataclass(frozen=True)
+class ArmSource:
+    """An arm of a robot in the catalogue.
+
+    Attributes:
+        robot: The robot's name in pinik's catalogue.
+        base: The link that targets are expressed in: the root of the file that the peers get.
+        tip: The link that is placed.
+        alone: Whether the file holds the links from base to tip only; else it holds the whole robot.
+    """
+
+    robot: str
+    base: str
+    tip: str
+    alone: bool = False
+
+
+ARMS = {
+    "panda": ArmSource("panda", "panda_link0", "panda_link8"),
+    "ur5": ArmSource("ur5", "world", "tool0"),
+    "z1": ArmSource("z1", "world", "link06"),
+    "xarm7": ArmSource("xarm7", "world", "link7"),
+    "talos": ArmSource("talos", "torso_2_link", "gripper_left_base_link", alone=True),
+}
+
+
+class Arm:
+    """An arm as the peers know it, and plain Pinocchio's model of it.
+
+    Attributes:
+        name: Its short name.
+        urdf: The file that all peers read.
+        base: The root link.
+        tip: The link that is placed.
+        elements: Link, joint, link, …, from base to tip.
+        joints: The n joints in between that move, from base to tip.
+        lower: Their lower limits (n,) [rad].
+        upper: Their upper limits (n,) [rad].
+    """
+
+    def __init__(self, name: str, source: ArmSource, urdf: Path) -> None:
+        self.name = name
+        self.urdf = urdf
+        self.base, self.tip = source.base, source.tip
+        joints = _joints_between(ElementTree.parse(urdf).getroot(), self.base, self.tip)
+        self.elements = [self.base]
+        for joint in joints:
+            self.elements += [joint.attrib["name"], _link(joint, "child")]
+        self.joints = [joint.attrib["name"] for joint in joints if joint.attrib["type"] != "fixed"]
+        self._model = pinocchio.buildModelFromUrdf(str(urdf))
+        self._data = self._model.createData()
+        self._frame = self._model.getFrameId(self.tip, pinocchio.BODY)
+        ids = [self._model.getJointId(joint) for joint in self.joints]
+        self._places = np.array([self._model.joints[i].idx_q for i in ids])
+        self._q = pinocchio.neutral(self._model)
+        self.lower: Array = self._model.lowerPositionLimit[self._places]
+        self.upper: Array = self._model.upperPositionLimit[self._places]
+
+    def placement(self, q: Array) -> pinocchio.SE3:
+        """Where joint values (n,) put the tip, with respect to the base."""
+        self._q[self._places] = q
+        pinocchio.forwardKinematics(self._model, self._data, self._q)
+        return pinocchio.SE3(pinocchio.updateFramePlacement(self._model, self._data, self._frame))
+
+    def random(self, rng: np.random.Generator) -> Array:
+        """Joint values (n,) uniform between the limits."""
+        return rng.uniform(self.lower, self.upper)
+
+    def as_json(self) -> dict[str, object]:
+        """What an adapter is told."""
+        return {
+            "name": self.name,
+            "urdf": str(self.urdf),
+            "base": self.base,
+            "tip": self.tip,
+            "elements": self.elements,
+            "joints": self.joints,
+            "lower": self.lower.tolist(),
+            "upper": self.upper.tolist(),
+        }
+
+
+def write_arm(name: str, folder: Path) -> Arm:
+    """Write the URDF file of an arm into a folder: the robot's own, without shapes."""
+    source = ARMS[name]
+    robot = ElementTree.parse(robot_catalog.find(source.robot).urdf).getroot()
+    _leave_out(robot, LEFT_OUT_OF_ROBOT)
+    for link in robot.iter("link"):
+        _leave_out(link, LEFT_OUT_OF_LINK)
+    for joint in robot.iter("joint"):
+        _leave_out(joint, LEFT_OUT_OF_JOINT)
+    if source.alone:
+        _keep_chain(robot, source)
+    urdf = folder / f"{name}.urdf"
+    ElementTree.ElementTree(robot).write(urdf, encoding="utf-8", xml_declaration=True)
+    return Arm(name, source, urdf)
+
+
+def _leave_out(element: ElementTree.Element, tags: tuple[str, ...]) -> None:
+    for child in [child for child in element if child.tag in tags]:
+        element.remove(child)
+
+
+def _keep_chain(robot: ElementTree.Element, source: ArmSource) -> None:
+    """Take out every link and joint that is not between base and tip."""
+    joints = _joints_between(robot, source.base, source.tip)
+    links = {source.base, *(_link(joint, "child") for joint in joints)}
+    for element in list(robot):
+        if not (element in joints or (element.tag == "link" and element.attrib["name"] in links)):
+            robot.remove(element)
+
+
+def _joints_between(robot: ElementTree.Element, base: str, tip: str) -> list[ElementTree.Element]:
+    """The joints from base to tip, in order."""
+    above = {_link(joint, "child"): joint for joint in robot.findall("joint")}
+    joints: list[ElementTree.Element] = []
+    link = tip
+    while link != base:
+        joints.insert(0, above[link])
+        link = _link(above[link], "parent")
+    return joints
+
+
+def _link(joint: ElementTree.Element, side: str) -> str:
+    """The name of the link above ("parent") or below ("child") a joint."""
+    element = joint.find(side)
+    assert element is not None
+    return element.attrib["link"]
