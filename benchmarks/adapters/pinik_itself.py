@@ -20,30 +20,30 @@ class PinikArm:
         self._tip, self._method = arm["tip"], method
         self._places = [self._robot.model.joints[self._robot.model.getJointId(name)].idx_q for name in arm["joints"]]
 
-    def target(self, matrix: np.ndarray) -> Any:
-        return pinik.Target(self._tip, matrix[:3, 3], rotation=matrix[:3, :3])
+    def target(self, matrix: np.ndarray) -> pinocchio.SE3:
+        return pinocchio.SE3(matrix)
 
     def start(self, q: np.ndarray) -> np.ndarray:
         whole = self._robot.neutral()
         whole[self._places] = q
         return whole
 
-    def answer(self, solved: pinik.Solution) -> np.ndarray:
-        return solved.q[self._places]
+    def answer(self, q: np.ndarray) -> np.ndarray:
+        return q[self._places]
 
 
 class Solve(PinikArm):
     """`robot.solve` from the given start."""
 
-    def solve(self, target: Any, start: np.ndarray) -> pinik.Solution:
-        return self._robot.solve(target, method=self._method, q0=start)
+    def solve(self, target: pinocchio.SE3, start: np.ndarray) -> np.ndarray:
+        return self._robot.solve(self._tip, placement=target, method=self._method, q0=start).q
 
 
 class SolveFromOwnStarts(PinikArm):
-    """`robot.solve` without a start: pinik chooses."""
+    """`robot.solve` from a start that pinik chooses near the target."""
 
-    def solve(self, target: Any, start: np.ndarray) -> pinik.Solution:
-        return self._robot.solve(target, method=self._method)
+    def solve(self, target: pinocchio.SE3, start: np.ndarray) -> np.ndarray:
+        return self._robot.solve(self._tip, placement=target, method=self._method, q0="nearest").q
 
 
 class SolvePrepared(PinikArm):
@@ -51,13 +51,10 @@ class SolvePrepared(PinikArm):
 
     def __init__(self, arm: dict[str, Any], method: str) -> None:
         super().__init__(arm, method)
-        self._ask = pinik.prepare(self._robot, super().target(np.eye(4)), method)
+        self._ask = pinik.prepare(self._robot, pinik.Target(self._tip, placement=np.eye(4)), method)
 
-    def target(self, matrix: np.ndarray) -> pinocchio.SE3:
-        return pinocchio.SE3(matrix)
-
-    def solve(self, target: pinocchio.SE3, start: np.ndarray) -> pinik.Solution:
-        return self._ask(target, start)
+    def solve(self, target: pinocchio.SE3, start: np.ndarray) -> np.ndarray:
+        return self._ask(target, start).q
 
 
 class SolveMany(PinikArm):
