@@ -83,7 +83,7 @@ class Attempts {
 
   // From a configuration (put inside the limits), or with `nearest` from one that the table knows, what is not drawn as
   // in `start`; `target` is the problem's number among many, a key of the drawn starts.
-  Outcome operator()(Vector start, std::uint64_t target, bool nearest) {
+  Outcome operator()(Vector& start, std::uint64_t target, bool nearest) {
     began_ = Clock::now();
     outcome_ = Outcome();
     least_residual_ = infinity;

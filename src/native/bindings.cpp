@@ -9,6 +9,10 @@
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/vector.h>
 
+#define NPY_NO_DEPRECATED_API NPY_1_7_API_VERSION
+#include <numpy/arrayobject.h>
+
+#include <algorithm>
 #include <optional>
 #include <pinocchio/config.hpp>  // only the version
 
@@ -68,6 +72,23 @@ Placement in_joint(const Robot& robot, int joint, const Mat3& R, const Vec3& p) 
   return {turned * R, turned * p};
 }
 
+// The numbers of a plain float64 array of that shape; null where it is anything else.
+const double* numbers_of(nb::handle array, std::initializer_list<npy_intp> shape) {
+  if (!PyArray_Check(array.ptr())) return nullptr;
+  auto* own = reinterpret_cast<PyArrayObject*>(array.ptr());
+  const bool fits = PyArray_TYPE(own) == NPY_DOUBLE && PyArray_ISCARRAY_RO(own) &&
+                    PyArray_NDIM(own) == static_cast<int>(shape.size()) &&
+                    std::equal(shape.begin(), shape.end(), PyArray_DIMS(own));
+  return fits ? static_cast<const double*>(PyArray_DATA(own)) : nullptr;
+}
+
+nb::object as_array(const Vector& numbers) {
+  npy_intp size = numbers.size();
+  nb::object array = nb::steal(PyArray_SimpleNew(1, &size, NPY_DOUBLE));
+  std::copy_n(numbers.data(), size, static_cast<double*>(PyArray_DATA(reinterpret_cast<PyArrayObject*>(array.ptr()))));
+  return array;
+}
+
 nb::object as_float(double value) { return std::isnan(value) ? nb::none() : nb::object(nb::float_(value)); }
 
 nb::tuple as_tuple(const std::vector<TargetError>& errors) {
@@ -78,7 +99,7 @@ nb::tuple as_tuple(const std::vector<TargetError>& errors) {
 }
 
 nb::tuple as_tuple(const State& state) {
-  return nb::make_tuple(Vector(state.q), state.iteration, state.joint_updates, as_tuple(state.errors), state.residual,
+  return nb::make_tuple(as_array(state.q), state.iteration, state.joint_updates, as_tuple(state.errors), state.residual,
                         state.attempt, static_cast<int>(state.status));
 }
 
@@ -93,9 +114,20 @@ nb::tuple states_of(const Answer& answer) {
   return nb::tuple(states);
 }
 
-Answer solve(Engine& engine, const Vector& start, const std::vector<Goal>& goals, bool nearest) {
+Answer solve(Engine& engine, Vector start, std::vector<Goal> goals, bool nearest) {
   const nb::gil_scoped_release release;
-  return engine.solve(start, goals, nearest);
+  return engine.solve(std::move(start), std::move(goals), nearest);
+}
+
+nb::object goals_of(const Answer& answer) {
+  nb::list rows;
+  for (const Goal& goal : answer.goals) {
+    Vector row(numbers_of_a_goal);
+    const Eigen::Matrix<double, 3, 3, Eigen::RowMajor> R = goal.rotation;
+    row << goal.position, Eigen::Map<const Eigen::Matrix<double, 9, 1>>(R.data()), goal.direction, goal.at;
+    rows.append(as_array(row));
+  }
+  return rows;
 }
 
 // A rotation to the last bits: what is less needs a better check than this one.
@@ -108,16 +140,14 @@ bool is_rotation(const Mat3& R) {
 std::optional<Goal> goal_from(const Term& term, nb::handle place) {
   constexpr double farthest = 1e9;
   Goal goal;
-  nb::ndarray<const double, nb::shape<4, 4>, nb::c_contig, nb::device::cpu> matrix;
-  nb::ndarray<const double, nb::shape<3>, nb::c_contig, nb::device::cpu> point;
   if (term.asks_axis) return std::nullopt;
-  if (nb::try_cast(place, matrix, false)) {
-    const Eigen::Map<const Eigen::Matrix<double, 4, 4, Eigen::RowMajor>> M(matrix.data());
+  if (const double* matrix = numbers_of(place, {4, 4})) {
+    const Eigen::Map<const Eigen::Matrix<double, 4, 4, Eigen::RowMajor>> M(matrix);
     goal.position = M.topRightCorner<3, 1>();
     goal.rotation = M.topLeftCorner<3, 3>();
     if (M.row(3) != Eigen::RowVector4d(0.0, 0.0, 0.0, 1.0) || !is_rotation(goal.rotation)) return std::nullopt;
-  } else if (!term.asks_rotation && nb::try_cast(place, point, false)) {
-    goal.position = Eigen::Map<const Vec3>(point.data());
+  } else if (const double* point = numbers_of(place, {3}); point && !term.asks_rotation) {
+    goal.position = Eigen::Map<const Vec3>(point);
   } else {
     return std::nullopt;
   }
@@ -126,12 +156,13 @@ std::optional<Goal> goal_from(const Term& term, nb::handle place) {
 }
 
 std::optional<Answer> solve_at(Engine& engine, nb::handle place, nb::handle start, bool nearest) {
-  nb::ndarray<const double, nb::ndim<1>, nb::c_contig, nb::device::cpu> numbers;
-  if (engine.problem().terms.size() != 1 || !nb::try_cast(start, numbers, false)) return std::nullopt;
+  const int nq = engine.mechanism().nq;
+  const double* numbers = numbers_of(start, {nq});
+  if (engine.problem().terms.size() != 1 || !numbers) return std::nullopt;
   const std::optional<Goal> goal = goal_from(engine.problem().terms.front(), place);
-  Vector q = Eigen::Map<const Vector>(numbers.data(), static_cast<Eigen::Index>(numbers.shape(0)));
+  Vector q = Eigen::Map<const Vector>(numbers, nq);
   if (!goal || !engine.mechanism().normalize(q)) return std::nullopt;
-  return solve(engine, q, {*goal}, nearest);
+  return solve(engine, std::move(q), {*goal}, nearest);
 }
 
 template <class T>
@@ -160,7 +191,7 @@ nb::tuple solve_many(Engine& engine, nb::ndarray<const double, nb::ndim<2>, nb::
           for (std::size_t t = 0; t < terms; ++t)
             wanted[t] = goal_from(goals.data() + numbers_of_a_goal * (i * terms + t));
         },
-        [&](std::uint64_t i, const Answer& answer, double time) {
+        [&](std::uint64_t i, const Answer& answer) {
           Eigen::Map<Vector>(q.data() + i * nq, static_cast<Eigen::Index>(nq)) = answer.q;
           TargetError largest;
           for (const TargetError& error : answer.errors) {
@@ -173,7 +204,7 @@ nb::tuple solve_many(Engine& engine, nb::ndarray<const double, nb::ndim<2>, nb::
           iterations[i] = answer.iterations;
           updates[i] = answer.joint_updates;
           restarts[i] = answer.restarts;
-          seconds[i] = time;
+          seconds[i] = answer.seconds;
         },
         [&] {
           const nb::gil_scoped_acquire acquire;
@@ -193,6 +224,7 @@ nb::tuple solve_many(Engine& engine, nb::ndarray<const double, nb::ndim<2>, nb::
 
 NB_MODULE(_native, m) {
   using namespace pinik;
+  if (_import_array() < 0) throw nb::python_error();
   m.doc() = "pinik's compiled engine; use it through pinik.solve, engine=\"native\".";
   m.attr("pinocchio_version") = PINOCCHIO_VERSION;
 
@@ -298,13 +330,15 @@ NB_MODULE(_native, m) {
 
   nb::class_<Answer>(m, "Answer")
       .def_prop_ro("status", [](const Answer& a) { return static_cast<int>(a.status); })
-      .def_prop_ro("q", [](const Answer& a) { return Vector(a.q); },
+      .def_prop_ro("q", [](const Answer& a) { return as_array(a.q); },
                    nb::sig("def q(self) -> NDArray[numpy.float64]"))
       .def_prop_ro("errors", [](const Answer& a) { return as_tuple(a.errors); },
                    nb::sig("def errors(self) -> tuple[tuple[float | None, float | None], ...]"))
       .def_ro("iterations", &Answer::iterations)
       .def_ro("joint_updates", &Answer::joint_updates)
       .def_ro("restarts", &Answer::restarts)
+      .def_ro("seconds", &Answer::seconds)
+      .def_prop_ro("goals", &goals_of, nb::sig("def goals(self) -> list[NDArray[numpy.float64]]"))
       .def_prop_ro("proof", &proof_of, nb::sig("def proof(self) -> tuple[int, float, float, bool] | None"))
       .def_prop_ro("states", &states_of,
                    nb::sig("def states(self) -> tuple[tuple[NDArray[numpy.float64], int, int, "
@@ -317,8 +351,8 @@ NB_MODULE(_native, m) {
            },
            "robot"_a, "problem"_a, "settings"_a)
       .def("solve",
-           [](Engine& self, const Vector& start, nb::ndarray<const double, nb::shape<-1, 18>, nb::c_contig> goals,
-              bool nearest) { return solve(self, start, goals_from(goals.data(), goals.shape(0)), nearest); },
+           [](Engine& self, Vector start, nb::ndarray<const double, nb::shape<-1, 18>, nb::c_contig> goals,
+              bool nearest) { return solve(self, std::move(start), goals_from(goals.data(), goals.shape(0)), nearest); },
            "start"_a, "goals"_a, "nearest"_a)
       .def("solve_at", &solve_at, "place"_a, "start"_a, "nearest"_a,
            nb::sig("def solve_at(self, place: object, start: object, nearest: bool) -> Answer | None"))

@@ -23,6 +23,8 @@ struct Robot {
 // An outcome whose errors plain Pinocchio has measured; it has the last word on the status.
 struct Answer : Outcome {
   std::vector<TargetError> errors;
+  std::vector<Goal> goals;  // what was asked
+  double seconds = 0.0;
 };
 
 class Engine {
@@ -34,10 +36,11 @@ class Engine {
 
   const Mechanism& mechanism() const { return robot_->mechanism; }
 
-  Answer solve(const Vector& start, const std::vector<Goal>& goals, bool nearest) {
+  Answer solve(Vector start, std::vector<Goal> goals, bool nearest) {
     std::unique_ptr<Worker> worker = borrow();
     Answer answer = worker->solve(*robot_, settings_, start, goals, 0, nearest, nullptr);
     give_back(std::move(worker));
+    answer.goals = std::move(goals);
     return answer;
   }
 
@@ -57,10 +60,8 @@ class Engine {
         Vector start;
         std::vector<Goal> goals;
         for (std::uint64_t i = next++; i < count && !stop; i = next++) {
-          const Clock::time_point began = Clock::now();
           take(i, start, goals);
-          const Answer answer = worker->solve(*robot_, settings_, start, goals, i, nearest, &stop);
-          put(i, answer, std::chrono::duration<double>(Clock::now() - began).count());
+          put(i, worker->solve(*robot_, settings_, start, goals, i, nearest, &stop));
         }
         give_back(std::move(worker));
         const std::lock_guard<std::mutex> lock(mutex);
@@ -95,9 +96,11 @@ class Engine {
         attempts.emplace<3>(problem, settings, stop);
     }
 
-    Answer solve(const Robot& robot, const Settings& settings, const Vector& start, const std::vector<Goal>& goals,
+    // The start is put inside the limits.
+    Answer solve(const Robot& robot, const Settings& settings, Vector& start, std::vector<Goal>& goals,
                  std::uint64_t target, bool nearest, StopFlag stop_flag) {
-      problem.goals = goals;
+      const Clock::time_point began = Clock::now();
+      problem.goals.swap(goals);
       stop = stop_flag;
       Answer answer;
       std::visit(
@@ -115,6 +118,8 @@ class Engine {
         answer.status = Status::unreachable;
       else if (answer.status == Status::converged)
         answer.status = Status::stalled;
+      problem.goals.swap(goals);
+      answer.seconds = std::chrono::duration<double>(Clock::now() - began).count();
       return answer;
     }
   };

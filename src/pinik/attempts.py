@@ -16,7 +16,7 @@ from .run import TO_THE_END, run
 from .solvers import Patience, Solver
 from .starts import Starts
 from .state import State, Status, measure_errors
-from .targets import TargetError, Tolerance
+from .targets import Target, TargetError, Tolerance
 
 __all__ = ["Outcome", "Settings", "attempt_all"]
 
@@ -67,6 +67,8 @@ class Outcome(NamedTuple):
         restarts: Drawn starts used.
         proof: Why a target is out of reach, where one is.
         states: Every state of every attempt, where a trace is wanted.
+        targets: What was asked for.
+        time: Seconds.
     """
 
     status: Status
@@ -77,6 +79,8 @@ class Outcome(NamedTuple):
     restarts: int
     proof: Shortfall | None
     states: tuple[State, ...]
+    targets: tuple[Target, ...]
+    time: float
 
 
 def attempt_all(settings: Settings, began: float) -> Outcome:
@@ -84,7 +88,7 @@ def attempt_all(settings: Settings, began: float) -> Outcome:
 
     `began` is when the solve did, on `time.perf_counter`'s clock [s].
     """
-    return _Attempts(settings, began + settings.time_limit).outcome()
+    return _Attempts(settings, began).outcome()
 
 
 class _Attempts:
@@ -97,9 +101,10 @@ class _Attempts:
         states: Every state so far, where a trace is wanted.
     """
 
-    def __init__(self, settings: Settings, deadline: float) -> None:
+    def __init__(self, settings: Settings, began: float) -> None:
         self.settings = settings
-        self.deadline = deadline
+        self.began = began
+        self.deadline = began + settings.time_limit
         self.iterations = 0
         self.joint_updates = 0
         self.restarts = 0
@@ -201,4 +206,7 @@ class _Attempts:
             status = Status.UNREACHABLE
         elif status is Status.CONVERGED:
             status = Status.STALLED
-        return Outcome(status, q, errors, self.iterations, self.joint_updates, self.restarts, proof, tuple(self.states))
+        return Outcome(
+            status, q, errors, self.iterations, self.joint_updates, self.restarts, proof, tuple(self.states),
+            asked.kinematics.targets, time.perf_counter() - self.began,
+        )  # fmt: skip

@@ -146,10 +146,16 @@ def solve_from_keywords(
         if position is not None or any(name in options for name in TARGET_KEYWORDS):
             raise InputError("with Target objects the target's keywords belong into Target(...)")
         return solve(robot, targets, method, **options)
-    key = _key_of_a_place(robot, targets, position, method, options)
-    if key is not None and key in robot.kept:
+    key = _key_of_a_place(targets, position, method, options)
+    prepared: Prepared | None = None
+    if key is not None:
+        try:
+            prepared = robot.kept.get(key)
+        except TypeError:  # something in it cannot be a key
+            key = None
+    if prepared is not None:
         place = options["placement"] if position is None else _as_array(position)
-        solution: Solution | None = robot.kept[key].at(place, options.get("q0"))
+        solution = prepared.at(place, options.get("q0"))
         if solution is not None:
             return solution
     fields = {name: options.pop(name) for name in TARGET_KEYWORDS if name in options}
@@ -157,25 +163,22 @@ def solve_from_keywords(
     if key is None:
         return solve(robot, target, method, **options)
     q0 = options.pop("q0", None)
-    prepared = robot.kept.get(key) or _keep(robot, key, prepare(robot, target, method, **options))
-    return prepared(target, q0)
+    return (prepared or _keep(robot, key, prepare(robot, target, method, **options)))(target, q0)
 
 
 def _key_of_a_place(
-    robot: Robot, frame: str, position: ArrayLike | None, method: object, options: Mapping[str, Any]
+    frame: str, position: ArrayLike | None, method: object, options: Mapping[str, Any]
 ) -> tuple[object, ...] | None:
     """What to keep the compiled question under, where it asks one frame for a position, or for a placement."""
-    if (position is None) is not ("placement" in options) or not _OTHER_KEYWORDS.isdisjoint(options):
+    if (position is None) is not ("placement" in options) or type(method) is not str:
         return None
-    if type(method) is not str:
-        return None
-    settings = [(name, type(value), value) for name, value in options.items() if name not in ("placement", "q0")]
-    key = (frame, position is None, method, SOLVERS.get(method), *settings)
-    try:
-        hash(key)
-    except TypeError:
-        return None
-    return key
+    settings = []
+    for name, value in options.items():
+        if name in _OTHER_KEYWORDS:
+            return None
+        if name != "placement" and name != "q0":
+            settings.append((name, type(value), value))
+    return (frame, position is None, method, SOLVERS.get(method), *settings)
 
 
 def _as_array(position: ArrayLike) -> object:

@@ -138,8 +138,10 @@ class Solutions:
             int(self.restarts[index]),
             shortfall(asked.kinematics, asked.limits) if self.status[index] is Status.UNREACHABLE else None,
             (),
+            targets,
+            float(self.time[index]),
         )
-        return Solution(outcome, asked, targets, prepared.engine, float(self.time[index]))
+        return Solution(outcome, asked)
 
 
 def _questions(robot: Robot, targets: Any, places: Any) -> tuple[tuple[Target, ...], Array]:

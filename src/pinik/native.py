@@ -5,6 +5,7 @@ from __future__ import annotations
 import functools
 import importlib.util
 import math
+from collections.abc import Iterable
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
@@ -23,8 +24,6 @@ from .targets import Target, TargetError
 __all__ = [
     "Answer",
     "Answers",
-    "attempt_all",
-    "attempt_at",
     "attempt_many",
     "goals_of",
     "make_engine",
@@ -72,17 +71,6 @@ def why_not(solver: Solver | None = None) -> str | None:
     return None
 
 
-def attempt_all(engine: Engine, targets: tuple[Target, ...], start: Array, nearest: bool) -> Answer:
-    """What `attempts.attempt_all` does, by the compiled engine: `make_engine` made it."""
-    return Answer(engine.solve(start, goals_of(targets), nearest))
-
-
-def attempt_at(engine: Engine, place: object, start: object, nearest: bool) -> Answer | None:
-    """The same for one target at a 4×4 matrix or a position (3,); None where these are not beyond doubt."""
-    answer = engine.solve_at(place, start, nearest)
-    return None if answer is None else Answer(answer)
-
-
 class Answers(NamedTuple):
     """What N solves came to, an entry each: see `many.Solutions`."""
 
@@ -106,12 +94,27 @@ def attempt_many(engine: Engine, goals: Array, starts: Array, nearest: bool, thr
 
 
 class Answer:
-    """What the attempts came to, as `attempts.Outcome` tells it; made into Python's numbers when looked at."""
+    """What the attempts came to, as `attempts.Outcome` tells it; made into Python's numbers when looked at.
 
-    __slots__ = ("_answer",)
+    Attributes:
+        pattern: The targets, but for where they were.
+    """
 
-    def __init__(self, answer: _native.Answer) -> None:
+    __slots__ = ("_answer", "pattern")
+
+    def __init__(self, answer: _native.Answer, pattern: tuple[Target, ...]) -> None:
         self._answer = answer
+        self.pattern = pattern
+
+    @property
+    def targets(self) -> tuple[Target, ...]:
+        """What was asked for."""
+        return targets_of(self.pattern, self._answer.goals)
+
+    @property
+    def time(self) -> float:
+        """Seconds."""
+        return self._answer.seconds
 
     @property
     def status(self) -> Status:
@@ -301,7 +304,7 @@ def goals_of(targets: tuple[Target, ...]) -> Array:
     return goals
 
 
-def targets_of(pattern: tuple[Target, ...], goals: Array) -> tuple[Target, ...]:
+def targets_of(pattern: tuple[Target, ...], goals: Iterable[Array]) -> tuple[Target, ...]:
     """The targets that `goals_of` read: what is asked as in the pattern, where as in the numbers."""
     return tuple(
         target.with_numbers(goal[:3], goal[3:12].reshape(3, 3), goal[12:15], goal[15:])

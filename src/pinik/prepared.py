@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import functools
 import math
 import time
 from collections.abc import Iterable, Mapping, Sequence
@@ -13,7 +12,7 @@ import pinocchio
 from numpy.typing import ArrayLike, NDArray
 
 from . import native
-from .attempts import Outcome, Settings, attempt_all
+from .attempts import Settings, attempt_all
 from .checks import as_finite_number, as_names
 from .errors import EngineError, InputError, UnknownNameError
 from .kinematics import Kinematics
@@ -182,13 +181,10 @@ class Prepared:
             self.targets = self._as_asked(targets)
         nearest = isinstance(q0, str) and q0 == "nearest"
         start = self.settings.start if q0 is None or nearest else self.robot.check_configuration(q0, "q0")
-        outcome: Outcome | native.Answer
         if self.native is not None:
-            outcome = native.attempt_all(self.native, self.targets, start, nearest)
-        else:
-            self._kinematics.retarget(self.targets)
-            outcome = attempt_all(self.settings._replace(start=start, nearest=nearest), began)
-        return Solution(outcome, self.settings, self.targets, self.engine, time.perf_counter() - began)
+            return Solution(self.native.solve(start, native.goals_of(self.targets), nearest), self.settings)
+        self._kinematics.retarget(self.targets)
+        return Solution(attempt_all(self.settings._replace(start=start, nearest=nearest), began), self.settings)
 
     def at(self, place: object, q0: object = None) -> Solution | None:
         """The same for one frame, in the fewest microseconds, where the compiled engine finds nothing to object to.
@@ -202,24 +198,15 @@ class Prepared:
         """
         if self.native is None:
             return None
-        began = time.perf_counter()
-        start, nearest = q0, False
+        nearest = False
         if q0 is None:
-            start = self.settings.start
-        elif type(q0) is str:
-            start, nearest = self.settings.start, q0 == "nearest"
-            if not nearest:
-                return None
-        array = place.homogeneous if isinstance(place, pinocchio.SE3) else place
-        answer = native.attempt_at(self.native, array, start, nearest)
-        if answer is None:
-            return None
-        assert isinstance(array, np.ndarray)
-        targets = functools.partial(self._moved, array.copy())
-        return Solution(answer, self.settings, targets, "native", time.perf_counter() - began)
-
-    def _moved(self, place: Array) -> tuple[Target, ...]:
-        return (self.targets[0].moved_to(place),)
+            q0 = self.settings.start
+        elif type(q0) is str and q0 == "nearest":
+            q0, nearest = self.settings.start, True
+        if isinstance(place, pinocchio.SE3):
+            place = place.homogeneous
+        answer = self.native.solve_at(place, q0, nearest)
+        return None if answer is None else Solution(answer, self.settings)
 
     def _as_asked(self, targets: Target | Sequence[Target] | pinocchio.SE3 | ArrayLike) -> tuple[Target, ...]:
         if isinstance(targets, (pinocchio.SE3, np.ndarray)) or not _are_targets(targets):

@@ -114,9 +114,11 @@ class Robot:
     @property
     def kept(self) -> dict[Any, Any]:
         """This thread's own store for what others compiled for this robot."""
-        if not hasattr(self._local, "kept"):
-            self._local.kept = {}
-        return self._local.kept  # type: ignore[no-any-return]
+        try:
+            kept: dict[Any, Any] = self._local.kept
+        except AttributeError:
+            kept = self._local.kept = {}
+        return kept
 
     @property
     def poses(self) -> dict[str, Array]:

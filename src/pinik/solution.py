@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
 from functools import cached_property
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import pinocchio
@@ -21,41 +20,33 @@ from .targets import Target, TargetError, largest_of
 
 __all__ = ["Solution"]
 
+if TYPE_CHECKING:
+    from . import _native
+
 Array = NDArray[np.float64]
 
 _IN_WORDS = (
     "robot", "targets", "status", "q", "errors", "iterations", "joint_updates", "restarts", "trace", "method",
-    "message", "active_limits", "parameters", "why_not_native",
+    "message", "active_limits", "parameters", "why_not_native", "engine", "time",
 )  # fmt: skip
 
 
 class Solution:
-    """The answer of a solve, checked by plain Pinocchio.
+    """The answer of a solve, checked by plain Pinocchio."""
 
-    Attributes:
-        engine: "python" or "native".
-        time: Seconds.
-    """
-
-    def __init__(
-        self,
-        outcome: Outcome | Answer,
-        asked: Settings,
-        targets: tuple[Target, ...] | Callable[[], tuple[Target, ...]],
-        engine: str,
-        time: float,
-    ) -> None:
-        """Put together what a solve came to; `targets` may wait until somebody looks at them."""
-        self._outcome = outcome
+    def __init__(self, outcome: Outcome | _native.Answer, asked: Settings) -> None:
+        """Keep what a solve came to; it is put into words when somebody looks."""
+        self._came_to = outcome
         self._asked = asked
-        self._targets = targets
-        self.engine = engine
-        self.time = time
+
+    @cached_property
+    def _outcome(self) -> Outcome | Answer:
+        outcome = self._came_to
+        return outcome if isinstance(outcome, Outcome) else Answer(outcome, self._asked.kinematics.targets)
 
     def __getstate__(self) -> dict[str, Any]:
         """Everything in words and numbers: what it was computed with stays here."""
-        kept = {name: getattr(self, name) for name in _IN_WORDS}
-        return kept | {"engine": self.engine, "time": self.time}
+        return {name: getattr(self, name) for name in _IN_WORDS}
 
     @cached_property
     def robot(self) -> Robot:
@@ -65,7 +56,17 @@ class Solution:
     @cached_property
     def targets(self) -> tuple[Target, ...]:
         """What was asked for."""
-        return self._targets() if callable(self._targets) else self._targets
+        return self._outcome.targets
+
+    @cached_property
+    def time(self) -> float:
+        """Seconds that the engine took."""
+        return self._outcome.time
+
+    @cached_property
+    def engine(self) -> str:
+        """Which one computed: "python" or "native"."""
+        return "python" if isinstance(self._outcome, Outcome) else "native"
 
     @cached_property
     def status(self) -> Status:
