@@ -22,7 +22,7 @@ from typing import Any
 
 import numpy as np
 from comparison.arms import ARMS, Arm, write_arm
-from comparison.environments import CannotInstallError, python_of
+from comparison.environments import CannotInstallError, python_with
 from comparison.judge import NEAR, STRICT, judged
 from comparison.peer_list import PEERS, Peer, pinik_by
 from comparison.problems import TASKS, Problems, make_problems
@@ -200,7 +200,7 @@ def _chosen_peers(arguments: argparse.Namespace) -> list[Peer]:
 
 def _python_or_reason(peer: Peer) -> Path | str:
     try:
-        return python_of(peer)
+        return python_with(peer.requirements, peer.key)
     except CannotInstallError as error:
         return f"cannot be installed: {_one_line(error)}"
 

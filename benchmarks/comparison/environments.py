@@ -1,4 +1,4 @@
-"""One virtual environment per peer, made once in the user's cache folder."""
+"""Virtual environments for what pinik is compared with, made once in the user's cache folder."""
 
 from __future__ import annotations
 
@@ -7,37 +7,40 @@ import os
 import shutil
 import subprocess
 import sys
+from collections.abc import Sequence
 from pathlib import Path
 
 import platformdirs
 
-from .peer_list import Peer
-
-__all__ = ["CannotInstallError", "python_of"]
+__all__ = ["CannotInstallError", "python_with"]
 
 
 class CannotInstallError(RuntimeError):
-    """A peer's packages could not be installed; the message says why."""
+    """Packages could not be installed; the message says why."""
 
 
-def python_of(peer: Peer) -> Path:
-    """The interpreter that has the peer's packages; its environment is made if it is not there yet.
+def python_with(requirements: Sequence[str], key: str) -> Path:
+    """The interpreter that has these packages, pinik's own for none; its environment is made if it is not there yet.
+
+    Args:
+        requirements: As pip takes them.
+        key: What the environment's folder is called after.
 
     Raises:
         CannotInstallError: pip could not install the packages.
     """
-    if not peer.requirements:
+    if not requirements:
         return Path(sys.executable)
-    home = _home(peer)
+    home = _home(requirements, key)
     python = home / ("Scripts/python.exe" if os.name == "nt" else "bin/python")
     finished = home / "finished"
     if not finished.exists():
         shutil.rmtree(home, ignore_errors=True)
-        print(f"making an environment for {peer.label}: {home}", file=sys.stderr)
+        print(f"making an environment for {key}: {home}", file=sys.stderr)
         try:
             _run([sys.executable, "-m", "venv", str(home)])
             pip = [str(python), "-m", "pip", "--quiet", "--no-input", "--disable-pip-version-check"]
-            _run([*pip, "install", *peer.requirements])
+            _run([*pip, "install", *requirements])
         except CannotInstallError:
             shutil.rmtree(home, ignore_errors=True)
             raise
@@ -45,11 +48,11 @@ def python_of(peer: Peer) -> Path:
     return python
 
 
-def _home(peer: Peer) -> Path:
+def _home(requirements: Sequence[str], key: str) -> Path:
     """A folder that is another one for other versions."""
     cache = os.environ.get("PINIK_CACHE_DIR") or platformdirs.user_cache_dir("pinik", appauthor=False)
-    what = "\n".join([sys.version, *peer.requirements])
-    return Path(cache) / "peers" / f"{peer.key}-{hashlib.sha256(what.encode()).hexdigest()[:12]}"
+    what = "\n".join([sys.version, *requirements])
+    return Path(cache) / "peers" / f"{key}-{hashlib.sha256(what.encode()).hexdigest()[:12]}"
 
 
 def _run(command: list[str]) -> None:

@@ -5,8 +5,8 @@ from __future__ import annotations
 import math
 import os
 import threading
-from collections.abc import Mapping, Sequence
-from functools import cached_property, partial
+from collections.abc import Callable, Mapping, Sequence
+from functools import cache, cached_property, partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -370,9 +370,7 @@ class Robot:
             method: A solver's name, class or instance.
             **options: `Target`'s keywords, `pinik.solve`'s options and the solver's parameters.
         """
-        from .loop import solve_from_keywords
-
-        return solve_from_keywords(self, targets, position, method, options)
+        return _solve_from_keywords()(self, targets, position, method, options)
 
     def _joint_limits(self) -> tuple[Array, Array]:
         cut = [limits_cut_by_followers(joint, self.joints) for joint in self._settable]
@@ -394,6 +392,14 @@ class Robot:
             if joint.nq == 1:
                 lower[joint.idx_q], upper[joint.idx_q] = low, high
         return lower, upper
+
+
+@cache
+def _solve_from_keywords() -> Callable[..., Solution]:
+    """The loop's front, which stands below in the order of modules; looked up once, as that takes a microsecond."""
+    from .loop import solve_from_keywords
+
+    return solve_from_keywords
 
 
 def _frames_by_name(model: pinocchio.Model) -> dict[str, int]:
