@@ -45,7 +45,7 @@ def pinik_rows(method: str) -> list[Peer]:
             (file, "SolveFromOwnStarts"),
             packages,
             options=options,
-            not_on_path="it takes no start",
+            not_on_path="it chooses its start",
         ),
     ]
     batches = [

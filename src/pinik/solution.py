@@ -25,28 +25,28 @@ if TYPE_CHECKING:
 
 Array = NDArray[np.float64]
 
-_IN_WORDS = (
-    "robot", "targets", "status", "q", "errors", "iterations", "joint_updates", "restarts", "trace", "method",
-    "message", "active_limits", "parameters", "why_not_native", "engine", "time",
-)  # fmt: skip
+_IN_WORDS = ("robot", "method", "parameters", "message", "active_limits", "trace", "engine", "why_not_native")
 
 
 class Solution:
     """The answer of a solve, checked by plain Pinocchio."""
+
+    _q: Array | None = None
 
     def __init__(self, outcome: Outcome | _native.Answer, asked: Settings) -> None:
         """Keep what a solve came to; it is put into words when somebody looks."""
         self._came_to = outcome
         self._asked = asked
 
-    @cached_property
+    @property
     def _outcome(self) -> Outcome | Answer:
         outcome = self._came_to
         return outcome if isinstance(outcome, Outcome) else Answer(outcome, self._asked.kinematics.targets)
 
     def __getstate__(self) -> dict[str, Any]:
         """Everything in words and numbers: what it was computed with stays here."""
-        return {name: getattr(self, name) for name in _IN_WORDS}
+        outcome = Outcome(*(getattr(self._outcome, name) for name in Outcome._fields))
+        return {name: getattr(self, name) for name in _IN_WORDS} | {"_came_to": outcome}
 
     @cached_property
     def robot(self) -> Robot:
@@ -68,15 +68,17 @@ class Solution:
         """Which one computed: "python" or "native"."""
         return "python" if isinstance(self._outcome, Outcome) else "native"
 
-    @cached_property
+    @property
     def status(self) -> Status:
         """Why the solve ended."""
         return self._outcome.status
 
-    @cached_property
+    @property
     def q(self) -> Array:
         """The best configuration found (nq,), also on failure."""
-        return self._outcome.q
+        if self._q is None:  # `cached_property` takes a lock, and a microsecond
+            self._q = self._came_to.q
+        return self._q
 
     @cached_property
     def errors(self) -> tuple[TargetError, ...]:
