@@ -44,7 +44,7 @@ class DampedLeastSquares(JacobianSolver):
     title = "Damped least squares"
     about = "the default; careful near singular configurations"
     max_iterations = 200
-    restarts = 60
+    restarts = 100
     patience = Patience(3, 0.2)
 
     damping: float = parameter(

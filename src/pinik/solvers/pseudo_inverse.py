@@ -32,7 +32,7 @@ class PseudoInverse(JacobianSolver):
     title = "Pseudo-inverse"
     about = "few steps away from singular configurations, wild near them"
     max_iterations = 200
-    restarts = 60
+    restarts = 100
     patience = Patience(6, 0.05)
 
     max_step: float = max_step_parameter(0.5)
