@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import os
 from collections.abc import Callable, Sequence
 
@@ -83,7 +84,7 @@ def compare_steps(
     from the same configuration.
     """
     at_thresholds, wrong = [], []
-    for before, after in zip(states, states[1:], strict=False):
+    for before, after in itertools.pairwise(states):
         gap = distance(robot, step(before.q), after.q)
         if not gap <= SAME:
             (at_thresholds if is_a_threshold(robot, step, before.q, gap) else wrong).append((before, gap))

@@ -77,9 +77,9 @@ def problems(draw: st.DrawFn, names: tuple[str, ...] = tuple(ROBOTS), most_targe
     settable = list(robot.joint_names)
     locked = draw(st.lists(st.sampled_from(settable), max_size=2, unique=True))
     posed = robot.random(rng)
-    kinds = draw(st.lists(st.sampled_from(["position", "pose", "rotation", "axis", "look", "axis+position"]), min_size=1,
-                          max_size=draw(st.integers(1, most_targets))))  # fmt: skip
-    targets = [target(draw, rng, robot, frames(name), posed, kind) for kind in kinds]
+    kinds = st.sampled_from(["position", "pose", "rotation", "axis", "look", "axis+position"])
+    asked = draw(st.lists(kinds, min_size=1, max_size=draw(st.integers(1, most_targets))))
+    targets = [target(draw, rng, robot, frames(name), posed, kind) for kind in asked]
     parameters = draw(parameters_of(method, robot))
     return Problem(robot, targets, start(robot, rng, limits), method, parameters, {"limits": limits, "locked": locked})
 

@@ -79,7 +79,7 @@ def test_without_the_module_python_computes_and_says_why(no_module, panda):
     s = panda.solve("panda_hand_tcp", [0.4, 0.1, 0.5], seed=101)
     assert s.success
     assert s.engine == "python"
-    with pytest.raises(pinik.EngineError, match="cannot be used: it was not built.*engine='auto' or 'python'"):
+    with pytest.raises(pinik.EngineError, match=r"cannot be used: it was not built.*engine='auto' or 'python'"):
         panda.solve("panda_hand_tcp", [0.4, 0.1, 0.5], engine="native", seed=102)
 
 
@@ -125,7 +125,7 @@ def test_a_users_own_method_runs_in_python(method, panda):
     s = panda.solve("panda_hand_tcp", [0.4, 0.1, 0.5], method=method)
     assert s.success
     assert s.engine == "python"
-    with pytest.raises(pinik.EngineError, match="the method '(marquardt|halved)' is written in Python|not built"):
+    with pytest.raises(pinik.EngineError, match=r"the method '(marquardt|halved)' is written in Python|not built"):
         panda.solve("panda_hand_tcp", [0.4, 0.1, 0.5], method=method, engine="native")
 
 
@@ -142,7 +142,8 @@ def test_a_success_is_one_by_plain_pinocchio(method, panda, arm, kinova, tiago):
     """Of 300 random questions: each answer's errors, verdict and limits, judged by Pinocchio alone."""
     rng = np.random.default_rng(5)
     solved = 0
-    for robot, frame in ((panda, "panda_hand_tcp"), (arm, "tip"), (kinova, "j2s6s200_end_effector"), (tiago, "arm_tool_link")):  # fmt: skip
+    hands = ("panda_hand_tcp", "tip", "j2s6s200_end_effector", "arm_tool_link")
+    for robot, frame in zip((panda, arm, kinova, tiago), hands, strict=True):
         model = robot.model
         data, number = model.createData(), model.getFrameId(frame)
         for _ in range(19):
