@@ -213,10 +213,12 @@ def test_the_interpreter_runs_on_during_a_long_solve(method, panda):
     thread = threading.Thread(target=count)
     thread.start()
     before = counted
-    s = pinik.solve(panda, opposed, method, engine="native", restarts=10**6, time_limit=0.5)
-    during = counted - before
-    running.clear()
-    thread.join()
+    try:
+        s = pinik.solve(panda, opposed, method, engine="native", restarts=10**6, time_limit=0.5)
+        during = counted - before
+    finally:
+        running.clear()
+        thread.join()
     assert s.status is Status.TIME_LIMIT
     assert during > 20
 
