@@ -10,7 +10,6 @@ import pinocchio
 import pytest
 
 import pinik
-from engines import WHY_NOT
 from pinik import SOLVERS, Target
 from robots import load_quietly
 
@@ -96,7 +95,6 @@ def test_a_method_registered_anew_is_meant_from_then_on(solve, monkeypatch):
     assert solve(method="dls").method == "dls"
 
 
-@pytest.mark.xfail(reason="an imported method is kept by its name")
 def test_a_method_imported_anew_is_meant_from_then_on(solve, monkeypatch):
     name = f"{__name__}:Lazy"
     assert solve(method=name, restarts=0).method == "lazy"
@@ -104,7 +102,6 @@ def test_a_method_imported_anew_is_meant_from_then_on(solve, monkeypatch):
     assert solve(method=name, restarts=0).method == "ccd"
 
 
-@pytest.mark.xfail(WHY_NOT is None, reason="a tool is part of the question by its identity")
 def test_a_tool_that_was_changed_is_meant_from_then_on(panda):
     target = Target(TIP, [0.4, 0.1, 0.5], tool=[0, 0, 0.1])
     assert pinik.solve(panda, target)
@@ -114,7 +111,6 @@ def test_a_tool_that_was_changed_is_meant_from_then_on(panda):
     assert s.success == (np.linalg.norm(got.translation - target.position) <= 1e-4)
 
 
-@pytest.mark.xfail(WHY_NOT is None, reason="the engine's robot is thrown out with the oldest, and makes it one more")
 def test_only_the_last_few_kinds_are_kept():
     panda = pinik.load("panda")
     kept = []

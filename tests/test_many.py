@@ -13,7 +13,7 @@ import pinocchio
 import pytest
 
 import pinik
-from engines import WHY_NOT, needs_native
+from engines import needs_native
 from pinik import Status, Target, Tolerance
 from pinik.state import measure_errors
 
@@ -86,12 +86,7 @@ def test_answers_do_not_depend_on_the_number_of_threads(kind, panda, poses):
         assert_same(one, other)
 
 
-OUTSIDE = pytest.mark.xfail(
-    WHY_NOT is None, reason="the Python engine begins outside the limits, where the Panda's neutral one lies"
-)
-
-
-@pytest.mark.parametrize("q0", [pytest.param(None, marks=OUTSIDE), "nearest"])
+@pytest.mark.parametrize("q0", [None, "nearest"])
 @pytest.mark.parametrize("method", ["ccd", "dls"])
 def test_the_python_engine_agrees_in_its_verdict(method, q0, panda, poses):
     python, auto = (
@@ -197,7 +192,6 @@ class TestSolutions:
         assert "beyond its chain's reach" in many[3].message
         assert many[3].to_dict()["status"] == "UNREACHABLE"
 
-    @pytest.mark.xfail(reason="one of many says python whichever engine computed it", condition=WHY_NOT is None)
     def test_one_of_many_names_the_engine(self, panda, poses):
         many = pinik.solve_many(panda, TIP, poses[:2])
         assert many[0].engine == many.engine

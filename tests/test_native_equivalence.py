@@ -62,7 +62,6 @@ def test_every_step_from_the_same_configuration_is_the_same():
     assert counts["at_thresholds"] <= RARELY * counts["steps"]
 
 
-@pytest.mark.xfail(reason="Python counts movers of both frames in a leader's column, the compiled engine does not")
 @pytest.mark.parametrize("method", ["pinv", "dls"])
 def test_a_leader_of_followers_that_carry_both_frames_and_one_alone_steps_the_same(method):
     zoo = load("zoo")
@@ -202,7 +201,6 @@ def test_equal_answers_are_told_alike(problem):
         assert ours[key] == theirs[key]
 
 
-@pytest.mark.xfail(reason="the Python engine begins outside the limits")
 def test_a_start_outside_the_limits_is_put_inside_by_both():
     panda = load_quietly("panda")
     outside = panda.upper_q + np.array([0.05, 7.0, 0.0, 0.3, -0.1, 6.5, 0.0, 0.01])

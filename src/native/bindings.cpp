@@ -268,16 +268,17 @@ NB_MODULE(_native, m) {
            "hole"_a)
       .def("add_coordinate",
            [](Problem& self, int joint, int index, int column, int entry,
-              const std::vector<std::pair<int, double>>& movers) {
+              const std::vector<std::pair<int, double>>& movers, const std::vector<std::pair<int, double>>& moved) {
              Coordinate coordinate;
              coordinate.joint = joint;
              coordinate.index = index;
              coordinate.column = column;
              coordinate.entry = entry;
-             for (const auto& [mover, multiplier] : movers) coordinate.movers.push_back({mover, multiplier});
+             for (const auto& [joint, multiplier] : movers) coordinate.movers.push_back({joint, multiplier});
+            for (const auto& [joint, multiplier] : moved) coordinate.moved.push_back({joint, multiplier});
              self.coordinates.push_back(coordinate);
            },
-           "joint"_a, "index"_a, "column"_a, "entry"_a, "movers"_a)
+           "joint"_a, "index"_a, "column"_a, "entry"_a, "movers"_a, "moved"_a)
       .def("finish",
            [](Problem& self, double lightest, double size_of_chain) {
              self.lightest = lightest;
@@ -354,7 +355,7 @@ NB_MODULE(_native, m) {
            [](Engine& self, Vector start, nb::ndarray<const double, nb::shape<-1, 18>, nb::c_contig> goals,
               bool nearest) { return solve(self, std::move(start), goals_from(goals.data(), goals.shape(0)), nearest); },
            "start"_a, "goals"_a, "nearest"_a)
-      .def("solve_at", &solve_at, "place"_a, "start"_a, "nearest"_a,
+      .def("solve_at", &solve_at, "place"_a.none(), "start"_a.none(), "nearest"_a,
            nb::sig("def solve_at(self, place: object, start: object, nearest: bool) -> Answer | None"))
       .def("solve_many", &solve_many, "starts"_a, "goals"_a, "nearest"_a, "threads"_a,
            nb::sig("def solve_many(self, starts: NDArray[numpy.float64], goals: NDArray[numpy.float64], "

@@ -31,7 +31,7 @@ class Settings(NamedTuple):
 
     Attributes:
         starts: Where the attempts after the first begin.
-        start: The first attempt's configuration (nq,).
+        start: The first attempt's configuration (nq,), put inside the limits.
         nearest: Whether the first attempt begins where `starts` says as well; what is not drawn is then as in `start`.
         max_iterations: Of one attempt.
         iterations_to_the_end: Of the last run, which follows the best of the failed attempts.
@@ -69,6 +69,7 @@ class Outcome(NamedTuple):
         states: Every state of every attempt, where a trace is wanted.
         targets: What was asked for.
         time: Seconds.
+        engine: Which one computed: "python" or "native".
     """
 
     status: Status
@@ -81,6 +82,7 @@ class Outcome(NamedTuple):
     states: tuple[State, ...]
     targets: tuple[Target, ...]
     time: float
+    engine: str = "python"
 
 
 def attempt_all(settings: Settings, began: float) -> Outcome:
@@ -102,7 +104,7 @@ class _Attempts:
     """
 
     def __init__(self, settings: Settings, began: float) -> None:
-        self.settings = settings
+        self.settings = settings._replace(start=settings.limits.clip(settings.limits.wrap(settings.start)))
         self.began = began
         self.deadline = began + settings.time_limit
         self.iterations = 0

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterable
+from typing import Any
 
 import numpy as np
 import pinocchio
@@ -16,6 +17,7 @@ __all__ = [
     "as_finite_number",
     "as_many",
     "as_names",
+    "as_numbers",
     "as_point",
     "as_points",
     "as_rotation",
@@ -70,12 +72,7 @@ def as_array(value: ArrayLike, shape: tuple[int, ...], what: str, of: str = "") 
 def as_many(values: ArrayLike, shape: tuple[int, ...], what: str) -> Array:
     """`values` as a fresh float64 array (n, *shape); InputError names the first that is not finite."""
     size = "×".join(map(str, shape))
-    try:
-        array = np.array(values)
-    except ValueError:
-        raise InputError(f"{what} takes N times {size} finite numbers; got rows of different lengths") from None
-    if array.dtype.kind not in "iuf":
-        raise InputError(f"{what} takes N times {size} finite numbers; got {array.dtype} values")
+    array = as_numbers(values, what)
     if array.shape[1:] != shape or array.ndim != len(shape) + 1:
         raise InputError(f"{what} takes N times {size} finite numbers; got an array of shape {array.shape}")
     finite = np.isfinite(array).all(axis=tuple(range(1, array.ndim)))
@@ -83,6 +80,17 @@ def as_many(values: ArrayLike, shape: tuple[int, ...], what: str) -> Array:
         k = int(np.argmin(finite))
         raise InputError(f"{what}[{k}] takes {size} finite numbers; got {array[k].tolist()}")
     return array.astype(np.float64)
+
+
+def as_numbers(values: ArrayLike, what: str) -> NDArray[Any]:
+    """`values` as an array of real numbers, whatever its shape."""
+    try:
+        array = np.asarray(values)
+    except ValueError:
+        raise InputError(f"{what} takes an array of numbers; got rows of different lengths") from None
+    if array.dtype.kind not in "iuf":
+        raise InputError(f"{what} takes an array of numbers; got {values!r}")
+    return array
 
 
 def as_vector(value: ArrayLike, size: int, what: str, of: str = "") -> Array:

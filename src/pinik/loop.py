@@ -170,7 +170,7 @@ def _key_of_a_place(
     frame: str, position: ArrayLike | None, method: object, options: Mapping[str, Any]
 ) -> tuple[object, ...] | None:
     """What to keep the compiled question under, where it asks one frame for a position, or for a placement."""
-    if (position is None) is not ("placement" in options) or type(method) is not str:
+    if (position is None) is not ("placement" in options) or type(method) is not str or method not in SOLVERS:
         return None
     settings = []
     for name, value in options.items():
@@ -178,7 +178,7 @@ def _key_of_a_place(
             return None
         if name != "placement" and name != "q0":
             settings.append((name, type(value), value))
-    return (frame, position is None, method, SOLVERS.get(method), *settings)
+    return (frame, position is None, method, SOLVERS[method], *settings)
 
 
 def _as_array(position: ArrayLike) -> object:
@@ -194,9 +194,11 @@ def _prepared(
     """The question, compiled; of the last few kinds that this thread asked, what was compiled then."""
     if not isinstance(robot, Robot):
         raise InputError(f"robot is what pinik.load returns; got {robot!r}")
+    if isinstance(method, str) and method not in SOLVERS:  # "module:Class", which may be another one next time
+        return prepare(robot, targets, method, **options)
     try:
         shapes = tuple(target.shape for target in targets)
-        meant = SOLVERS.get(method) if isinstance(method, str) else None
+        meant = SOLVERS[method] if isinstance(method, str) else None
         key = (shapes, method, meant, *((name, type(value), value) for name, value in options.items()))
         found = robot.kept.get(key)
     except TypeError:  # something in it cannot be a key

@@ -7,6 +7,7 @@ import importlib.util
 import math
 from collections.abc import Iterable
 from typing import TYPE_CHECKING, Any, NamedTuple
+from weakref import WeakKeyDictionary
 
 import numpy as np
 import pinocchio
@@ -42,6 +43,7 @@ _METHODS: tuple[type[Solver], ...] = (CCD, JacobianTranspose, PseudoInverse, Dam
 _RULES = ("constant", "residual", "sugihara", "manipulability")
 _STATUSES = tuple(Status)
 _IDENTITY = pinocchio.SE3.Identity()
+_ROBOTS: WeakKeyDictionary[Robot, Any] = WeakKeyDictionary()
 
 
 @functools.cache
@@ -101,6 +103,8 @@ class Answer:
     """
 
     __slots__ = ("_answer", "pattern")
+
+    engine = "native"
 
     def __init__(self, answer: _native.Answer, pattern: tuple[Target, ...]) -> None:
         self._answer = answer
@@ -191,9 +195,9 @@ def make_engine(settings: Settings) -> Engine:
 
 def _robot(robot: Robot) -> Any:
     """The robot as the engine knows it, made once."""
-    if "native" not in robot.kept:
-        robot.kept["native"] = _make_robot(robot)
-    return robot.kept["native"]
+    if robot not in _ROBOTS:
+        _ROBOTS[robot] = _make_robot(robot)
+    return _ROBOTS[robot]
 
 
 def _make_robot(robot: Robot) -> Any:
@@ -259,6 +263,7 @@ def _problem(robot: Any, kinematics: Kinematics) -> Any:
             column=joint.idx_v + coordinate.index,
             entry=joint.idx_q if joint.nq == 1 else -1,
             movers=[(mover.id, multiplier) for mover, multiplier in coordinate.movers],
+            moved=[(j.id, j.multiplier) for j in kinematics.robot.joints if joint.name in (j.name, j.leader)],
         )
     problem.finish(lightest=kinematics.lightest, size_of_chain=kinematics.size_of_chain)
     return problem

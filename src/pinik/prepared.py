@@ -110,7 +110,7 @@ class Prepared:
 
     Attributes:
         robot: The robot.
-        targets: What was asked last.
+        targets: What it was prepared with.
         solver: The method with its parameters.
         engine: "python" or "native".
         settings: The same and the rest, as the attempts take it.
@@ -167,7 +167,7 @@ class Prepared:
 
         Args:
             targets: Where the frame should be: an SE3 or 4×4 matrix, or a position (3,) [m], as far as that was asked
-                for; or Target objects like those it was prepared with. Those of the last call when None.
+                for; or Target objects like those it was prepared with. Those themselves when None.
             q0: Start (nq,); neutral when None; "nearest" for one whose frames are near the targets, from a table.
 
         Raises:
@@ -177,13 +177,12 @@ class Prepared:
         quick = self.at(targets, q0)
         if quick is not None:
             return quick
-        if targets is not None:
-            self.targets = self._as_asked(targets)
+        asked = self.targets if targets is None else self._as_asked(targets)
         nearest = isinstance(q0, str) and q0 == "nearest"
         start = self.settings.start if q0 is None or nearest else self.robot.check_configuration(q0, "q0")
         if self.native is not None:
-            return Solution(self.native.solve(start, native.goals_of(self.targets), nearest), self.settings)
-        self._kinematics.retarget(self.targets)
+            return Solution(self.native.solve(start, native.goals_of(asked), nearest), self.settings)
+        self._kinematics.retarget(asked)
         return Solution(attempt_all(self.settings._replace(start=start, nearest=nearest), began), self.settings)
 
     def at(self, place: object, q0: object = None) -> Solution | None:

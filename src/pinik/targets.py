@@ -193,7 +193,8 @@ class Target:
     def shape(self) -> tuple[object, ...]:
         """What is asked of which frame, without the numbers that say where: equal where only these differ."""
         parts = (self.position is not None, self.rotation is not None, self.axis is not None, self.at is not None)
-        return self.frame, self.relative_to, self.weight, self.tool, parts
+        tool = None if self.tool is None else self.tool.homogeneous.tobytes()
+        return self.frame, self.relative_to, self.weight, tool, parts
 
     def moved_to(self, place: pinocchio.SE3 | ArrayLike) -> Target:
         """The same target elsewhere.
