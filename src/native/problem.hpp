@@ -59,7 +59,6 @@ struct Mover {
 // One free tangent coordinate.
 struct Coordinate {
   int joint = 0, index = 0;  // whose, and which of its tangent coordinates
-  int column = 0;            // in a tangent vector of the whole robot
   int entry = -1;            // in q, where it has limits
   std::vector<Mover> movers;  // that move a frame relative to its reference
   std::vector<Mover> moved;   // all, those too that move both

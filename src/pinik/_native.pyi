@@ -57,7 +57,6 @@ class Problem:
         self,
         joint: int,
         index: int,
-        column: int,
         entry: int,
         movers: Sequence[tuple[int, float]],
         moved: Sequence[tuple[int, float]],

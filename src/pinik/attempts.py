@@ -130,7 +130,9 @@ class _Attempts:
 
     def _attempt_and_restart(self, proof: Shortfall | None) -> Status:
         asked = self.settings
-        most = asked.restarts if proof is None else min(asked.restarts, _RESTARTS_WHEN_UNREACHABLE)
+        most = asked.restarts if asked.starts.draws else 0
+        if proof is not None:
+            most = min(most, _RESTARTS_WHEN_UNREACHABLE)
         for self.restarts in range(most + 1):
             status = self._attempt(
                 self._start(),

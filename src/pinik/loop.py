@@ -154,7 +154,7 @@ def solve_from_keywords(
         except TypeError:  # something in it cannot be a key
             key = None
     if prepared is not None:
-        place = options["placement"] if position is None else _as_array(position)
+        place = options["placement"] if position is None else _as_point(position)
         solution = prepared.at(place, options.get("q0"))
         if solution is not None:
             return solution
@@ -181,11 +181,11 @@ def _key_of_a_place(
     return (frame, position is None, method, SOLVERS[method], *settings)
 
 
-def _as_array(position: ArrayLike) -> object:
-    """Three plain numbers as an array; anything else as it is, for others to judge."""
+def _as_point(position: ArrayLike) -> object:
+    """Three plain numbers as an array; None for what others have to judge."""
     if isinstance(position, (list, tuple)) and [type(x) for x in position] == [float, float, float]:
         return np.array(position)
-    return position
+    return position if isinstance(position, np.ndarray) and position.ndim == 1 else None
 
 
 def _prepared(
@@ -209,6 +209,6 @@ def _prepared(
 def _keep(robot: Robot, key: tuple[object, ...], prepared: Prepared) -> Prepared:
     if robot.model.nv <= _MOST_FREEDOMS_KEPT:
         robot.kept[key] = prepared
-        if len(robot.kept) > _MOST_KEPT:
+        while len(robot.kept) > _MOST_KEPT:
             del robot.kept[next(iter(robot.kept))]
     return prepared

@@ -28,6 +28,8 @@ __all__ = ["Solutions", "solve_many"]
 
 Array = NDArray[np.float64]
 
+_MOST_THREADS = 1024
+
 
 def solve_many(
     robot: Robot,
@@ -64,7 +66,7 @@ def solve_many(
         raise InputError(f"robot is what pinik.load returns; got {robot!r}")
     if "trace" in options:
         raise InputError("solve_many keeps no trace; pinik.solve does")
-    count = _processors() if threads is None else as_count(threads, "threads")
+    count = _processors() if threads is None else min(as_count(threads, "threads"), _MOST_THREADS)
     began = time.perf_counter()
     pattern, goals = _questions(robot, targets, places)
     prepared = prepare(robot, pattern, method, **options)
@@ -124,6 +126,8 @@ class Solutions:
         return (self[index] for index in range(len(self)))
 
     def __getitem__(self, index: int) -> Solution:
+        if not isinstance(index, (int, np.integer)):
+            raise TypeError(f"solutions are counted by whole numbers, the arrays take slices; got {index!r}")
         prepared, asked = self.prepared, self.prepared.settings
         if not -len(self) <= index < len(self):
             raise IndexError(f"there are {len(self)} solutions; got {index}")

@@ -42,6 +42,7 @@ _KINDS = ("revolute", "continuous", "prismatic", "floating", "planar")
 _METHODS: tuple[type[Solver], ...] = (CCD, JacobianTranspose, PseudoInverse, DampedLeastSquares)
 _RULES = ("constant", "residual", "sugihara", "manipulability")
 _STATUSES = tuple(Status)
+_MOST = 2**31 - 1  # that the engine counts to
 _IDENTITY = pinocchio.SE3.Identity()
 _ROBOTS: WeakKeyDictionary[Robot, Any] = WeakKeyDictionary()
 
@@ -183,10 +184,10 @@ def make_engine(settings: Settings) -> Engine:
     asked.patience = settings.solver.patience.iterations, settings.solver.patience.progress
     asked.tolerance = tuple(settings.tolerance)
     asked.limits = limits.enabled
-    asked.restarts = settings.restarts
+    asked.restarts = min(settings.restarts, _MOST)
     asked.seed = settings.seed & 0xFFFFFFFFFFFFFFFF
-    asked.max_iterations = settings.max_iterations
-    asked.iterations_to_the_end = settings.iterations_to_the_end
+    asked.max_iterations = min(settings.max_iterations, _MOST)
+    asked.iterations_to_the_end = min(settings.iterations_to_the_end, _MOST)
     asked.time_limit = settings.time_limit
     asked.trace = settings.trace
     engine: Engine = module.Engine(robot, problem, asked)
@@ -260,7 +261,6 @@ def _problem(robot: Any, kinematics: Kinematics) -> Any:
         problem.add_coordinate(
             joint=joint.id,
             index=coordinate.index,
-            column=joint.idx_v + coordinate.index,
             entry=joint.idx_q if joint.nq == 1 else -1,
             movers=[(mover.id, multiplier) for mover, multiplier in coordinate.movers],
             moved=[(j.id, j.multiplier) for j in kinematics.robot.joints if joint.name in (j.name, j.leader)],

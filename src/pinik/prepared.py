@@ -62,11 +62,14 @@ def prepare(
         raise InputError(f"robot is what pinik.load returns; got {robot!r}")
     solver = make_solver(method, **solver_parameters)
     check_joint_names(robot, solver)
+    for name, value in (("limits", limits), ("trace", trace)):
+        if not isinstance(value, (bool, np.bool_)):
+            raise InputError(f"{name} is True or False; got {value!r}")
     return Prepared(
         robot,
         targets,
         solver,
-        limits=limits,
+        limits=bool(limits),
         locked=as_names(locked, "locked"),
         restarts=solver.restarts if restarts is None else as_count(restarts, "restarts", least=0),
         seed=as_count(seed, "seed", least=0),
@@ -74,7 +77,7 @@ def prepare(
         tolerance=Tolerance.of(tolerance),
         time_limit=math.inf if time_limit is None else _seconds(time_limit),
         engine=engine,
-        trace=trace,
+        trace=bool(trace),
     )
 
 
@@ -134,6 +137,10 @@ class Prepared:
         trace: bool,
     ) -> None:
         """Compile; every argument but `locked` and `targets` is checked already."""
+        self._options = {
+            "limits": limits, "locked": locked, "restarts": restarts, "seed": seed, "max_iterations": max_iterations,
+            "tolerance": tolerance, "time_limit": time_limit, "engine": engine, "trace": trace,
+        }  # fmt: skip
         at_target = isinstance(solver, JacobianSolver) and solver.target_jacobian
         self.engine = _chosen(engine, solver)
         self.robot = robot
@@ -157,6 +164,10 @@ class Prepared:
             trace=trace,
         )
         self.native = native.make_engine(self.settings) if self.engine == "native" else None
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        """Compile it anew elsewhere: what was compiled holds memory of this process."""
+        return _again, (self.robot, self.targets, self.solver, self._options)
 
     def __call__(
         self,
@@ -219,6 +230,10 @@ class Prepared:
                 f"it was prepared for other targets (of {frames}); only where they are may differ, else prepare anew"
             )
         return asked
+
+
+def _again(robot: Robot, targets: tuple[Target, ...], solver: Solver, options: dict[str, Any]) -> Prepared:
+    return Prepared(robot, targets, solver, **options)
 
 
 def _are_targets(value: object) -> bool:
