@@ -5,28 +5,26 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import NamedTuple
+from functools import cached_property
 
 import numpy as np
 import pinocchio
 from numpy.typing import ArrayLike, NDArray
 
 from .checks import as_point, as_points
-from .closed_form import ELBOWS, two_bone
 from .errors import InputError
 from .joint import Joint
 from .limits import Limits
+from .planar_arm import ROUNDING, PlanarArm, Range, turn
 from .robot import Robot
 from .targets import Target
 
 __all__ = ["TwoBone", "TwoBoneConfigurations"]
 
 Array = NDArray[np.float64]
-Range = tuple[float, float]
 
 _LARGEST_TILT = 1e-5  # [rad]: what a URDF's 1.5708 or 3.14159 may turn an axis away by
 _NO_LENGTH = 1e-9  # of the longer bone
-_ROUNDING = 1e-12  # of the lengths that enter; and [rad] of an angle at its limit
 
 
 @dataclass(frozen=True, eq=False)
@@ -55,28 +53,6 @@ class TwoBoneConfigurations:
     out_of_plane: float
     nearest: Array
     nearest_error: float
-
-
-class _Turn(NamedTuple):
-    """An angle brought near another one, and into a range.
-
-    Attributes:
-        angle: The equal angle nearest to where the joint stands; inside the range where one is.
-        inside: The same, or the end of the range that is nearest to it [rad].
-        fits: Whether the two are the same but for rounding.
-    """
-
-    angle: float
-    inside: float
-    fits: bool
-
-
-class _Pair(NamedTuple):
-    """The two joints' values [rad], how far the frame then misses the target in the plane [m], and the elbow."""
-
-    values: tuple[float, float]
-    missed: float
-    elbow: str = ""
 
 
 @dataclass(frozen=True, eq=False)
@@ -192,8 +168,7 @@ class TwoBone:
 
     def joint_angles(self, angles: ArrayLike) -> Array:
         """The two joints' angles [rad] for `two_bone`'s: (…, 2) from (…, 2), not turned to where the limits are."""
-        first, second = np.moveaxis(np.asarray(angles, dtype=np.float64), -1, 0)
-        return np.stack([first, self.sense * (second - self.bend)], axis=-1)
+        return self._arm.joint_angles(angles)
 
     def position(self, q: Array) -> Array:
         """Where the frame, or the tool in it, is by plain forward kinematics (3,) [m], in `relative_to`'s axes."""
@@ -213,20 +188,24 @@ class TwoBone:
         """
         robot, point = self.robot, as_point(position, "position")
         start = robot.neutral() if q0 is None else robot.check_configuration(q0, "q0")
-        ranges = self.ranges(Limits.of(robot, limits))
-        answers, out_of_plane, shortfall = self._free_answers(point, start)
-        turned = [self._turned(answer.values, start, ranges) for answer in answers]
-        fits = [all(turn.fits for turn in pair) for pair in turned]
-        values = [tuple(t.inside if ok else t.angle for t in p) for p, ok in zip(turned, fits, strict=True)]
-        order = sorted((0, 1), key=lambda k: (not fits[k], self._change(values[k], start)))
-        q = np.array([self._configuration(values[k], start) for k in order])
+        ranges, now, slack = self.ranges(Limits.of(robot, limits)), self._now(start), self._slack(point)
+        x, y, out_of_plane = self._seen(point)
+        told = []
+        for elbow in self._arm.elbows((x, y), now, slack):
+            turns = [turn(*each) for each in zip(elbow.values, ranges, now, strict=True)]
+            fits = all(each.fits for each in turns)
+            values = [each.inside if fits else each.angle for each in turns]
+            told.append((not fits, math.dist(values, now), elbow.name, self._configuration(values, start)))
+            shortfall = math.hypot(elbow.missed, out_of_plane)
+        told.sort(key=lambda each: each[:2])
+        q = np.array([each[3] for each in told])
         nearest = self.nearest(point, start, ranges)
         return TwoBoneConfigurations(
             q=q,
-            elbows=(answers[order[0]].elbow, answers[order[1]].elbow),
-            inside=np.array([fits[k] for k in order]),
+            elbows=(told[0][2], told[1][2]),
+            inside=np.array([not outside for outside, *_ in told]),
             errors=np.array([self._error(each, point) for each in q]),
-            reachable=shortfall <= self._slack(point),
+            reachable=shortfall <= slack,
             shortfall=shortfall,
             out_of_plane=out_of_plane,
             nearest=nearest,
@@ -244,64 +223,17 @@ class TwoBone:
     def nearest(self, position: Array, q: Array, ranges: Sequence[Range], elbow: str = "nearest") -> Array:
         """The configuration inside `ranges` (two, low and high) [rad] whose frame is nearest to a target.
 
-        Where both elbows reach as near, `elbow` says which: "up", "down", or "nearest" to `q` (nq,). Where neither is
-        inside, one of the joints sits at an end of its range, and the other one's best angle is known.
+        Where several come as near, `elbow` says which: "up", "down", or "nearest" to `q` (nq,).
         """
-        answers, _, _ = self._free_answers(position, q)
-        fitting = []
-        for answer in answers:
-            turns = self._turned(answer.values, q, ranges)
-            if all(turn.fits for turn in turns):
-                fitting.append(_Pair((turns[0].inside, turns[1].inside), answer.missed, answer.elbow))
-        if fitting:
-            best = min(fitting, key=lambda pair: (pair.elbow != elbow, self._change(pair.values, q)))
-        else:
-            pairs = self._pairs_at_ends(position, q, ranges)
-            least = min(pair.missed for pair in pairs) + _ROUNDING * (self.l1 + self.l2)
-            best = min(
-                (pair for pair in pairs if pair.missed <= least),
-                key=lambda pair: (pair.elbow != elbow, self._change(pair.values, q)),
-            )
-        return self._configuration(best.values, q)
-
-    def _free_answers(self, position: Array, q: Array) -> tuple[list[_Pair], float, float]:
-        """(both elbows, limits aside; the part out of the plane; the shortfall) [m]."""
-        x, y, out_of_plane = self._seen(position)
-        at_base = math.hypot(x, y) <= self._slack(position)
-        found = two_bone(self.l1, self.l2, [[0.0, 0.0] if at_base else [x, y]])
-        short = float(found.shortfall[0])
-        pairs = []
-        for elbow, angles in zip(ELBOWS, self.joint_angles(found.angles[0]).tolist(), strict=True):
-            if at_base:  # every direction is as good: stay
-                angles[0] = self.joints[0].angle(q)
-            pairs.append(_Pair((angles[0], angles[1]), short, elbow))
-        return pairs, out_of_plane, math.hypot(short, out_of_plane)
-
-    def _pairs_at_ends(self, position: Array, q: Array, ranges: Sequence[Range]) -> list[_Pair]:
-        """With one joint at an end of its range, the other one's best: it turns as near to the target as it may."""
         x, y, _ = self._seen(position)
-        now = [joint.angle(q) for joint in self.joints]
-        pairs = []
-        for end in ranges[0]:
-            if math.isfinite(end):
-                along, across = x - self.l1 * math.cos(end), y - self.l1 * math.sin(end)
-                wanted = self.sense * (math.atan2(across, along) - end - self.bend)
-                pairs.append((end, _turn(wanted, ranges[1], now[1]).inside))
-        for end in ranges[1]:
-            if math.isfinite(end):
-                angle = self.sense * end + self.bend
-                straight = math.atan2(self.l2 * math.sin(angle), self.l1 + self.l2 * math.cos(angle))
-                at_base = math.hypot(x, y) <= self._slack(position)
-                wanted = now[0] if at_base else math.atan2(y, x) - straight
-                pairs.append((_turn(wanted, ranges[0], now[0]).inside, end))
-        told = []
-        for first, second in pairs:
-            angle = self.sense * second + self.bend
-            tip_x = self.l1 * math.cos(first) + self.l2 * math.cos(first + angle)
-            tip_y = self.l1 * math.sin(first) + self.l2 * math.sin(first + angle)
-            elbow = ELBOWS[0] if math.sin(angle) < 0.0 else ELBOWS[1]
-            told.append(_Pair((first, second), math.hypot(x - tip_x, y - tip_y), elbow))
-        return told
+        return self._configuration(self._arm.nearest((x, y), self._now(q), ranges, self._slack(position), elbow), q)
+
+    @cached_property
+    def _arm(self) -> PlanarArm:
+        return PlanarArm(self.l1, self.l2, self.bend, self.sense)
+
+    def _now(self, q: Array) -> tuple[float, float]:
+        return self.joints[0].angle(q), self.joints[1].angle(q)
 
     def _seen(self, position: Array) -> tuple[float, float, float]:
         x, y, z = ((position - self.origin) @ self.axes).tolist()
@@ -310,16 +242,7 @@ class TwoBone:
     def _slack(self, position: Array) -> float:
         """What rounding, and axes not quite parallel, may move the frame by [m]."""
         lengths = self.l1 + self.l2 + float(np.linalg.norm(self.origin)) + float(np.linalg.norm(position))
-        return _ROUNDING * lengths + self.tilt * self.l2
-
-    def _turned(self, values: Sequence[float], q: Array, ranges: Sequence[Range]) -> list[_Turn]:
-        return [
-            _turn(value, room, joint.angle(q)) for value, room, joint in zip(values, ranges, self.joints, strict=True)
-        ]
-
-    def _change(self, values: Sequence[float], q: Array) -> float:
-        """How far the joints turn from `q` [rad]."""
-        return math.hypot(*(value - joint.angle(q) for value, joint in zip(values, self.joints, strict=True)))
+        return ROUNDING * lengths + self.tilt * self.l2
 
     def _configuration(self, values: Sequence[float], q: Array) -> Array:
         there = q.copy()
@@ -350,8 +273,8 @@ def _two_hinges(robot: Robot, frame: str, relative_to: str | None) -> tuple[Join
     movers = [joint for joint in robot.joints if joint.id in moving - still]
     names = ", ".join(f"{joint.name!r} ({joint.kind})" for joint in movers)
     if len(movers) != 2:
-        words = f"{len(movers)} joints move it{seen}: {names}" if movers else f"no joint moves it{seen}"
-        raise _refusal(frame, words)
+        number = {0: "no joint moves", 1: "only one joint moves"}.get(len(movers), f"{len(movers)} joints move")
+        raise _refusal(frame, f"{number} it{seen}" + (f": {names}" if movers else ""))
     for joint in movers:
         if joint.kind not in ("revolute", "continuous"):
             raise _refusal(frame, f"joint {joint.name!r} is {joint.kind}")
@@ -362,23 +285,6 @@ def _two_hinges(robot: Robot, frame: str, relative_to: str | None) -> tuple[Join
 
 def _refusal(frame: str, reason: str) -> InputError:
     return InputError(f"frame {frame!r} is not moved by two parallel hinges alone: {reason}")
-
-
-def _turn(wanted: float, room: Range, now: float) -> _Turn:
-    """An angle, or the one whole turns away, that is nearest to `now`; inside its range, or as near as that gets."""
-    low, high = room
-    turn = 2.0 * math.pi
-    angle = now + math.remainder(wanted - now, turn)
-    inside = angle
-    if angle > high:
-        inside = high - (high - angle) % turn
-    elif angle < low:
-        inside = low + (angle - low) % turn
-    if low <= inside <= high:
-        return _Turn(inside, inside, True)
-    gaps = [(abs(math.remainder(angle - end, turn)), end) for end in room if math.isfinite(end)]
-    gap, inside = min(gaps)
-    return _Turn(angle, inside, gap <= _ROUNDING)
 
 
 def _without(vector: Array, axis: Array) -> Array:

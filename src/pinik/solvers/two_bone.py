@@ -78,5 +78,10 @@ def _bones(kinematics: Kinematics) -> tuple[TwoBone, Array]:
         raise InputError(f"two_bone takes one target; got {len(kinematics.targets)}")
     if target.position is None or target.asks_orientation:
         raise InputError(f"two_bone takes a position alone; target {target.frame!r} asks for an orientation")
-    bones = TwoBone.of(kinematics.robot, target.frame, tool=target.tool, relative_to=target.relative_to)
-    return bones, target.position
+    robot = kinematics.robot
+    if target.tool is not None:
+        return TwoBone.of(robot, target.frame, tool=target.tool, relative_to=target.relative_to), target.position
+    key = "two_bone", target.frame, target.relative_to
+    if key not in robot.kept:
+        robot.kept[key] = TwoBone.of(robot, target.frame, relative_to=target.relative_to)
+    return robot.kept[key], target.position
