@@ -24,6 +24,8 @@ Array = NDArray[np.float64]
 
 # Restarts that a target proved unreachable still gets: the nearest point has valleys too.
 _RESTARTS_WHEN_UNREACHABLE = 8
+# Of the chain's length: what an exact method may be off by.
+_EXACT = 1e-5
 
 
 class Settings(NamedTuple):
@@ -122,7 +124,7 @@ class _Attempts:
         if not asked.kinematics.free.any():
             self._attempt(self._start(), TO_THE_END, 0)
             status = Status.STALLED
-        elif asked.restarts == 0:  # the bare method, as `iterate` runs it
+        elif asked.restarts == 0 or asked.solver.exact:  # the bare method, as `iterate` runs it
             status = self._attempt(self._start(), TO_THE_END, asked.max_iterations)
         else:
             status = self._attempt_and_restart(proof)
@@ -199,6 +201,12 @@ class _Attempts:
         if self.best is None or at.residual < self.best.residual:
             self.best = state._replace(q=at.q, errors=tuple(at.errors), residual=at.residual)
 
+    def _came_as_near_as_can_be(self, errors: tuple[TargetError, ...]) -> bool:
+        """Whether the method stops nowhere else, and what it missed is more than what it may be off by."""
+        asked = self.settings
+        least = asked.tolerance.position + _EXACT * asked.kinematics.size_of_chain
+        return asked.solver.exact and any(error.position is not None and error.position > least for error in errors)
+
     def _judged(self, status: Status, proof: Shortfall | None) -> Outcome:
         """The best state, measured by plain forward kinematics, which has the last word."""
         assert self.best is not None
@@ -206,7 +214,7 @@ class _Attempts:
         errors = measure_errors(asked.kinematics.robot, asked.kinematics.targets, q)
         if all(error.within(asked.tolerance) for error in errors):
             status = Status.CONVERGED
-        elif proof is not None:
+        elif proof is not None or (status is Status.STALLED and self._came_as_near_as_can_be(errors)):
             status = Status.UNREACHABLE
         elif status is Status.CONVERGED:
             status = Status.STALLED

@@ -68,6 +68,7 @@ def iterate(
     at_target = isinstance(made, JacobianSolver) and made.target_jacobian
     held = (*as_names(locked, "locked"), *made.held)
     kinematics = Kinematics(robot, targets, locked=held, target_jacobian=at_target)
+    made.check(kinematics)
     box = Limits.of(robot, limits)
     q = robot.neutral() if q0 is None else robot.check_configuration(q0, "q0")
     most = made.max_iterations if max_iterations is None else as_count(max_iterations, "max_iterations")
@@ -99,7 +100,8 @@ def solve(
     Args:
         robot: The robot.
         targets: One target or several.
-        method: "ccd", "jt", "pinv", "dls", another name in `pinik.SOLVERS`, a Solver class or an instance.
+        method: "ccd", "jt", "pinv", "dls", another name in `pinik.SOLVERS`, a Solver class or an instance; "two_bone"
+            where two parallel hinges move the frame.
         q0: Start (nq,); neutral when None. With limits it is put inside them first, joint by joint, the joints that
             move nothing and the locked ones as well.
         limits: Whether the answer keeps inside the joints' limits.

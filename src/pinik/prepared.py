@@ -146,6 +146,7 @@ class Prepared:
         self.robot = robot
         self.solver = solver
         self._kinematics = Kinematics(robot, targets, locked=(*locked, *solver.held), target_jacobian=at_target)
+        solver.check(self._kinematics)
         self.targets = self._kinematics.targets
         self._shape = [target.shape for target in self.targets]
         box = Limits.of(robot, limits)
