@@ -230,12 +230,15 @@ def test_the_interpreter_runs_on_during_a_long_solve(method, panda):
 def test_the_time_limit_ends_a_hopeless_solve(method, panda, lion):
     for robot, frame in ((panda, "panda_hand_tcp"), (lion, "nose")):
         opposed = [Target(frame, [0.4, y, 0.5]) for y in (-0.2, 0.2)]
-        began = time.perf_counter()
-        s = pinik.solve(robot, opposed, method, engine="native", restarts=10**9, time_limit=0.1)
-        assert time.perf_counter() - began < 0.5  # 0.1 s, and what a busy machine adds
-        assert s.status is Status.TIME_LIMIT
-        assert s.message.startswith("out of time")
-        assert s.time == pytest.approx(0.1, abs=0.3)
+        took = []
+        for _ in range(3):  # a busy machine may hold one up
+            began = time.perf_counter()
+            s = pinik.solve(robot, opposed, method, engine="native", restarts=10**9, time_limit=0.1)
+            took.append(time.perf_counter() - began)
+            assert s.status is Status.TIME_LIMIT
+            assert s.message.startswith("out of time")
+            assert s.time >= 0.1
+        assert min(took) < 0.2
 
 
 def stacks_can_grow() -> bool:
