@@ -268,12 +268,12 @@ class Mismatch(NamedTuple):
     iterations: float
 
 
-def mismatch(rows: Iterable[Row], joints_of_a_bone: float) -> Mismatch | None:
-    """How far the thesis's own four comparisons lie from its table; None without such rows."""
+def mismatch(rows: Iterable[Row], joints_of_a_bone: float, *, box: bool = False) -> Mismatch | None:
+    """How far comparisons 1 to 4 lie from the table, or 1, 2b, 3, 4b with `box`; None without such rows."""
     points, logs = [], []
     for row in rows:
-        cell = TABLE.get(row.method, {}).get(row.comparison.name)
-        if cell is not None:
+        cell = published(row)
+        if cell is not None and row.comparison.motion != ("random" if box else "box"):
             points.append(100.0 * abs(row.efficiency - cell.efficiency))
             ours = max(counted_iterations(row, joints_of_a_bone), 1.0)  # its do-loop counts one at least
             logs.append(abs(math.log(ours / cell.iterations)))
