@@ -199,8 +199,8 @@ def _emit(answer: dict[str, Any]) -> None:
         for key, words in (("mismatch", "1 to 4"), ("mismatch_in_box", "1, 2b, 3, 4b")):
             if (off := answer[key]) is not None:
                 output.emit(
-                    f"Off the thesis's table with {words}: {off['efficiency_points']:.0f} points of efficiency, a factor "
-                    f"{off['iterations_factor']:.1f} of iterations, on average."
+                    f"Off the thesis's table with {words}: {off['efficiency_points']:.0f} points of efficiency, a "
+                    f"factor {off['iterations_factor']:.1f} of iterations, on average."
                 )
 
 

@@ -77,7 +77,7 @@ class BallChain:
         return np.array(points), np.array(parents)
 
     def turn(self, bone: int, parent: Array, rotation: Array) -> None:
-        """Turn a bone, and all behind it, by a world rotation vector (3,) [rad]; `parent` is its parent in the world."""
+        """Turn a bone, and all behind it, by a world rotation vector (3,) [rad]; `parent` is its parent's R."""
         turned = parent.T @ pinocchio.exp3(rotation) @ parent @ self.R[bone]
         turned = np.asarray(pinocchio.Quaternion(turned).normalized().toRotationMatrix())
         self.R[bone] = self._leaning_less(turned) if math.isfinite(self._swing) else turned
