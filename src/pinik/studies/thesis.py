@@ -124,7 +124,7 @@ _THESIS = {
         "the same with the axes as printed, cross products of any length", program=True, unit_axes=False
     ),
     "degrees": _Reading("α on angles in degrees that are then taken for radians: 0.573", _IN_DEGREES, _IN_DEGREES),
-    "sixty-hertz": _Reading("α per frame of 1/60 s, so 0.6 a second's share", _AT_60_HZ, _AT_60_HZ),
+    "sixty-hertz": _Reading("α counted per frame at 60 frames a second: 0.6", _AT_60_HZ, _AT_60_HZ),
     "whole-steps": _Reading("α is the transpose's alone; pseudo-inverse and DLS take whole steps", 1.0),
     "late-clamp": _Reading("the clamp after α instead of before it", max_angle=MAX_ANGLE / ALPHA),
     "metres": _Reading("a unit is a metre of pinik's arm", units=None),
