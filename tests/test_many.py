@@ -13,7 +13,7 @@ import pinocchio
 import pytest
 
 import pinik
-from engines import WHY_NOT, needs_native
+from engines import needs_native
 from pinik import Status, Target, Tolerance
 from pinik.state import measure_errors
 
@@ -86,10 +86,7 @@ def test_answers_do_not_depend_on_the_number_of_threads(kind, panda, poses):
         assert_same(one, other)
 
 
-OUTSIDE = pytest.mark.xfail(reason="the Python engine begins outside the limits, where the Panda's neutral one lies")
-
-
-@pytest.mark.parametrize("q0", [pytest.param(None, marks=OUTSIDE), "nearest"])
+@pytest.mark.parametrize("q0", [None, "nearest"])
 @pytest.mark.parametrize("method", ["ccd", "dls"])
 def test_the_python_engine_agrees_in_its_verdict(method, q0, panda, poses):
     python, auto = (
@@ -195,7 +192,6 @@ class TestSolutions:
         assert "beyond its chain's reach" in many[3].message
         assert many[3].to_dict()["status"] == "UNREACHABLE"
 
-    @pytest.mark.xfail(reason="one of many says python whichever engine computed it", condition=WHY_NOT is None)
     def test_one_of_many_names_the_engine(self, panda, poses):
         many = pinik.solve_many(panda, TIP, poses[:2])
         assert many[0].engine == many.engine
@@ -227,9 +223,16 @@ class TestSolutions:
 
 @needs_native
 @pytest.mark.skipif(os.name != "posix", reason="signals as POSIX has them")
-@pytest.mark.parametrize("threads", [1, 2])
-def test_ctrl_c_stops_it_within_a_tenth_of_a_second(threads):
-    """Of a hopeless question asked 20,000 times, in a process of its own; the time is from the signal to the except."""
+@pytest.mark.parametrize(
+    "call",
+    [
+        "pinik.solve_many(panda, opposed, method='jt', threads=1, restarts=10**6, engine='native')",
+        "pinik.solve_many(panda, opposed, method='jt', threads=2, restarts=10**6, engine='native')",
+        "pinik.solve(panda, opposed[0], method='jt', restarts=10**6, engine='native')",
+    ],
+)
+def test_ctrl_c_stops_it_within_a_tenth_of_a_second(call):
+    """Of a hopeless question, in a process of its own; the time is from the signal to the except."""
     program = textwrap.dedent(f"""
         import os, signal, threading, time
         import numpy as np
@@ -246,7 +249,7 @@ def test_ctrl_c_stops_it_within_a_tenth_of_a_second(threads):
 
         threading.Thread(target=interrupt).start()
         try:
-            pinik.solve_many(panda, opposed, method="jt", threads={threads}, restarts=10**6, engine="native")
+            {call}
         except KeyboardInterrupt:
             print(time.perf_counter() - sent[0])
     """)

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import ast
 import importlib.util
+import os
+import subprocess
 import sys
 import threading
 import time
@@ -213,10 +215,12 @@ def test_the_interpreter_runs_on_during_a_long_solve(method, panda):
     thread = threading.Thread(target=count)
     thread.start()
     before = counted
-    s = pinik.solve(panda, opposed, method, engine="native", restarts=10**6, time_limit=0.5)
-    during = counted - before
-    running.clear()
-    thread.join()
+    try:
+        s = pinik.solve(panda, opposed, method, engine="native", restarts=10**6, time_limit=0.5)
+        during = counted - before
+    finally:
+        running.clear()
+        thread.join()
     assert s.status is Status.TIME_LIMIT
     assert during > 20
 
@@ -232,3 +236,25 @@ def test_the_time_limit_ends_a_hopeless_solve(method, panda, lion):
         assert s.status is Status.TIME_LIMIT
         assert s.message.startswith("out of time")
         assert s.time == pytest.approx(0.1, abs=0.3)
+
+
+def stacks_can_grow() -> bool:
+    return subprocess.run(["sh", "-c", "ulimit -s 524288"], capture_output=True, check=False).returncode == 0
+
+
+@needs_native
+def test_more_threads_than_the_system_gives_do_the_work_all_the_same():
+    code = (
+        "import resource, numpy as np, pinik\n"
+        "panda = pinik.load('panda')\n"
+        "places = np.tile([0.4, 0.1, 0.5], (3000, 1))\n"
+        "pinik.solve_many(panda, 'panda_hand_tcp', places[:2])\n"
+        "used = int(open('/proc/self/statm').read().split()[0]) * resource.getpagesize()\n"
+        "resource.setrlimit(resource.RLIMIT_AS, (used + 5 * 2**28,) * 2)\n"
+        "print(pinik.solve_many(panda, 'panda_hand_tcp', places, threads=1000).success.all())"
+    )
+    if not os.path.exists("/proc/self/statm") or not stacks_can_grow():
+        pytest.skip("needs Linux, where a process can limit its memory and enlarge its stacks")
+    large_stacks = ["sh", "-c", 'ulimit -s 524288 && exec "$0" -W ignore -c "$1"', sys.executable, code]
+    done = subprocess.run(large_stacks, capture_output=True, text=True, check=False)
+    assert done.stdout.split() == ["True"], done.stderr

@@ -12,6 +12,13 @@ namespace pinik {
 
 using Clock = std::chrono::steady_clock;
 using StopFlag = const std::atomic<bool>*;
+using Pause = bool (*)();  // called now and then; says whether to go on
+
+// What may end a solve from outside, as its time limit does: a flag, where there is one, and a call.
+struct Interrupts {
+  StopFlag stop = nullptr;
+  Pause pause = nullptr;
+};
 
 struct Settings {
   Solver solver;
@@ -73,9 +80,8 @@ constexpr int restarts_when_unreachable = 8;
 template <int Rows>
 class Attempts {
  public:
-  // What `stop` points at, where it points at something, ends a solve as its time limit does when it becomes true.
-  Attempts(const Problem& problem, const Settings& settings, const StopFlag& stop)
-      : problem_(problem), settings_(settings), stop_(stop), kinematics_(problem), run_(settings_.solver, kinematics_),
+  Attempts(const Problem& problem, const Settings& settings, const Interrupts& interrupts)
+      : problem_(problem), settings_(settings), interrupts_(interrupts), kinematics_(problem), run_(settings_.solver, kinematics_),
         limits_(Limits::of(*problem.mechanism, settings.limits)), loose_(limits_.loosened()),
         starts_(problem, limits_, settings.seed) {
     kinematics_.target_jacobian = settings.solver.target_jacobian;
@@ -84,13 +90,14 @@ class Attempts {
   // From a configuration (put inside the limits), or with `nearest` from one that the table knows, what is not drawn as
   // in `start`; `target` is the problem's number among many, a key of the drawn starts.
   Outcome operator()(Vector& start, std::uint64_t target, bool nearest) {
-    began_ = Clock::now();
+    began_ = paused_ = Clock::now();
+    states_seen_ = 0;
     outcome_ = Outcome();
     least_residual_ = infinity;
     limits_.wrap(start);
     limits_.clip(start);
     target_ = target;
-    numbers_from_ = nearest;
+    first_number_ = nearest ? 1 : 0;
     outcome_.q = start;
     outcome_.proof = shortfall(problem_, settings_.limits);
     if (outcome_.proof && outcome_.proof->distance <= settings_.tolerance.position) outcome_.proof.reset();
@@ -108,22 +115,24 @@ class Attempts {
  private:
   const Problem& problem_;
   const Settings settings_;
-  const StopFlag& stop_;
+  const Interrupts& interrupts_;
   Kinematics<Rows> kinematics_;
   Run<Rows> run_;
   const Limits limits_, loose_;
   Outcome outcome_;
   double least_residual_ = infinity;  // of outcome_.q
   std::uint64_t target_ = 0;
-  int numbers_from_ = 0;  // 1 where the first attempt takes the first of starts_
-  Clock::time_point began_;
+  int first_number_ = 0;  // 1 where the first attempt takes the first of starts_
+  Clock::time_point began_, paused_;
+  int states_seen_ = 0;
   Starts<Rows> starts_;
   Vector drawn_;
   Linearization<Rows> inside_;
 
   Status attempt_and_restart(const Vector& start) {
     const bool proved = outcome_.proof.has_value();
-    const int most = proved ? std::min(settings_.restarts, restarts_when_unreachable) : settings_.restarts;
+    int most = starts_.draws() ? settings_.restarts : 0;
+    if (proved) most = std::min(most, restarts_when_unreachable);
     for (int number = 0; number <= most; ++number) {
       outcome_.restarts = number;
       const Status status =
@@ -135,7 +144,7 @@ class Attempts {
   }
 
   const Vector& start_of(int attempt, const Vector& given) {
-    const int number = attempt + numbers_from_;
+    const int number = attempt + first_number_;
     if (number == 0) return given;
     starts_.next(kinematics_, given, target_, number, drawn_);
     return drawn_;
@@ -161,8 +170,14 @@ class Attempts {
     return ended;
   }
 
-  bool out_of_time() const {
-    if (stop_ && stop_->load(std::memory_order_relaxed)) return true;
+  bool out_of_time() {
+    constexpr int states_between = 256;
+    constexpr std::chrono::milliseconds pauses_apart{50};
+    if (interrupts_.stop && interrupts_.stop->load(std::memory_order_relaxed)) return true;
+    if (interrupts_.pause && ++states_seen_ % states_between == 0 && Clock::now() - paused_ > pauses_apart) {
+      paused_ = Clock::now();
+      if (!interrupts_.pause()) return true;
+    }
     return settings_.time_limit < infinity &&
            std::chrono::duration<double>(Clock::now() - began_).count() > settings_.time_limit;
   }

@@ -6,7 +6,6 @@
 #include <nanobind/stl/optional.h>
 #include <nanobind/stl/pair.h>
 #include <nanobind/stl/shared_ptr.h>
-#include <nanobind/stl/string.h>
 #include <nanobind/stl/vector.h>
 
 #define NPY_NO_DEPRECATED_API NPY_1_7_API_VERSION
@@ -14,6 +13,7 @@
 
 #include <algorithm>
 #include <optional>
+#include <stdexcept>
 #include <pinocchio/config.hpp>  // only the version
 
 #include "engine.hpp"
@@ -63,7 +63,6 @@ void add_joint(Robot& robot, int kind, int parent, const Mat3& R, const Vec3& p,
   joint.upper = upper;
   joint.shared = shared;
   mechanism.nq += nq;
-  mechanism.nv += nv;
   mechanism.joints.push_back(joint);
 }
 
@@ -114,9 +113,21 @@ nb::tuple states_of(const Answer& answer) {
   return nb::tuple(states);
 }
 
+bool no_signal() {
+  const nb::gil_scoped_acquire acquire;
+  return PyErr_CheckSignals() == 0;
+}
+
 Answer solve(Engine& engine, Vector start, std::vector<Goal> goals, bool nearest) {
-  const nb::gil_scoped_release release;
-  return engine.solve(std::move(start), std::move(goals), nearest);
+  if (start.size() != engine.mechanism().nq || goals.size() != engine.problem().terms.size())
+    throw std::invalid_argument("a start or goals of another problem");
+  Answer answer;
+  {
+    const nb::gil_scoped_release release;
+    answer = engine.solve(std::move(start), std::move(goals), nearest, &no_signal);
+  }
+  if (PyErr_Occurred()) throw nb::python_error();
+  return answer;
 }
 
 nb::object goals_of(const Answer& answer) {
@@ -151,7 +162,7 @@ std::optional<Goal> goal_from(const Term& term, nb::handle place) {
   } else {
     return std::nullopt;
   }
-  if (!(goal.position.cwiseAbs().maxCoeff() <= farthest)) return std::nullopt;
+  if (!goal.position.allFinite() || goal.position.cwiseAbs().maxCoeff() > farthest) return std::nullopt;
   return goal;
 }
 
@@ -177,6 +188,9 @@ nb::tuple solve_many(Engine& engine, nb::ndarray<const double, nb::ndim<2>, nb::
                      nb::ndarray<const double, nb::ndim<3>, nb::c_contig> goals, bool nearest, int threads) {
   const std::size_t count = goals.shape(0), terms = goals.shape(1), nq = starts.shape(1);
   const bool one_start = starts.shape(0) == 1;
+  const bool fits = nq == static_cast<std::size_t>(engine.mechanism().nq) && terms == engine.problem().terms.size() &&
+                    goals.shape(2) == numbers_of_a_goal && (one_start || starts.shape(0) == count);
+  if (!fits) throw std::invalid_argument("starts or goals of another problem");
   std::vector<double> q(count * nq), position(count), orientation(count), seconds(count);
   std::vector<int> status(count);
   std::vector<std::int64_t> iterations(count), updates(count), restarts(count);
@@ -267,17 +281,17 @@ NB_MODULE(_native, m) {
            "asks_rotation"_a, "asks_axis"_a, "asks_at"_a, "axis"_a, "weight"_a, "has_bounds"_a, "base"_a, "reach"_a,
            "hole"_a)
       .def("add_coordinate",
-           [](Problem& self, int joint, int index, int column, int entry,
-              const std::vector<std::pair<int, double>>& movers) {
+           [](Problem& self, int joint, int index, int entry,
+              const std::vector<std::pair<int, double>>& movers, const std::vector<std::pair<int, double>>& moved) {
              Coordinate coordinate;
              coordinate.joint = joint;
              coordinate.index = index;
-             coordinate.column = column;
-             coordinate.entry = entry;
-             for (const auto& [mover, multiplier] : movers) coordinate.movers.push_back({mover, multiplier});
+              coordinate.entry = entry;
+             for (const auto& [joint, multiplier] : movers) coordinate.movers.push_back({joint, multiplier});
+            for (const auto& [joint, multiplier] : moved) coordinate.moved.push_back({joint, multiplier});
              self.coordinates.push_back(coordinate);
            },
-           "joint"_a, "index"_a, "column"_a, "entry"_a, "movers"_a)
+           "joint"_a, "index"_a, "entry"_a, "movers"_a, "moved"_a)
       .def("finish",
            [](Problem& self, double lightest, double size_of_chain) {
              self.lightest = lightest;
@@ -354,7 +368,7 @@ NB_MODULE(_native, m) {
            [](Engine& self, Vector start, nb::ndarray<const double, nb::shape<-1, 18>, nb::c_contig> goals,
               bool nearest) { return solve(self, std::move(start), goals_from(goals.data(), goals.shape(0)), nearest); },
            "start"_a, "goals"_a, "nearest"_a)
-      .def("solve_at", &solve_at, "place"_a, "start"_a, "nearest"_a,
+      .def("solve_at", &solve_at, "place"_a.none(), "start"_a.none(), "nearest"_a,
            nb::sig("def solve_at(self, place: object, start: object, nearest: bool) -> Answer | None"))
       .def("solve_many", &solve_many, "starts"_a, "goals"_a, "nearest"_a, "threads"_a,
            nb::sig("def solve_many(self, starts: NDArray[numpy.float64], goals: NDArray[numpy.float64], "

@@ -63,6 +63,9 @@ TargetError error_of(const Term& term, const Goal& goal, const pinocchio::Data& 
     const bool there = term.asks_at && direction.norm() < no_direction;
     error.orientation = there ? 0.0 : std::atan2(axis.cross(direction).norm(), axis.dot(direction));
   }
+  // What was asked for and cannot be measured is missed, not left out.
+  if (term.asks_position && !std::isfinite(error.position)) error.position = infinity;
+  if (term.asks_orientation() && !std::isfinite(error.orientation)) error.orientation = infinity;
   return error;
 }
 

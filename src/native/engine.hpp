@@ -1,9 +1,12 @@
 // One problem with one method and its settings, ready to be solved again and again, from any thread.
 #pragma once
 
+#include <algorithm>
 #include <condition_variable>
+#include <exception>
 #include <memory>
 #include <mutex>
+#include <system_error>
 #include <thread>
 #include <variant>
 
@@ -36,9 +39,9 @@ class Engine {
 
   const Mechanism& mechanism() const { return robot_->mechanism; }
 
-  Answer solve(Vector start, std::vector<Goal> goals, bool nearest) {
+  Answer solve(Vector start, std::vector<Goal> goals, bool nearest, Pause pause) {
     std::unique_ptr<Worker> worker = borrow();
-    Answer answer = worker->solve(*robot_, settings_, start, goals, 0, nearest, nullptr);
+    Answer answer = worker->solve(*robot_, settings_, start, goals, 0, nearest, {nullptr, pause});
     give_back(std::move(worker));
     answer.goals = std::move(goals);
     return answer;
@@ -49,26 +52,42 @@ class Engine {
   template <class Take, class Put, class Pause>
   void solve_many(std::uint64_t count, int threads, bool nearest, Take take, Put put, Pause pause) {
     std::atomic<std::uint64_t> next{0};
-    std::atomic<int> working{threads};
     std::atomic<bool> stop{false};
+    std::exception_ptr failure;
+    int working = 0;
     std::mutex mutex;
     std::condition_variable finished;
-    std::vector<std::thread> pool;
-    for (int t = 0; t < threads; ++t)
-      pool.emplace_back([&] {
+    auto work = [&] {
+      std::exception_ptr caught;
+      try {
         std::unique_ptr<Worker> worker = borrow();
         Vector start;
         std::vector<Goal> goals;
         for (std::uint64_t i = next++; i < count && !stop; i = next++) {
           take(i, start, goals);
-          put(i, worker->solve(*robot_, settings_, start, goals, i, nearest, &stop));
+          put(i, worker->solve(*robot_, settings_, start, goals, i, nearest, {&stop, nullptr}));
         }
         give_back(std::move(worker));
-        const std::lock_guard<std::mutex> lock(mutex);
-        if (--working == 0) finished.notify_one();
-      });
+      } catch (...) {
+        caught = std::current_exception();
+        stop = true;
+      }
+      const std::lock_guard<std::mutex> lock(mutex);
+      if (caught) failure = caught;
+      if (--working == 0) finished.notify_one();
+    };
+    std::vector<std::thread> pool;
+    const std::uint64_t wanted = std::min<std::uint64_t>(static_cast<std::uint64_t>(threads), count);
     {
       std::unique_lock<std::mutex> lock(mutex);
+      try {
+        for (std::uint64_t t = 0; t < wanted; ++t) {
+          pool.emplace_back(work);
+          ++working;
+        }
+      } catch (const std::system_error&) {  // the system gives no more threads: those that run do the work
+        if (pool.empty()) throw;
+      }
       while (!finished.wait_for(lock, std::chrono::milliseconds(20), [&] { return working == 0; })) {
         lock.unlock();
         if (!pause()) stop = true;
@@ -76,6 +95,7 @@ class Engine {
       }
     }
     for (std::thread& thread : pool) thread.join();
+    if (failure) std::rethrow_exception(failure);
   }
 
  private:
@@ -83,25 +103,25 @@ class Engine {
   struct Worker {
     Problem problem;
     Certifier::Memory memory;
-    StopFlag stop = nullptr;
+    Interrupts interrupts;
     std::variant<std::monostate, Attempts<3>, Attempts<6>, Attempts<Eigen::Dynamic>> attempts;
 
     Worker(const Robot& robot, const Problem& asked, const Settings& settings)
         : problem(asked), memory(*robot.certifier) {
       if (problem.rows == 3)
-        attempts.emplace<1>(problem, settings, stop);
+        attempts.emplace<1>(problem, settings, interrupts);
       else if (problem.rows == 6)
-        attempts.emplace<2>(problem, settings, stop);
+        attempts.emplace<2>(problem, settings, interrupts);
       else
-        attempts.emplace<3>(problem, settings, stop);
+        attempts.emplace<3>(problem, settings, interrupts);
     }
 
     // The start is put inside the limits.
     Answer solve(const Robot& robot, const Settings& settings, Vector& start, std::vector<Goal>& goals,
-                 std::uint64_t target, bool nearest, StopFlag stop_flag) {
+                 std::uint64_t target, bool nearest, const Interrupts& now) {
       const Clock::time_point began = Clock::now();
       problem.goals.swap(goals);
-      stop = stop_flag;
+      interrupts = now;
       Answer answer;
       std::visit(
           [&](auto& method) {

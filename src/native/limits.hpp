@@ -55,6 +55,7 @@ struct Limits {
     for (Eigen::Index i = 0; i < q.size(); ++i)
       if (turning[static_cast<std::size_t>(i)] && (q[i] < lower[i] || q[i] > upper[i])) {
         const double middle = 0.5 * (lower[i] + upper[i]);
+        if (!std::isfinite(middle)) continue;
         q[i] -= 2.0 * M_PI * std::nearbyint((q[i] - middle) / (2.0 * M_PI));
       }
   }

@@ -33,7 +33,7 @@ void integrate_free(JointKind kind, double* own, const double* step);
 class Mechanism {
  public:
   std::vector<Joint> joints{Joint()};  // the world
-  int nq = 0, nv = 0;
+  int nq = 0;
 
   // Where a joint with these values is, its parent being at `parent`.
   Placement moved(const Placement& parent, const Joint& joint, const double* q) const {

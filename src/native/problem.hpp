@@ -59,9 +59,9 @@ struct Mover {
 // One free tangent coordinate.
 struct Coordinate {
   int joint = 0, index = 0;  // whose, and which of its tangent coordinates
-  int column = 0;            // in a tangent vector of the whole robot
   int entry = -1;            // in q, where it has limits
-  std::vector<Mover> movers;
+  std::vector<Mover> movers;  // that move a frame relative to its reference
+  std::vector<Mover> moved;   // all, those too that move both
   bool slides = false;  // the first mover
 };
 
@@ -101,7 +101,7 @@ struct Problem {
       term.in_reference_support = support(term.has_reference ? term.reference_joint : 0);
       std::vector<Part> list;
       for (int c = 0; c < static_cast<int>(coordinates.size()); ++c)
-        for (const Mover& mover : coordinates[c].movers) {
+        for (const Mover& mover : coordinates[c].moved) {
           const bool frame = term.in_frame_support[mover.joint], reference = term.in_reference_support[mover.joint];
           if (frame || reference)
             list.push_back({c, mover.joint, axis_of(mover.joint, coordinates[c].index), mover.multiplier,

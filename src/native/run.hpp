@@ -39,6 +39,7 @@ class Run {
   template <class See>
   void operator()(const Vector& start, const Limits& limits, const Limits& loose, const RunSettings& settings, See see) {
     const bool bold = settings.bold && !solver_.sweeps();
+    stepping_.damp_by(bold ? of_the_distance : 1.0);
     const Limits* box = bold && limits.enabled ? &loose : &limits;
     at_.q = start;
     kinematics_.linearize(at_);
@@ -67,7 +68,6 @@ class Run {
       else if (iteration >= settings.max_iterations)
         status = Status::max_iterations;
       if (!see(at_, iteration, updates, status) || status != Status::running) return;
-      if (bold) at_.distance *= of_the_distance;
       updates += stepping_.advance(at_, *box, settings.tolerance, scale, next_.q);
       kinematics_.linearize(next_);
       if (!settings.downhill || solver_.sweeps()) {

@@ -140,6 +140,8 @@ class Directions {
  public:
   Directions(const Solver& solver, const Problem& problem) : solver_(solver), problem_(problem) {}
 
+  double share_of_distance = 1.0;  // that damping goes by
+
   // dq of the free coordinates, those held left out; `at.e` is what is pulled by, `at.distance` what damps.
   void step(const Linearization<Rows>& at, const std::vector<char>& held, Vector& dq) {
     switch (solver_.method) {
@@ -182,11 +184,12 @@ class Directions {
   }
 
   double damping_squared(const Linearization<Rows>& at) {
+    const double distance = share_of_distance * at.distance;
     double squared = solver_.damping * solver_.damping;
     if (solver_.rule == DampingRule::residual) {
-      squared *= at.distance * at.distance;
+      squared *= distance * distance;
     } else if (solver_.rule == DampingRule::sugihara) {
-      squared += 0.5 * at.distance * at.distance;
+      squared += 0.5 * distance * distance;
     } else if (solver_.rule == DampingRule::manipulability) {
       square(at.J, A_);
       const Square full = A_.template selfadjointView<Eigen::Lower>();

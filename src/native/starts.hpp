@@ -53,6 +53,9 @@ class Starts {
       features_ += 3 * term.asks_position + 9 * term.asks_rotation + 3 * (term.asks_axis && !term.asks_at);
   }
 
+  // Whether any joint is drawn: without one, all starts are the same.
+  bool draws() const { return !drawn_.empty(); }
+
   // Start number 1, 2, … of one problem, the first of them first; all that is not drawn stays as in `start`.
   void next(Kinematics<Rows>& kinematics, const Vector& start, std::uint64_t target, int number, Vector& q) {
     if (number > nearest) return draw(start, start, target, static_cast<std::uint64_t>(number), q);

@@ -11,6 +11,9 @@ class Stepping {
   Stepping(const Solver& solver, Kinematics<Rows>& kinematics)
       : solver_(solver), kinematics_(kinematics), directions_(solver, kinematics.problem), sweep_(solver, kinematics) {}
 
+  // What damping goes by from now on, of the distance.
+  void damp_by(double share) { directions_.share_of_distance = share; }
+
   // The configuration after the next step from `at` into `q`; how many joints were updated one by one.
   int advance(const Linearization<Rows>& from, const Limits& limits, const Tolerance& tolerance, double scale, Vector& q) {
     if (solver_.sweeps()) {

@@ -4,6 +4,7 @@ Where are its frames (`Robot.placement`, `Robot.jacobian`), and which joint valu
 (`Robot.solve`, `solve`, `iterate`).
 """
 
+from .closed_form import TwoBoneAnswers, two_bone
 from .errors import (
     EngineError,
     InputError,
@@ -24,6 +25,7 @@ from .robot_catalog import catalog
 from .solution import Solution
 from .solvers import (
     CCD,
+    CLOSED_FORMS,
     SOLVERS,
     DampedLeastSquares,
     JacobianSolver,
@@ -32,16 +34,19 @@ from .solvers import (
     PseudoInverse,
     Solver,
     SweepingSolver,
+    TwoBoneSolver,
     parameter,
 )
 from .state import State, Status
 from .targets import Target, TargetError, Tolerance
+from .two_bone_robot import TwoBone, TwoBoneConfigurations
 from .viewer import live
 
 __version__ = "0.1.0"
 
 __all__ = [
     "CCD",
+    "CLOSED_FORMS",
     "SOLVERS",
     "DampedLeastSquares",
     "EngineError",
@@ -67,6 +72,10 @@ __all__ = [
     "Target",
     "TargetError",
     "Tolerance",
+    "TwoBone",
+    "TwoBoneAnswers",
+    "TwoBoneConfigurations",
+    "TwoBoneSolver",
     "UnknownNameError",
     "UrdfWarning",
     "catalog",
@@ -77,4 +86,5 @@ __all__ = [
     "prepare",
     "solve",
     "solve_many",
+    "two_bone",
 ]

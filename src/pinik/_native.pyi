@@ -54,7 +54,12 @@ class Problem:
         hole: Sequence[float],
     ) -> None: ...
     def add_coordinate(
-        self, joint: int, index: int, column: int, entry: int, movers: Sequence[tuple[int, float]]
+        self,
+        joint: int,
+        index: int,
+        entry: int,
+        movers: Sequence[tuple[int, float]],
+        moved: Sequence[tuple[int, float]],
     ) -> None: ...
     def finish(self, lightest: float, size_of_chain: float) -> None: ...
 

@@ -24,6 +24,8 @@ Array = NDArray[np.float64]
 
 # Restarts that a target proved unreachable still gets: the nearest point has valleys too.
 _RESTARTS_WHEN_UNREACHABLE = 8
+# Of the chain's length: what an exact method may be off by.
+_EXACT = 1e-5
 
 
 class Settings(NamedTuple):
@@ -31,7 +33,7 @@ class Settings(NamedTuple):
 
     Attributes:
         starts: Where the attempts after the first begin.
-        start: The first attempt's configuration (nq,).
+        start: The first attempt's configuration (nq,), put inside the limits.
         nearest: Whether the first attempt begins where `starts` says as well; what is not drawn is then as in `start`.
         max_iterations: Of one attempt.
         iterations_to_the_end: Of the last run, which follows the best of the failed attempts.
@@ -69,6 +71,7 @@ class Outcome(NamedTuple):
         states: Every state of every attempt, where a trace is wanted.
         targets: What was asked for.
         time: Seconds.
+        engine: Which one computed: "python" or "native".
     """
 
     status: Status
@@ -81,6 +84,7 @@ class Outcome(NamedTuple):
     states: tuple[State, ...]
     targets: tuple[Target, ...]
     time: float
+    engine: str = "python"
 
 
 def attempt_all(settings: Settings, began: float) -> Outcome:
@@ -102,7 +106,7 @@ class _Attempts:
     """
 
     def __init__(self, settings: Settings, began: float) -> None:
-        self.settings = settings
+        self.settings = settings._replace(start=settings.limits.clip(settings.limits.wrap(settings.start)))
         self.began = began
         self.deadline = began + settings.time_limit
         self.iterations = 0
@@ -120,7 +124,7 @@ class _Attempts:
         if not asked.kinematics.free.any():
             self._attempt(self._start(), TO_THE_END, 0)
             status = Status.STALLED
-        elif asked.restarts == 0:  # the bare method, as `iterate` runs it
+        elif asked.restarts == 0 or asked.solver.exact:  # the bare method, as `iterate` runs it
             status = self._attempt(self._start(), TO_THE_END, asked.max_iterations)
         else:
             status = self._attempt_and_restart(proof)
@@ -128,7 +132,9 @@ class _Attempts:
 
     def _attempt_and_restart(self, proof: Shortfall | None) -> Status:
         asked = self.settings
-        most = asked.restarts if proof is None else min(asked.restarts, _RESTARTS_WHEN_UNREACHABLE)
+        most = asked.restarts if asked.starts.draws else 0
+        if proof is not None:
+            most = min(most, _RESTARTS_WHEN_UNREACHABLE)
         for self.restarts in range(most + 1):
             status = self._attempt(
                 self._start(),
@@ -195,6 +201,12 @@ class _Attempts:
         if self.best is None or at.residual < self.best.residual:
             self.best = state._replace(q=at.q, errors=tuple(at.errors), residual=at.residual)
 
+    def _came_as_near_as_can_be(self, errors: tuple[TargetError, ...]) -> bool:
+        """Whether the method stops nowhere else, and what it missed is more than what it may be off by."""
+        asked = self.settings
+        least = asked.tolerance.position + _EXACT * asked.kinematics.size_of_chain
+        return asked.solver.exact and any(error.position is not None and error.position > least for error in errors)
+
     def _judged(self, status: Status, proof: Shortfall | None) -> Outcome:
         """The best state, measured by plain forward kinematics, which has the last word."""
         assert self.best is not None
@@ -202,7 +214,7 @@ class _Attempts:
         errors = measure_errors(asked.kinematics.robot, asked.kinematics.targets, q)
         if all(error.within(asked.tolerance) for error in errors):
             status = Status.CONVERGED
-        elif proof is not None:
+        elif proof is not None or (status is Status.STALLED and self._came_as_near_as_can_be(errors)):
             status = Status.UNREACHABLE
         elif status is Status.CONVERGED:
             status = Status.STALLED

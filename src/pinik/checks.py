@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterable
+from typing import Any
 
 import numpy as np
 import pinocchio
@@ -16,6 +17,7 @@ __all__ = [
     "as_finite_number",
     "as_many",
     "as_names",
+    "as_numbers",
     "as_point",
     "as_points",
     "as_rotation",
@@ -70,12 +72,7 @@ def as_array(value: ArrayLike, shape: tuple[int, ...], what: str, of: str = "") 
 def as_many(values: ArrayLike, shape: tuple[int, ...], what: str) -> Array:
     """`values` as a fresh float64 array (n, *shape); InputError names the first that is not finite."""
     size = "×".join(map(str, shape))
-    try:
-        array = np.array(values)
-    except ValueError:
-        raise InputError(f"{what} takes N times {size} finite numbers; got rows of different lengths") from None
-    if array.dtype.kind not in "iuf":
-        raise InputError(f"{what} takes N times {size} finite numbers; got {array.dtype} values")
+    array = as_numbers(values, what)
     if array.shape[1:] != shape or array.ndim != len(shape) + 1:
         raise InputError(f"{what} takes N times {size} finite numbers; got an array of shape {array.shape}")
     finite = np.isfinite(array).all(axis=tuple(range(1, array.ndim)))
@@ -83,6 +80,17 @@ def as_many(values: ArrayLike, shape: tuple[int, ...], what: str) -> Array:
         k = int(np.argmin(finite))
         raise InputError(f"{what}[{k}] takes {size} finite numbers; got {array[k].tolist()}")
     return array.astype(np.float64)
+
+
+def as_numbers(values: ArrayLike, what: str) -> NDArray[Any]:
+    """`values` as an array of real numbers, whatever its shape."""
+    try:
+        array = np.asarray(values)
+    except ValueError:
+        raise InputError(f"{what} takes an array of numbers; got rows of different lengths") from None
+    if array.dtype.kind not in "iuf":
+        raise InputError(f"{what} takes an array of numbers; got {values!r}")
+    return array
 
 
 def as_vector(value: ArrayLike, size: int, what: str, of: str = "") -> Array:
@@ -138,9 +146,13 @@ def as_points(values: ArrayLike, what: str) -> Array:
 def as_rotations(values: ArrayLike, what: str) -> Array:
     """`values` as rotation matrices (n, 3, 3), each as `as_rotation` takes it."""
     matrices = as_many(values, (3, 3), what)
+    a, b, c = np.ascontiguousarray(matrices.transpose(1, 2, 0))  # rows of all; many times faster than N small products
     with np.errstate(over="ignore", invalid="ignore"):
-        off = np.abs(matrices @ matrices.transpose(0, 2, 1) - _IDENTITY).max(axis=(1, 2), initial=0.0)
-        wrong = ~(off <= 1e-6) | ~(np.linalg.det(matrices) > 0.0)
+        off = np.zeros(len(matrices))
+        for one, other, product in ((a, a, 1.0), (b, b, 1.0), (c, c, 1.0), (a, b, 0.0), (a, c, 0.0), (b, c, 0.0)):
+            off = np.maximum(off, np.abs((one * other).sum(axis=0) - product))
+        turned = np.stack((a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]))
+        wrong = ~(off <= 1e-6) | ~((turned * c).sum(axis=0) > 0.0)
     _refuse_the_first(wrong, matrices, as_rotation, what)
     for k in np.flatnonzero(off >= 1e-14):
         matrices[k] = as_rotation(matrices[k], what)

@@ -68,6 +68,7 @@ def iterate(
     at_target = isinstance(made, JacobianSolver) and made.target_jacobian
     held = (*as_names(locked, "locked"), *made.held)
     kinematics = Kinematics(robot, targets, locked=held, target_jacobian=at_target)
+    made.check(kinematics)
     box = Limits.of(robot, limits)
     q = robot.neutral() if q0 is None else robot.check_configuration(q0, "q0")
     most = made.max_iterations if max_iterations is None else as_count(max_iterations, "max_iterations")
@@ -99,7 +100,8 @@ def solve(
     Args:
         robot: The robot.
         targets: One target or several.
-        method: "ccd", "jt", "pinv", "dls", another name in `pinik.SOLVERS`, a Solver class or an instance.
+        method: "ccd", "jt", "pinv", "dls", another name in `pinik.SOLVERS`, a Solver class or an instance; "two_bone"
+            where two parallel hinges move the frame.
         q0: Start (nq,); neutral when None. With limits it is put inside them first, joint by joint, the joints that
             move nothing and the locked ones as well.
         limits: Whether the answer keeps inside the joints' limits.
@@ -154,7 +156,7 @@ def solve_from_keywords(
         except TypeError:  # something in it cannot be a key
             key = None
     if prepared is not None:
-        place = options["placement"] if position is None else _as_array(position)
+        place = options["placement"] if position is None else _as_point(position)
         solution = prepared.at(place, options.get("q0"))
         if solution is not None:
             return solution
@@ -170,7 +172,7 @@ def _key_of_a_place(
     frame: str, position: ArrayLike | None, method: object, options: Mapping[str, Any]
 ) -> tuple[object, ...] | None:
     """What to keep the compiled question under, where it asks one frame for a position, or for a placement."""
-    if (position is None) is not ("placement" in options) or type(method) is not str:
+    if (position is None) is not ("placement" in options) or type(method) is not str or method not in SOLVERS:
         return None
     settings = []
     for name, value in options.items():
@@ -178,14 +180,14 @@ def _key_of_a_place(
             return None
         if name != "placement" and name != "q0":
             settings.append((name, type(value), value))
-    return (frame, position is None, method, SOLVERS.get(method), *settings)
+    return (frame, position is None, method, SOLVERS[method], *settings)
 
 
-def _as_array(position: ArrayLike) -> object:
-    """Three plain numbers as an array; anything else as it is, for others to judge."""
+def _as_point(position: ArrayLike) -> object:
+    """Three plain numbers as an array; None for what others have to judge."""
     if isinstance(position, (list, tuple)) and [type(x) for x in position] == [float, float, float]:
         return np.array(position)
-    return position
+    return position if isinstance(position, np.ndarray) and position.ndim == 1 else None
 
 
 def _prepared(
@@ -194,9 +196,11 @@ def _prepared(
     """The question, compiled; of the last few kinds that this thread asked, what was compiled then."""
     if not isinstance(robot, Robot):
         raise InputError(f"robot is what pinik.load returns; got {robot!r}")
+    if isinstance(method, str) and method not in SOLVERS:  # "module:Class", which may be another one next time
+        return prepare(robot, targets, method, **options)
     try:
         shapes = tuple(target.shape for target in targets)
-        meant = SOLVERS.get(method) if isinstance(method, str) else None
+        meant = SOLVERS[method] if isinstance(method, str) else None
         key = (shapes, method, meant, *((name, type(value), value) for name, value in options.items()))
         found = robot.kept.get(key)
     except TypeError:  # something in it cannot be a key
@@ -207,6 +211,6 @@ def _prepared(
 def _keep(robot: Robot, key: tuple[object, ...], prepared: Prepared) -> Prepared:
     if robot.model.nv <= _MOST_FREEDOMS_KEPT:
         robot.kept[key] = prepared
-        if len(robot.kept) > _MOST_KEPT:
+        while len(robot.kept) > _MOST_KEPT:
             del robot.kept[next(iter(robot.kept))]
     return prepared

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 import time
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -14,7 +14,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from . import native
 from .attempts import Outcome, attempt_all
-from .checks import as_points, as_rotations, as_se3
+from .checks import as_many, as_numbers, as_points, as_rotations, as_se3
 from .errors import InputError
 from .prepared import Prepared, as_count, prepare
 from .reach import shortfall
@@ -27,6 +27,8 @@ from .targets import Target, as_targets, largest_of
 __all__ = ["Solutions", "solve_many"]
 
 Array = NDArray[np.float64]
+
+_MOST_THREADS = 1024
 
 
 def solve_many(
@@ -64,7 +66,7 @@ def solve_many(
         raise InputError(f"robot is what pinik.load returns; got {robot!r}")
     if "trace" in options:
         raise InputError("solve_many keeps no trace; pinik.solve does")
-    count = _processors() if threads is None else as_count(threads, "threads")
+    count = _processors() if threads is None else min(as_count(threads, "threads"), _MOST_THREADS)
     began = time.perf_counter()
     pattern, goals = _questions(robot, targets, places)
     prepared = prepare(robot, pattern, method, **options)
@@ -124,6 +126,8 @@ class Solutions:
         return (self[index] for index in range(len(self)))
 
     def __getitem__(self, index: int) -> Solution:
+        if not isinstance(index, (int, np.integer)):
+            raise TypeError(f"solutions are counted by whole numbers, the arrays take slices; got {index!r}")
         prepared, asked = self.prepared, self.prepared.settings
         if not -len(self) <= index < len(self):
             raise IndexError(f"there are {len(self)} solutions; got {index}")
@@ -140,6 +144,7 @@ class Solutions:
             (),
             targets,
             float(self.time[index]),
+            prepared.engine,
         )
         return Solution(outcome, asked)
 
@@ -147,6 +152,8 @@ class Solutions:
 def _questions(robot: Robot, targets: Any, places: Any) -> tuple[tuple[Target, ...], Array]:
     """(a pattern of what is asked each time, the numbers that say where (N, targets, 18))."""
     if places is None:
+        if not isinstance(targets, Iterable):
+            raise InputError(f"targets is a frame's name, a Target, or a sequence of them; got {targets!r}")
         if isinstance(targets, (str, Target)):
             raise InputError("places says where the frame should be: (N, 4, 4) matrices, N SE3, or positions (N, 3)")
         asked = [as_targets(each) for each in targets]
@@ -162,10 +169,10 @@ def _questions(robot: Robot, targets: Any, places: Any) -> tuple[tuple[Target, .
     if isinstance(places, Sequence) and any(isinstance(place, pinocchio.SE3) for place in places):
         places = np.array([as_se3(place, f"places[{k}]").homogeneous for k, place in enumerate(places)])
     rotations, points = None, None
-    if np.ndim(places) == 3:
-        matrices = np.asarray(places)
-        if matrices.shape[1:] != (4, 4) or (np.abs(matrices[:, 3] - (0.0, 0.0, 0.0, 1.0)) > 1e-9).any():
-            raise InputError("places takes (N, 4, 4) homogeneous matrices, their last rows 0 0 0 1")
+    if as_numbers(places, "places").ndim == 3:
+        matrices = as_many(places, (4, 4), "places")
+        for k in np.flatnonzero((np.abs(matrices[:, 3] - (0.0, 0.0, 0.0, 1.0)) > 1e-9).any(axis=1))[:1]:
+            as_se3(matrices[k], f"places[{k}]")
         rotations, points = as_rotations(matrices[:, :3, :3], "places"), as_points(matrices[:, :3, 3], "places")
     else:
         points = as_points(places, "places")
@@ -194,7 +201,7 @@ def _starts(robot: Robot, q0: ArrayLike | None, count: int) -> Array:
     """(1, nq) or (N, nq)."""
     if q0 is None:
         return robot.neutral()[np.newaxis]
-    if np.ndim(q0) != 2:
+    if as_numbers(q0, "q0").ndim != 2:
         return robot.check_configuration(q0, "q0")[np.newaxis]
     starts = robot.check_configurations(q0, "q0")
     if len(starts) != count:

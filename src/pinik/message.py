@@ -52,6 +52,7 @@ def explain(
             Status.STALLED: "stalled",
             Status.MAX_ITERATIONS: "out of iterations,",
             Status.TIME_LIMIT: "out of time,",
+            Status.UNREACHABLE: "unreachable:",
         }[status]
         sentence = f"{begin} {missed}"
     return "; ".join([sentence, *_limits(active)])

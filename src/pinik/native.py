@@ -7,6 +7,7 @@ import importlib.util
 import math
 from collections.abc import Iterable
 from typing import TYPE_CHECKING, Any, NamedTuple
+from weakref import WeakKeyDictionary
 
 import numpy as np
 import pinocchio
@@ -41,7 +42,9 @@ _KINDS = ("revolute", "continuous", "prismatic", "floating", "planar")
 _METHODS: tuple[type[Solver], ...] = (CCD, JacobianTranspose, PseudoInverse, DampedLeastSquares)
 _RULES = ("constant", "residual", "sugihara", "manipulability")
 _STATUSES = tuple(Status)
+_MOST = 2**31 - 1  # that the engine counts to
 _IDENTITY = pinocchio.SE3.Identity()
+_ROBOTS: WeakKeyDictionary[Robot, Any] = WeakKeyDictionary()
 
 
 @functools.cache
@@ -101,6 +104,8 @@ class Answer:
     """
 
     __slots__ = ("_answer", "pattern")
+
+    engine = "native"
 
     def __init__(self, answer: _native.Answer, pattern: tuple[Target, ...]) -> None:
         self._answer = answer
@@ -179,10 +184,10 @@ def make_engine(settings: Settings) -> Engine:
     asked.patience = settings.solver.patience.iterations, settings.solver.patience.progress
     asked.tolerance = tuple(settings.tolerance)
     asked.limits = limits.enabled
-    asked.restarts = settings.restarts
+    asked.restarts = min(settings.restarts, _MOST)
     asked.seed = settings.seed & 0xFFFFFFFFFFFFFFFF
-    asked.max_iterations = settings.max_iterations
-    asked.iterations_to_the_end = settings.iterations_to_the_end
+    asked.max_iterations = min(settings.max_iterations, _MOST)
+    asked.iterations_to_the_end = min(settings.iterations_to_the_end, _MOST)
     asked.time_limit = settings.time_limit
     asked.trace = settings.trace
     engine: Engine = module.Engine(robot, problem, asked)
@@ -191,9 +196,9 @@ def make_engine(settings: Settings) -> Engine:
 
 def _robot(robot: Robot) -> Any:
     """The robot as the engine knows it, made once."""
-    if "native" not in robot.kept:
-        robot.kept["native"] = _make_robot(robot)
-    return robot.kept["native"]
+    if robot not in _ROBOTS:
+        _ROBOTS[robot] = _make_robot(robot)
+    return _ROBOTS[robot]
 
 
 def _make_robot(robot: Robot) -> Any:
@@ -256,9 +261,9 @@ def _problem(robot: Any, kinematics: Kinematics) -> Any:
         problem.add_coordinate(
             joint=joint.id,
             index=coordinate.index,
-            column=joint.idx_v + coordinate.index,
             entry=joint.idx_q if joint.nq == 1 else -1,
             movers=[(mover.id, multiplier) for mover, multiplier in coordinate.movers],
+            moved=[(j.id, j.multiplier) for j in kinematics.robot.joints if joint.name in (j.name, j.leader)],
         )
     problem.finish(lightest=kinematics.lightest, size_of_chain=kinematics.size_of_chain)
     return problem

@@ -62,11 +62,14 @@ def prepare(
         raise InputError(f"robot is what pinik.load returns; got {robot!r}")
     solver = make_solver(method, **solver_parameters)
     check_joint_names(robot, solver)
+    for name, value in (("limits", limits), ("trace", trace)):
+        if not isinstance(value, (bool, np.bool_)):
+            raise InputError(f"{name} is True or False; got {value!r}")
     return Prepared(
         robot,
         targets,
         solver,
-        limits=limits,
+        limits=bool(limits),
         locked=as_names(locked, "locked"),
         restarts=solver.restarts if restarts is None else as_count(restarts, "restarts", least=0),
         seed=as_count(seed, "seed", least=0),
@@ -74,7 +77,7 @@ def prepare(
         tolerance=Tolerance.of(tolerance),
         time_limit=math.inf if time_limit is None else _seconds(time_limit),
         engine=engine,
-        trace=trace,
+        trace=bool(trace),
     )
 
 
@@ -110,7 +113,7 @@ class Prepared:
 
     Attributes:
         robot: The robot.
-        targets: What was asked last.
+        targets: What it was prepared with.
         solver: The method with its parameters.
         engine: "python" or "native".
         settings: The same and the rest, as the attempts take it.
@@ -134,11 +137,16 @@ class Prepared:
         trace: bool,
     ) -> None:
         """Compile; every argument but `locked` and `targets` is checked already."""
+        self._options = {
+            "limits": limits, "locked": locked, "restarts": restarts, "seed": seed, "max_iterations": max_iterations,
+            "tolerance": tolerance, "time_limit": time_limit, "engine": engine, "trace": trace,
+        }  # fmt: skip
         at_target = isinstance(solver, JacobianSolver) and solver.target_jacobian
         self.engine = _chosen(engine, solver)
         self.robot = robot
         self.solver = solver
         self._kinematics = Kinematics(robot, targets, locked=(*locked, *solver.held), target_jacobian=at_target)
+        solver.check(self._kinematics)
         self.targets = self._kinematics.targets
         self._shape = [target.shape for target in self.targets]
         box = Limits.of(robot, limits)
@@ -158,6 +166,10 @@ class Prepared:
         )
         self.native = native.make_engine(self.settings) if self.engine == "native" else None
 
+    def __reduce__(self) -> tuple[Any, ...]:
+        """Compile it anew elsewhere: what was compiled holds memory of this process."""
+        return _again, (self.robot, self.targets, self.solver, self._options)
+
     def __call__(
         self,
         targets: Target | Sequence[Target] | pinocchio.SE3 | ArrayLike | None = None,
@@ -167,7 +179,7 @@ class Prepared:
 
         Args:
             targets: Where the frame should be: an SE3 or 4×4 matrix, or a position (3,) [m], as far as that was asked
-                for; or Target objects like those it was prepared with. Those of the last call when None.
+                for; or Target objects like those it was prepared with. Those themselves when None.
             q0: Start (nq,); neutral when None; "nearest" for one whose frames are near the targets, from a table.
 
         Raises:
@@ -177,13 +189,12 @@ class Prepared:
         quick = self.at(targets, q0)
         if quick is not None:
             return quick
-        if targets is not None:
-            self.targets = self._as_asked(targets)
+        asked = self.targets if targets is None else self._as_asked(targets)
         nearest = isinstance(q0, str) and q0 == "nearest"
         start = self.settings.start if q0 is None or nearest else self.robot.check_configuration(q0, "q0")
         if self.native is not None:
-            return Solution(self.native.solve(start, native.goals_of(self.targets), nearest), self.settings)
-        self._kinematics.retarget(self.targets)
+            return Solution(self.native.solve(start, native.goals_of(asked), nearest), self.settings)
+        self._kinematics.retarget(asked)
         return Solution(attempt_all(self.settings._replace(start=start, nearest=nearest), began), self.settings)
 
     def at(self, place: object, q0: object = None) -> Solution | None:
@@ -220,6 +231,10 @@ class Prepared:
                 f"it was prepared for other targets (of {frames}); only where they are may differ, else prepare anew"
             )
         return asked
+
+
+def _again(robot: Robot, targets: tuple[Target, ...], solver: Solver, options: dict[str, Any]) -> Prepared:
+    return Prepared(robot, targets, solver, **options)
 
 
 def _are_targets(value: object) -> bool:

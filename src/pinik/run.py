@@ -22,6 +22,7 @@ Array = NDArray[np.float64]
 TO_THE_END = Patience(50, 1e-4)
 """How patiently a run is followed to its end when no other attempt waits."""
 
+_AT_REST = 1e-9  # what an exact method's rounding may still move
 _OF_THE_DISTANCE = math.sqrt(0.1)  # what a bold run's damping goes by
 
 
@@ -49,10 +50,11 @@ def run(
     box = limits.loosened() if bold and limits.enabled else limits
     at = kinematics.linearize(start)
     milestone, since = at.residual, 0
-    iteration, last, updates, scale = 0, max_iterations, 0, 1.0
+    iteration, last, updates, scale, rests = 0, max_iterations, 0, 1.0, False
     status: Status | None
     while True:
-        reached = _reached(at, tolerance)
+        # An exact method takes its step from a start that is near enough as well: it may be asked for another elbow.
+        reached = _reached(at, tolerance) and (iteration > 0 or not solver.exact)
         if reached and not limits.contains(at.q):  # only a run that steps freely gets there
             box, at = limits, kinematics.linearize(limits.clip(limits.wrap(at.q)))
             milestone, since = at.residual, 0
@@ -61,7 +63,7 @@ def run(
             milestone, since = at.residual, 0
         if reached:
             status = Status.CONVERGED
-        elif since >= patience.iterations:
+        elif since >= patience.iterations or rests:
             status = Status.STALLED
         else:
             status = Status.MAX_ITERATIONS if iteration >= last else None
@@ -75,7 +77,7 @@ def run(
             return
         seen = at._replace(distance=_OF_THE_DISTANCE * at.distance) if bold else at
         q, updated = advance(solver, kinematics, box, seen, tolerance, scale)
-        there = kinematics.linearize(q)
+        there, rests = kinematics.linearize(q), solver.exact and bool(np.abs(q - at.q).max() < _AT_REST)
         if not downhill or isinstance(solver, SweepingSolver):
             at = there
         elif there.residual < at.residual:

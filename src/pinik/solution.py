@@ -66,7 +66,7 @@ class Solution:
     @cached_property
     def engine(self) -> str:
         """Which one computed: "python" or "native"."""
-        return "python" if isinstance(self._outcome, Outcome) else "native"
+        return self._outcome.engine
 
     @property
     def status(self) -> Status:
@@ -77,7 +77,8 @@ class Solution:
     def q(self) -> Array:
         """The best configuration found (nq,), also on failure."""
         if self._q is None:  # `cached_property` takes a lock, and a microsecond
-            self._q = self._came_to.q
+            q = self._came_to.q
+            self._q = q.copy() if isinstance(self._came_to, Outcome) else q  # the caller's own
         return self._q
 
     @cached_property
@@ -132,7 +133,7 @@ class Solution:
     @property
     def _sides_of_limits(self) -> dict[str, str]:
         free = self._asked.kinematics.free
-        sides = self._asked.limits.active(self.q)
+        sides = self._asked.limits.active(self._came_to.q)
         return {name: side for name, side in sides.items() if free[self.robot.joint(name).idx_v]}
 
     def __repr__(self) -> str:

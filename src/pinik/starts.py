@@ -51,6 +51,11 @@ class Starts:
         self._seen: Array = np.zeros((_SIZE, 0))
         self._order: NDArray[np.intp] = np.zeros(0, dtype=np.intp)
 
+    @property
+    def draws(self) -> bool:
+        """Whether any joint is drawn: without one, all starts are the same."""
+        return self._drawn.size > 0
+
     def next(self, q0: Array, *, target: int, number: int) -> Array:
         """Start number 1, 2, … for the targets of the kinematics, `target` their number; the first comes first.
 

@@ -192,8 +192,10 @@ class Target:
     @property
     def shape(self) -> tuple[object, ...]:
         """What is asked of which frame, without the numbers that say where: equal where only these differ."""
-        parts = (self.position is not None, self.rotation is not None, self.axis is not None, self.at is not None)
-        return self.frame, self.relative_to, self.weight, self.tool, parts
+        axis = None if self.axis is None else tuple(self.axis.tolist())
+        parts = (self.position is not None, self.rotation is not None, axis, self.at is not None)
+        tool = None if self.tool is None else self.tool.homogeneous.tobytes()
+        return self.frame, self.relative_to, self.weight, tool, parts
 
     def moved_to(self, place: pinocchio.SE3 | ArrayLike) -> Target:
         """The same target elsewhere.

@@ -9,7 +9,7 @@ import typer
 
 from ..errors import InputError, PinikError
 from ..loop import solve as solve_targets
-from ..solvers import SOLVERS
+from ..solvers import CLOSED_FORMS, SOLVERS
 from . import goals, output
 from .assignments import configuration, solver_with
 from .exits import CommandError, ExitStatus, in_words
@@ -192,7 +192,7 @@ def solve(
     except PinikError:
         raise
     except (Exception, SystemExit) as error:
-        if method in SOLVERS:
+        if method in SOLVERS or method in CLOSED_FORMS:
             raise
         # The solver is the user's, and may raise whatever it likes.
         raise CommandError(f"--method {method}: the solver failed: {in_words(error)}") from None

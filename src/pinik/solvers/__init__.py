@@ -13,9 +13,11 @@ from .ccd import CCD
 from .damped_least_squares import DampedLeastSquares
 from .pseudo_inverse import PseudoInverse
 from .transpose import JacobianTranspose
+from .two_bone import TwoBoneSolver
 
 __all__ = [
     "CCD",
+    "CLOSED_FORMS",
     "SOLVERS",
     "DampedLeastSquares",
     "JacobianSolver",
@@ -24,6 +26,7 @@ __all__ = [
     "PseudoInverse",
     "Solver",
     "SweepingSolver",
+    "TwoBoneSolver",
     "make_solver",
     "parameter",
 ]
@@ -33,12 +36,15 @@ SOLVERS: dict[str, type[Solver]] = {
 }
 """Short name → class. Add your own class here and every front of pinik knows it."""
 
+CLOSED_FORMS: dict[str, type[Solver]] = {TwoBoneSolver.name: TwoBoneSolver}
+"""The same for methods that can do only some robots, and refuse the others with a reason."""
+
 
 def make_solver(method: str | type[Solver] | Solver, **parameters: Any) -> Solver:
     """The solver that is meant.
 
     Args:
-        method: A name in `SOLVERS`, "module:Class" for one that is imported, a class, or an instance.
+        method: A name in `SOLVERS` or `CLOSED_FORMS`, "module:Class" for one that is imported, a class, or an instance.
         **parameters: The solver's parameters; with an instance they replace its own.
 
     Raises:
@@ -63,12 +69,13 @@ def _is_complete(method: object) -> TypeGuard[type[Solver]]:
 
 
 def _class_by_name(name: str) -> Any:
-    if name in SOLVERS:
-        return SOLVERS[name]
+    known = SOLVERS | {name: solver for name, solver in CLOSED_FORMS.items() if name not in SOLVERS}
+    if name in known:
+        return known[name]
     module, colon, attribute = name.partition(":")
     if colon:
         try:
             return getattr(importlib.import_module(module), attribute)
         except (ImportError, AttributeError, ValueError, TypeError) as error:
-            raise UnknownNameError("method", name, SOLVERS, f"could not import it: {error}") from None
-    raise UnknownNameError("method", name, SOLVERS)
+            raise UnknownNameError("method", name, known, f"could not import it: {error}") from None
+    raise UnknownNameError("method", name, known)

@@ -97,6 +97,8 @@ class Solver:
     """Fresh starts after the first attempt, unless `solve` is told otherwise."""
     patience: ClassVar[Patience] = Patience(5, 0.05)
     """When an attempt counts as stalled."""
+    exact: ClassVar[bool] = False
+    """Whether it comes to rest only as near to the targets as can be, to 1e-5 of the chain's length."""
 
     max_step: float = max_step_parameter(math.inf)
     max_residual: float = parameter(
@@ -143,6 +145,13 @@ class Solver:
     def parameters(self) -> dict[str, Any]:
         """Name → value."""
         return {field.name: getattr(self, field.name) for field in dataclasses.fields(self)}
+
+    def check(self, kinematics: Kinematics) -> None:
+        """See that this method can do what is asked; most can do anything.
+
+        Raises:
+            InputError: It cannot; the message says why.
+        """
 
     @property
     def held(self) -> tuple[str, ...]:
