@@ -36,6 +36,7 @@ RUNS = {
     "info": [("info", "panda", "--root", "free_flyer", "--json")],
     "check": [("check", "ur3_empty", "--json"), ("check", "two_link", "--json")],
     "robots": [("robots", "--json")],
+    "compare": [("compare", "--steps", "1", "--json")],
 }
 
 

@@ -8,8 +8,10 @@ import pytest
 
 import pinik
 from by_hand import two_hinges
-from pinik.viewer.curves import CURVES, polyline
-from pinik.viewer.effectors import curve_axes, home_configuration, lowest_point, principal_frames
+from pinik.curves import CURVES, polyline
+from pinik.home import home_configuration, lowest_point
+from pinik.tracks import curve_axes
+from pinik.viewer.effectors import principal_frames
 from robots import load_quietly
 from stand_ins import is_inside, plain_placement
 from urdf_texts import joint, link, robot

@@ -10,8 +10,8 @@ import pinocchio
 import pytest
 
 import pinik
+from pinik.home import home_configuration
 from pinik.solvers import make_solver
-from pinik.viewer.effectors import home_configuration
 from pinik.viewer.instance import STATUSES, Chase, Instance
 from robots import load_quietly
 from stand_ins import Clock, is_inside, plain_placement

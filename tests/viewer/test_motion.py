@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 import pinik
+from pinik.home import home_configuration, lowest_point
 from pinik.viewer.balls import Ball
-from pinik.viewer.effectors import home_configuration, lowest_point
 from pinik.viewer.motion import Motion
 from robots import load_quietly
 from stand_ins import is_inside, plain_placement

@@ -9,8 +9,8 @@ from pathlib import Path
 import pytest
 
 import pinik
+from pinik.curves import CURVES
 from pinik.robot_catalog import catalog
-from pinik.viewer.curves import CURVES
 from pinik.viewer.instance import STATUSES
 from pinik.viewer.messages import RANGES
 from pinik.viewer.session import Session

@@ -9,7 +9,7 @@ from typing import Annotated, Any
 import typer
 
 from ..errors import PinikError
-from . import check, fk, info, jacobian, live, output, robots, solve
+from . import check, compare, fk, info, jacobian, live, output, robots, solve
 from .exits import CommandError, ExitStatus, in_words
 
 __all__ = ["main"]
@@ -27,6 +27,7 @@ _app.command("info")(info.info)
 _app.command("check")(check.check)
 _app.command("robots")(robots.robots)
 _app.command("live")(live.live)
+_app.command("compare", epilog=compare.EPILOG)(compare.compare)
 
 
 @_app.callback(invoke_without_command=True)

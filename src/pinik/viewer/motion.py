@@ -3,15 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
+from ..home import home_configuration
 from ..robot import Robot
+from ..tracks import Track, lay_track, random_configuration
 from .balls import Ball
-from .curves import CURVES, polyline
-from .effectors import curve_axes, home_configuration, lowest_point
 
 __all__ = ["MOTIONS", "Motion"]
 
@@ -22,14 +21,6 @@ MOTIONS = {"hand": "By hand", "curve": "Along a curve", "random": "At random"}
 
 _PERIOD = 8.0  # [s] once round a curve at speed 1
 _PAUSE = 1.5  # [s] between two random places at speed 1
-
-
-class _Track(NamedTuple):
-    """One ball's curve: its center (3,), the rows u, v, w of its axes (3, 3) and its points (n, 3), all in [m]."""
-
-    center: Array
-    axes: Array
-    path: Array
 
 
 class Motion:
@@ -48,8 +39,7 @@ class Motion:
         self._robot = robot
         self._seed = seed
         self._home = home_configuration(robot)
-        self._ground = lowest_point(robot, self._home)
-        self._laid: dict[tuple[str, str], _Track] = {}
+        self._laid: dict[tuple[str, str], Track] = {}
         self.restart()
 
     def restart(self) -> None:
@@ -66,13 +56,12 @@ class Motion:
         if self.kind == "curve":
             self._phase = (self._phase + self.speed * seconds / _PERIOD) % 1.0
             for ball in moving:
-                track = self._track(ball)
-                ball.put(track.center + np.array(CURVES[self.curve].point(self._phase)) @ track.axes)
+                ball.put(self._track(ball).at(self._phase))
             return
         self._since += self.speed * seconds
         if self._since >= _PAUSE:
             self._since = 0.0
-            q = self._random_configuration()
+            q = random_configuration(self._robot, self._home, self._rng)
             for ball in moving:
                 ball.put(self._robot.placement(ball.frame, q).translation)
 
@@ -82,23 +71,9 @@ class Motion:
             return np.zeros((0, 3))
         return self._track(ball).path
 
-    def _track(self, ball: Ball) -> _Track:
-        """A ball's curve: about its home, raised until nothing dips into the ground."""
+    def _track(self, ball: Ball) -> Track:
+        """A ball's curve: about its home."""
         key = (ball.frame, self.curve)
         if key not in self._laid:
-            curve = CURVES[self.curve]
-            axes = curve_axes(self._robot, ball.frame, self._home, ball.home, curve)
-            lowest = float(polyline(curve, ball.home, axes)[:, 2].min())
-            center = ball.home + np.array([0.0, 0.0, max(0.0, self._ground - lowest)])
-            self._laid[key] = _Track(center, axes, polyline(curve, center, axes))
+            self._laid[key] = lay_track(self._robot, ball.frame, self.curve, ball.home)
         return self._laid[key]
-
-    def _random_configuration(self) -> Array:
-        """All one-axis joints drawn anew, the root where it is at home: what is drawn can be reached."""
-        q = self._home.copy()
-        drawn = self._robot.random(self._rng)
-        for name in self._robot.joint_names:
-            joint = self._robot.joint(name)
-            if joint.has_one_axis:
-                joint.set_angle(q, joint.angle(drawn))
-        return q

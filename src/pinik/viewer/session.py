@@ -9,14 +9,15 @@ from typing import Any
 
 from numpy.typing import ArrayLike
 
+from ..curves import CURVES
 from ..errors import InputError, UnknownNameError
+from ..home import home_configuration, lowest_point
 from ..prepared import check_joint_names
 from ..robot import Robot
 from ..solvers import SOLVERS, Solver, make_solver
 from ..targets import Tolerance
 from .balls import MODES, Ball, Mode
-from .curves import CURVES
-from .effectors import home_configuration, lowest_point, principal_frames
+from .effectors import principal_frames
 from .instance import Chase, Instance
 from .motion import MOTIONS, Motion
 from .statistics import Summary

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from typing import Any
 
+from ..curves import CURVES
 from ..robot_catalog import catalog
 from ..solvers import Solver
-from .curves import CURVES
 from .instance import STATUSES, Instance
 from .messages import FARTHEST, RANGES
 from .motion import MOTIONS

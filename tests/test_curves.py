@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from pinik.viewer.curves import CURVES, polyline
+from pinik.curves import CURVES, polyline
 
 PHASES = st.floats(0.0, 1.0, exclude_max=True)
 

@@ -1,0 +1,203 @@
+"""One method that chases a ball, step after step, each from where the last one ended."""
+
+from __future__ import annotations
+
+import math
+import time
+from collections.abc import Callable, Generator, Sequence
+from dataclasses import dataclass
+from typing import NamedTuple, Protocol
+
+import numpy as np
+import pinocchio
+from numpy.typing import NDArray
+
+from ..kinematics import Kinematics
+from ..limits import Limits
+from ..prepared import Prepared, prepare
+from ..robot import Robot
+from ..run import run
+from ..solvers import JacobianSolver, Patience, Solver
+from ..state import State, Status
+from ..targets import Target, Tolerance
+
+__all__ = ["LAP", "BareChase", "Chase", "EngineChase", "Rules", "Step", "chase_with"]
+
+Array = NDArray[np.float64]
+Clock = Callable[[], float]
+
+LAP = 480
+"""Steps once round a curve: the live view's eight seconds at 60 frames a second."""
+NEVER_STALLED = Patience(10**9, 0.0)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Rules:
+    """How the methods are run.
+
+    Attributes:
+        tolerance: What counts as reached.
+        max_iterations: Of one step, or of one attempt where there are restarts; the solver's own number when None.
+        restarts: Fresh starts of one step; the solver's own number when None.
+        bare: Whether a step knows no stalls and ends where its last iteration did, as the thesis's program does; else
+            it ends as `pinik.solve` does, at the best configuration.
+        lap: Steps once round the curve.
+        rest: Steps that a random ball stays at a place.
+        pieces: Equal parts in which the ball moves from place to place, each of them solved.
+    """
+
+    tolerance: Tolerance
+    max_iterations: int | None = None
+    restarts: int | None = 0
+    bare: bool = False
+    lap: int = LAP
+    rest: int = 1
+    pieces: int = 1
+
+
+class Step(NamedTuple):
+    """One step of one method.
+
+    Attributes:
+        time: Seconds.
+        iterations: Iterations; sweeps for CCD.
+        joint_updates: Single joints updated, for CCD.
+        reached: Whether the ball was within tolerance at the end.
+        error: How far off it was [m].
+        jump: The largest change of one joint [rad or m].
+    """
+
+    time: float
+    iterations: int
+    joint_updates: int
+    reached: bool
+    error: float
+    jump: float
+
+
+class Chase(Protocol):
+    """One method at work; it remembers where it stands."""
+
+    engine: str
+
+    def step(self, place: Array) -> Step:
+        """Chase the ball to a place (3,) [m]."""
+        ...
+
+
+class EngineChase:
+    """A step is a solve, by either engine."""
+
+    def __init__(self, prepared: Prepared, start: Array) -> None:
+        """Begin at `start` (nq,)."""
+        self.engine = prepared.engine
+        self._prepared = prepared
+        self._q = start
+
+    def step(self, place: Array) -> Step:
+        """Solve from where the last step ended."""
+        before = self._q
+        solution = self._prepared(place, before)
+        self._q = solution.q
+        error = solution.position_error
+        assert error is not None
+        return Step(
+            solution.time,
+            solution.iterations,
+            solution.joint_updates,
+            solution.success,
+            error,
+            largest_change(self._prepared.robot, before, self._q),
+        )
+
+
+class BareChase:
+    """A step is the bare loop: it knows no stalls, no restarts and no best so far."""
+
+    engine = "python"
+
+    def __init__(
+        self, robot: Robot, frame: str, solver: Solver, limits: bool, rules: Rules, start: Array, clock: Clock
+    ) -> None:
+        """Begin at `start` (nq,)."""
+        target = Target(frame, robot.placement(frame, start).translation)
+        at_target = isinstance(solver, JacobianSolver) and solver.target_jacobian
+        self._kinematics = Kinematics(robot, target, locked=solver.held, target_jacobian=at_target)
+        self._target, self._robot, self._clock = target, robot, clock
+        most = solver.max_iterations if rules.max_iterations is None else rules.max_iterations
+        box = Limits.of(robot, limits)
+        self._states: Generator[State, Target | Sequence[Target] | None, None] = run(
+            solver, self._kinematics, box, box.clip(box.wrap(start)), most, rules.tolerance, NEVER_STALLED
+        )
+        self._state = next(self._states)  # reached: the ball begins where the frame is
+
+    def step(self, place: Array) -> Step:
+        """Iterate until the place is reached or the iterations run out; at least once, as the thesis's program does."""
+        before, began = self._state, self._clock()
+        state = self._states.send(self._target.moved_to(place))
+        while state.status is None:
+            state = next(self._states)
+        spent = self._clock() - began
+        self._state = state
+        error = state.position_error
+        assert error is not None
+        return Step(
+            spent,
+            state.iteration - before.iteration,
+            state.joint_updates - before.joint_updates,
+            state.status is Status.CONVERGED,
+            error,
+            largest_change(self._robot, before.q, state.q),
+        )
+
+
+def largest_change(robot: Robot, before: Array, after: Array) -> float:
+    """The largest change of one joint between two configurations (nq,) [rad or m]."""
+    return float(np.abs(pinocchio.difference(robot.model, before, after)).max(initial=0.0))
+
+
+def chase_with(
+    robot: Robot,
+    frame: str,
+    solver: Solver,
+    *,
+    limits: bool,
+    rules: Rules,
+    start: Array,
+    engine: str = "auto",
+    clock: Clock = time.perf_counter,
+) -> Chase:
+    """A method at work under these rules; bare ones by Python unless `engine` is "native".
+
+    With that, and bare rules, a step stalls and ends at its best configuration after all, as the compiled engine does.
+
+    Raises:
+        UnknownNameError, InputError, EngineError: As `pinik.prepare`.
+    """
+    prepared = prepare(
+        robot,
+        Target(frame, np.zeros(3)),
+        solver,
+        limits=limits,
+        restarts=rules.restarts,
+        max_iterations=rules.max_iterations,
+        tolerance=rules.tolerance,
+        engine=engine,
+    )
+    if rules.bare and engine != "native":
+        return BareChase(robot, frame, solver, limits, rules, start, clock)
+    return EngineChase(prepared, start)
+
+
+def in_pieces(chase: Chase, place: Array, last: Array, pieces: int) -> Step:
+    """One step whose ball comes from `last` in equal pieces: sums, but the end's verdict and the largest jump."""
+    steps = [chase.step(last + (place - last) * (number / pieces)) for number in range(1, pieces)]
+    steps.append(chase.step(place))
+    return Step(
+        math.fsum(step.time for step in steps),
+        sum(step.iterations for step in steps),
+        sum(step.joint_updates for step in steps),
+        steps[-1].reached,
+        steps[-1].error,
+        max(step.jump for step in steps),
+    )
