@@ -1,6 +1,6 @@
 """What a million targets cost two bones; the aim is half a second.
 
-    python -m pytest benchmarks/test_closed_form_cost.py --benchmark-enable --benchmark-only
+python -m pytest benchmarks/test_closed_form_cost.py --benchmark-enable --benchmark-only
 """
 
 from __future__ import annotations
@@ -25,6 +25,4 @@ def test_a_million_targets_in_space(benchmark):
 
 def test_the_points_of_a_million_answers(benchmark):
     targets = np.random.default_rng(0).uniform(-1.0, 1.0, (COUNT, 2))
-    benchmark.pedantic(
-        lambda answers: answers.tips, setup=lambda: ((pinik.two_bone(0.5, 0.4, targets),), {}), rounds=5
-    )
+    benchmark.pedantic(lambda answers: answers.tips, setup=lambda: ((pinik.two_bone(0.5, 0.4, targets),), {}), rounds=5)
