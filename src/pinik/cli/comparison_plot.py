@@ -62,7 +62,8 @@ def draw_comparison(answer: Mapping[str, Any], path: Path) -> None:
         if key != "efficiency":
             panel.set_yscale("symlog", linthresh=0.001 if key == "time" else 1.0)
             panel.set_ylim(bottom=0.0)
-    axes[0].legend(fontsize=8)
+    bars, labels = axes[0].get_legend_handles_labels()
+    figure.legend(bars, labels, loc="outside lower center", ncols=len(methods), fontsize=8, frameon=False)
     figure.suptitle(
         f"{answer['robot']}, {answer['frame']}: preset {answer['preset']}, reading {answer['reading']}, "
         f"{answer['steps']} steps; outlined: the thesis's Table 4.1"
