@@ -116,7 +116,7 @@ def show(question: Question, solutions: list[pinik.Solution], console: Console) 
             "" if solution.orientation_error is None else f"{math.degrees(solution.orientation_error):.3f}",
             str(solution.iterations),
             str(solution.restarts),
-            f"{1e3 * solution.time:.1f}",
+            f"{1e3 * solution.time:.3f}",
         )
     console.print(Padding.indent(table, 2))
     missed = [solution for solution in solutions if not solution]

@@ -80,6 +80,8 @@ def small_length(metres: float) -> str:
 
 def duration(seconds: float) -> str:
     """A time for people."""
+    if seconds < 1e-3:
+        return f"{1e6 * seconds:.0f} µs"
     return f"{1000.0 * seconds:.1f} ms" if seconds < 1.0 else f"{seconds:.2f} s"
 
 
