@@ -10,13 +10,12 @@ from numpy.typing import ArrayLike
 
 from .checks import as_names
 from .errors import InputError
-from .kinematics import Kinematics
 from .limits import Limits
 from .prepared import Prepared, as_count, check_joint_names, prepare
 from .robot import Robot
-from .run import TO_THE_END, run
+from .run import TO_THE_END, compiled_for, run
 from .solution import Solution
-from .solvers import SOLVERS, JacobianSolver, Solver, make_solver
+from .solvers import SOLVERS, Solver, make_solver
 from .state import State
 from .targets import TARGET_KEYWORDS, Target, Tolerance, as_targets
 
@@ -65,10 +64,7 @@ def iterate(
         raise InputError(f"robot is what pinik.load returns; got {robot!r}")
     made = make_solver(solver, **solver_parameters)
     check_joint_names(robot, made)
-    at_target = isinstance(made, JacobianSolver) and made.target_jacobian
-    held = (*as_names(locked, "locked"), *made.held)
-    kinematics = Kinematics(robot, targets, locked=held, target_jacobian=at_target)
-    made.check(kinematics)
+    kinematics = compiled_for(made, robot, targets, as_names(locked, "locked"))
     box = Limits.of(robot, limits)
     q = robot.neutral() if q0 is None else robot.check_configuration(q0, "q0")
     most = made.max_iterations if max_iterations is None else as_count(max_iterations, "max_iterations")

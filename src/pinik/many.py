@@ -76,11 +76,11 @@ def solve_many(
         answers = native.attempt_many(prepared.native, goals, starts, nearest, count)
     else:
         answers = _attempt_one_by_one(prepared, goals, starts, nearest)
-    return Solutions(**answers._asdict(), total_time=time.perf_counter() - began, prepared=prepared, _goals=goals)
+    return Solutions(**vars(answers), total_time=time.perf_counter() - began, prepared=prepared, _goals=goals)
 
 
 @dataclass(frozen=True, eq=False)
-class Solutions:
+class Solutions(native.Answers):
     """The answers to N questions, each checked by plain Pinocchio; `solutions[i]` is one as `pinik.solve` gives it.
 
     Attributes:
@@ -94,14 +94,6 @@ class Solutions:
         prepared: The kind of question.
     """
 
-    q: Array
-    status: NDArray[np.object_]
-    position_error: Array
-    orientation_error: Array
-    iterations: NDArray[np.int64]
-    joint_updates: NDArray[np.int64]
-    restarts: NDArray[np.int64]
-    time: Array
     total_time: float
     prepared: Prepared = field(repr=False)
     _goals: Array = field(repr=False)

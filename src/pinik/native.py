@@ -6,7 +6,8 @@ import functools
 import importlib.util
 import math
 from collections.abc import Iterable
-from typing import TYPE_CHECKING, Any, NamedTuple
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
 from weakref import WeakKeyDictionary
 
 import numpy as np
@@ -74,8 +75,9 @@ def why_not(solver: Solver | None = None) -> str | None:
     return None
 
 
-class Answers(NamedTuple):
-    """What N solves came to, an entry each: see `many.Solutions`."""
+@dataclass(frozen=True, eq=False)
+class Answers:
+    """What N solves came to, an entry each: the fields that `many.Solutions` describes."""
 
     q: Array
     status: NDArray[np.object_]

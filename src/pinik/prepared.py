@@ -15,11 +15,11 @@ from . import native
 from .attempts import Settings, attempt_all
 from .checks import as_finite_number, as_names
 from .errors import EngineError, InputError, UnknownNameError
-from .kinematics import Kinematics
 from .limits import Limits
 from .robot import Robot
+from .run import compiled_for
 from .solution import Solution
-from .solvers import JacobianSolver, Solver, make_solver
+from .solvers import Solver, make_solver
 from .starts import Starts
 from .targets import Target, Tolerance, as_targets
 
@@ -141,12 +141,10 @@ class Prepared:
             "limits": limits, "locked": locked, "restarts": restarts, "seed": seed, "max_iterations": max_iterations,
             "tolerance": tolerance, "time_limit": time_limit, "engine": engine, "trace": trace,
         }  # fmt: skip
-        at_target = isinstance(solver, JacobianSolver) and solver.target_jacobian
         self.engine = _chosen(engine, solver)
         self.robot = robot
         self.solver = solver
-        self._kinematics = Kinematics(robot, targets, locked=(*locked, *solver.held), target_jacobian=at_target)
-        solver.check(self._kinematics)
+        self._kinematics = compiled_for(solver, robot, targets, locked)
         self.targets = self._kinematics.targets
         self._shape = [target.shape for target in self.targets]
         box = Limits.of(robot, limits)

@@ -3,19 +3,20 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Generator, Sequence
+from collections.abc import Generator, Iterable, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
 
 from .kinematics import Kinematics, Linearization
 from .limits import Limits
+from .robot import Robot
 from .solvers import JacobianSolver, Patience, Solver, SweepingSolver
 from .state import State, Status
 from .stepping import advance
 from .targets import Target, Tolerance
 
-__all__ = ["TO_THE_END", "run"]
+__all__ = ["TO_THE_END", "compiled_for", "run"]
 
 Array = NDArray[np.float64]
 
@@ -24,6 +25,20 @@ TO_THE_END = Patience(50, 1e-4)
 
 _AT_REST = 1e-9  # what an exact method's rounding may still move
 _OF_THE_DISTANCE = math.sqrt(0.1)  # what a bold run's damping goes by
+
+
+def compiled_for(
+    solver: Solver, robot: Robot, targets: Target | Sequence[Target], locked: Iterable[str] = ()
+) -> Kinematics:
+    """The targets as this solver sees them: with the joints that it holds, and its kind of Jacobian.
+
+    Raises:
+        UnknownNameError, InputError: As `Kinematics`; or the solver cannot do what is asked.
+    """
+    at_target = isinstance(solver, JacobianSolver) and solver.target_jacobian
+    kinematics = Kinematics(robot, targets, locked=(*locked, *solver.held), target_jacobian=at_target)
+    solver.check(kinematics)
+    return kinematics
 
 
 def run(

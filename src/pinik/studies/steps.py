@@ -12,12 +12,11 @@ import numpy as np
 import pinocchio
 from numpy.typing import NDArray
 
-from ..kinematics import Kinematics
 from ..limits import Limits
 from ..prepared import Prepared, prepare
 from ..robot import Robot
-from ..run import run
-from ..solvers import JacobianSolver, Patience, Solver
+from ..run import compiled_for, run
+from ..solvers import Patience, Solver
 from ..state import State, Status
 from ..targets import Target, Tolerance
 
@@ -121,8 +120,7 @@ class BareChase:
     ) -> None:
         """Begin at `start` (nq,)."""
         target = Target(frame, robot.placement(frame, start).translation)
-        at_target = isinstance(solver, JacobianSolver) and solver.target_jacobian
-        self._kinematics = Kinematics(robot, target, locked=solver.held, target_jacobian=at_target)
+        self._kinematics = compiled_for(solver, robot, target)
         self._target, self._robot, self._clock = target, robot, clock
         most = solver.max_iterations if rules.max_iterations is None else rules.max_iterations
         box = Limits.of(robot, limits)

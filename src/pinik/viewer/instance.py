@@ -17,8 +17,8 @@ from ..limits import Limits
 from ..message import explain
 from ..reach import shortfall
 from ..robot import Robot
-from ..run import TO_THE_END, run
-from ..solvers import JacobianSolver, Solver
+from ..run import TO_THE_END, compiled_for, run
+from ..solvers import Solver
 from ..state import State, Status, measure_errors
 from ..targets import Target, Tolerance, largest_of
 from .statistics import Statistics, StepFigures
@@ -174,8 +174,7 @@ class Instance:
 
     def _begin(self, targets: tuple[Target, ...]) -> Generator[State, Target | Sequence[Target] | None, None]:
         solver, chase = self._solver, self._chase
-        at_target = isinstance(solver, JacobianSolver) and solver.target_jacobian
-        self._kinematics = Kinematics(self.robot, targets, locked=solver.held, target_jacobian=at_target)
+        self._kinematics = compiled_for(solver, self.robot, targets)
         limits = Limits.of(self.robot, chase.limits)
         start = limits.clip(limits.wrap(self.q))
         most = solver.max_iterations if chase.until_reached else chase.at_most
