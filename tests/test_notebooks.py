@@ -10,7 +10,6 @@ from pathlib import Path
 
 import nbformat
 import pytest
-
 import run_notebooks
 
 FOLDER = Path(__file__).parents[1] / "notebooks"
