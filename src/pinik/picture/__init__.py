@@ -23,7 +23,7 @@ from .camera import Camera, look_from
 from .render import render
 from .solids import ball
 
-__all__ = ["Picture", "draw"]
+__all__ = ["BALL", "Picture", "ball_radius", "checked_size", "draw", "view_direction"]
 
 Array = NDArray[np.float64]
 
@@ -31,7 +31,6 @@ VIEWS = {"angle": (-0.6, 0.28), "front": (0.0, 0.12), "side": (-np.pi / 2, 0.12)
 """Name → azimuth and elevation [rad] of the camera as seen from the robot; "top" is a map: x to the right, y up."""
 
 BALL = "#d81f2f"
-_BALL = 0.025  # its radius, of the robot's size, as in the live view
 _TINT = 0.75
 _LENS = float(np.tan(np.deg2rad(26.0) / 2))
 _FILLED = 0.86
@@ -85,14 +84,23 @@ class Picture:
             image = Image.alpha_composite(white, image).convert("RGB")
         image.save(path)
 
-    def _repr_png_(self) -> bytes:
-        """What a notebook shows."""
+    def png(self, colors: int | None = None) -> bytes:
+        """It as the bytes of a PNG file; with at most so many `colors`, 2 to 256, it takes half the space."""
         from PIL import Image
 
         opaque = bool((self.pixels[..., 3] == 255).all())
+        image = Image.fromarray(self.pixels[..., :3] if opaque else self.pixels)
+        if colors is not None:
+            if type(colors) is not int or not 2 <= colors <= 256:
+                raise InputError(f"a PNG has 2 to 256 colors, or all when None; got {colors!r}")
+            image = image.quantize(colors, Image.Quantize.MEDIANCUT if opaque else Image.Quantize.FASTOCTREE)
         file = io.BytesIO()
-        Image.fromarray(self.pixels[..., :3] if opaque else self.pixels).save(file, "png", optimize=True)
+        image.save(file, "png", optimize=True)
         return file.getvalue()
+
+    def _repr_png_(self) -> bytes:
+        """What a notebook shows."""
+        return self.png()
 
     def __repr__(self) -> str:
         return f"<Picture of {self.size[0]}×{self.size[1]} pixels>"
@@ -142,15 +150,13 @@ def draw(
     """
     if not isinstance(robot, Robot):
         raise InputError(f"a picture is drawn of a robot that pinik.load returned; got {robot!r}")
-    size = _checked_size(size)
+    size = checked_size(size)
     configurations = _configurations(robot, q)
     count = len(configurations)
     opacities, offsets = _opacities(opacity, count), _offsets(offset, count)
     tints = [None] * count if color is None else _each(color, count, "color", "configurations")
     paper = None if background is None else _color(background, "background")
-    radius = _BALL * robot_size(robot) if ball_radius is None else as_finite_number(ball_radius, "ball_radius")
-    if not radius > 0.0:
-        raise InputError(f"ball_radius is greater than zero [m]; got {ball_radius!r}")
+    radius = _radius(robot, ball_radius)
     points = _points(balls, "balls")
     tones = _each(ball_color, len(points), "ball_color", "balls")
     layers: dict[tuple[int, float], list[Body]] = {}
@@ -173,12 +179,41 @@ def draw(
     return Picture(render(list(layers.values()), camera, size, floor, paper), camera)
 
 
+def view_direction(view: str | tuple[float, float]) -> Array:
+    """From a robot to the camera (3,), of unit length; `view` as for `draw`, but no camera.
+
+    Raises:
+        UnknownNameError: No such view.
+        InputError: Not two angles.
+    """
+    if isinstance(view, str):
+        if view not in VIEWS:
+            raise UnknownNameError("view", view, VIEWS)
+        view = VIEWS[view]
+    azimuth, elevation = as_vector(view, 2, "view", "the camera's azimuth and elevation in radians")
+    flat = np.cos(elevation) * np.array([np.cos(azimuth), np.sin(azimuth)])
+    return np.array([*flat, np.sin(elevation)])
+
+
+def ball_radius(robot: Robot) -> float:
+    """Of the balls that are drawn beside a robot [m], as in the live view."""
+    return 0.025 * robot_size(robot)
+
+
+def _radius(robot: Robot, given: float | None) -> float:
+    radius = ball_radius(robot) if given is None else as_finite_number(given, "ball_radius")
+    if not radius > 0.0:
+        raise InputError(f"ball_radius is greater than zero [m]; got {given!r}")
+    return radius
+
+
 def _placed(body: Body, offset: Array, opacity: float, tint: Array | None) -> Body:
     color = body.color if tint is None else (1.0 - _TINT) * body.color + _TINT * tint
     return Body(body.solid.moved(np.eye(3), offset), color, body.opacity * opacity, body.gloss)
 
 
-def _checked_size(size: tuple[int, int]) -> tuple[int, int]:
+def checked_size(size: tuple[int, int]) -> tuple[int, int]:
+    """Width and height [pixels]; InputError unless they are whole numbers and not too many."""
     try:
         width, height = (operator.index(side) for side in size)
         fits = all(_SMALLEST <= side <= _LARGEST for side in (width, height))
@@ -245,10 +280,4 @@ def _color(text: str, what: str) -> Array:
 def _camera(view: str | tuple[float, float] | Camera, points: Array, size: tuple[int, int]) -> Camera:
     if isinstance(view, Camera):
         return view
-    if isinstance(view, str):
-        if view not in VIEWS:
-            raise UnknownNameError("view", view, VIEWS)
-        view = VIEWS[view]
-    azimuth, elevation = as_vector(view, 2, "view", "the camera's azimuth and elevation in radians")
-    direction = [np.cos(elevation) * np.cos(azimuth), np.cos(elevation) * np.sin(azimuth), np.sin(elevation)]
-    return look_from(np.array(direction), points, aspect=size[0] / size[1], lens=_LENS, filled=_FILLED)
+    return look_from(view_direction(view), points, aspect=size[0] / size[1], lens=_LENS, filled=_FILLED)
