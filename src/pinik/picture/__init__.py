@@ -167,7 +167,7 @@ def draw(
                 layers.setdefault((-1 if shown.opacity >= 1.0 else k, shown.opacity), []).append(shown)
     robots = [body.solid.vertices for layer in layers.values() for body in layer]
     if points.size:
-        spheres = [Body(ball(at, radius), tone, gloss=0.6) for at, tone in zip(points, tones, strict=True)]
+        spheres = [Body(ball(at, radius), tone, gloss=0.6, glow=0.4) for at, tone in zip(points, tones, strict=True)]
         layers.setdefault((-1, 1.0), []).extend(spheres)
     if not layers:
         raise InputError("there is nothing to draw: no configuration with an opacity over zero, and no ball")

@@ -32,12 +32,14 @@ class Body:
         color: Red, green, blue (3,), each in 0..1.
         opacity: In 0..1.
         gloss: How much it shines, in 0..1.
+        glow: How much light of its own it has, so that it keeps its colour in the shade.
     """
 
     solid: Solid
     color: Array
     opacity: float = 1.0
     gloss: float = 0.15
+    glow: float = 0.0
 
 
 @dataclass(frozen=True, eq=False)

@@ -12,11 +12,11 @@ from .bodies import Body
 from .camera import Camera, look_from
 from .raster import Raster, rasterize
 
-__all__ = ["FAR", "SHADOW_MAP", "Mesh", "Sun", "to_linear", "to_srgb"]
+__all__ = ["FAR", "Mesh", "Sun", "to_linear", "to_srgb"]
 
 Array = NDArray[np.float64]
 
-SHADOW_MAP = (1024, 1024)  # pixels
+_SHARPEST, _COARSEST = 1024, 256  # pixels of a shadow map's side
 FAR = 0.02  # lens of a camera that stands so far away that it sees almost in parallel
 _SKY, _KEY, _FILL = 0.44, 0.70, 0.13
 _TAPS = 6  # looks into the shadow map for each sample; the four samples of a pixel take different ones
@@ -43,6 +43,7 @@ class Mesh:
         faces: (f, 3).
         color: Of each face (f, 3), amounts of light.
         gloss: Of each face (f,).
+        glow: Of each face (f,).
         opacity: In 0..1.
     """
 
@@ -51,6 +52,7 @@ class Mesh:
     faces: NDArray[np.int64]
     color: Array
     gloss: Array
+    glow: Array
     opacity: float
 
     @classmethod
@@ -65,6 +67,7 @@ class Mesh:
             np.vstack([solid.faces + start for solid, start in zip(solids, starts, strict=True)]),
             np.repeat(to_linear(np.array([body.color for body in bodies])), counts, axis=0),
             np.repeat([body.gloss for body in bodies], counts),
+            np.repeat([body.glow for body in bodies], counts),
             bodies[0].opacity,
         )
 
@@ -79,10 +82,11 @@ class Sun:
     Args:
         meshes: What may cast shadows.
         camera: Who looks.
+        size: Width and height of what it draws [pixels]; of a small picture the shadows are coarser.
         points: Of a hull of everything that is lit (n, 3) [m].
     """
 
-    def __init__(self, meshes: Sequence[Mesh], camera: Camera, points: Array) -> None:
+    def __init__(self, meshes: Sequence[Mesh], camera: Camera, size: tuple[int, int], points: Array) -> None:
         right, _, ahead = camera.axes
         flat = np.array([*-ahead[:2], 0.0]) if np.linalg.norm(ahead[:2]) > 0.1 else np.array([1.0, 0.0, 0.0])
         flat /= np.linalg.norm(flat)
@@ -90,38 +94,47 @@ class Sun:
         self._fill = _unit(0.35 * flat + 0.9 * right + [0.0, 0.0, 0.45])
         self.radius = float(np.linalg.norm(np.ptp(points, axis=0))) / 2
         self.camera = look_from(self.direction, points, aspect=1.0, lens=FAR, filled=0.75)
+        side = min(max(*size, _COARSEST), _SHARPEST) // 2 * 2
+        self.map_size = (side, side)
         away = (points.mean(axis=0) - self.camera.position) @ self.camera.axes[2]
-        self._pixel = float(2.0 * FAR * away / SHADOW_MAP[1])  # [m]
-        self.maps = [mesh.drawn_by(self.camera, SHADOW_MAP) for mesh in meshes]
+        self._pixel = float(2.0 * FAR * away / side)  # [m]
+        self.maps = [mesh.drawn_by(self.camera, self.map_size) for mesh in meshes]
         solid = [k for k, mesh in enumerate(meshes) if mesh.opacity >= 1.0]
-        self._depth = self.maps[solid[0]].depth if solid else np.full(SHADOW_MAP[::-1], np.inf)
+        self._depth = self.maps[solid[0]].depth if solid else np.full(self.map_size[::-1], np.inf)
 
     def shines_on(self, points: Array, normals: Array, sample: NDArray[np.int64]) -> Array:
         """How much of the sun reaches points (k, 3) on surfaces; `sample` (k,) in 0..3 says which of a pixel's four."""
-        x, y, depth = self.camera.seen(points + 3.0 * self._pixel * normals, SHADOW_MAP).T
+        x, y, depth = self.camera.seen(points + 3.0 * self._pixel * normals, self.map_size).T
         x, y = x / depth, y / depth
         bias = 2.0 * self._pixel
         lit = np.zeros(len(points))
         for tap in range(_TAPS):
             turn = 4 * tap + sample
             away, angle = 3.2 * np.sqrt((turn + 0.5) / (4 * _TAPS)), 2.39996 * turn  # the golden angle
-            column = np.clip((x + away * np.cos(angle)).astype(np.int64), 0, SHADOW_MAP[0] - 1)
-            row = np.clip((y + away * np.sin(angle)).astype(np.int64), 0, SHADOW_MAP[1] - 1)
+            column = np.clip((x + away * np.cos(angle)).astype(np.int64), 0, self.map_size[0] - 1)
+            row = np.clip((y + away * np.sin(angle)).astype(np.int64), 0, self.map_size[1] - 1)
             lit += self._depth[row, column] > depth - bias
         return lit / _TAPS
 
     def shade(
-        self, points: Array, normals: Array, color: Array, gloss: Array, back: Array, sample: NDArray[np.int64]
+        self,
+        mesh: Mesh,
+        triangles: NDArray[np.int64],
+        points: Array,
+        normals: Array,
+        back: Array,
+        sample: NDArray[np.int64],
     ) -> Array:
-        """Light (k, 3) that comes from surface points; `back` (k, 3) are the ways to the camera."""
+        """Light (k, 3) that comes from points of a mesh's triangles; `back` (k, 3) are the ways to the camera."""
         rim = 0.84 + 0.16 * np.einsum("kc,kc->k", normals, back).clip(0.0)  # so that white stands out against white
         key = np.maximum(normals @ self.direction, 0.0) * self.shines_on(points, normals, sample)
         fill = np.maximum(normals @ self._fill, 0.0)
         sky = _SKY * (0.66 + 0.34 * normals[:, 2])
         half = self.direction + back
         half /= np.linalg.norm(half, axis=1, keepdims=True)
-        shine = np.einsum("kc,kc->k", normals, half).clip(0.0) ** 50.0 * gloss * (key > 0.0)
-        return np.asarray(color * (rim * (sky + _KEY * key + _FILL * fill))[:, None] + shine[:, None])
+        shine = np.einsum("kc,kc->k", normals, half).clip(0.0) ** 50.0 * mesh.gloss[triangles] * (key > 0.0)
+        light = rim * (sky + _KEY * key + _FILL * fill) + mesh.glow[triangles]
+        return np.asarray(mesh.color[triangles] * light[:, None] + shine[:, None])
 
 
 def _unit(vector: Array) -> Array:

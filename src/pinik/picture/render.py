@@ -36,7 +36,7 @@ def render(
     """
     meshes = [Mesh.of(layer) for layer in layers]
     points = np.vstack([_box(body.solid.vertices) for layer in layers for body in layer])
-    sun = Sun(meshes, camera, points)
+    sun = Sun(meshes, camera, size, points)
     color, opacity = _drawn(meshes, sun, camera, size)
     behind, cover = np.zeros((*opacity.shape, 3)), np.zeros_like(opacity)
     if floor is not None and camera.position[2] > floor:
@@ -91,7 +91,7 @@ def _shaded(mesh: Mesh, sun: Sun, camera: Camera, size: tuple[int, int]) -> tupl
     normals[inward] *= -1.0
     normals /= np.maximum(_lengths(normals), 1e-12)
     sample = columns % _SAMPLES + _SAMPLES * (rows % _SAMPLES)
-    light = sun.shade(points, normals, mesh.color[triangles], mesh.gloss[triangles], back, sample)
+    light = sun.shade(mesh, triangles, points, normals, back, sample)
     color = np.zeros((*raster.depth.shape, 3))
     color[rows, columns] = to_srgb(light)
     return color, raster.depth
