@@ -8,13 +8,14 @@ engine := CMakeLists.txt $(wildcard src/native/*)
 # A sourced ROS workspace puts another Pinocchio, built for another Python, in front of ours.
 unexport PYTHONPATH
 
-.PHONY: help run test lint bench clean
+.PHONY: help run test lint bench notebooks clean
 
 help:
 	@echo "make run     install what is missing into $(VENV) and show a tour, then the live view"
 	@echo "make test    everything that is checked: style, types, tests"
 	@echo "make lint    style and types only"
 	@echo "make bench   how fast the solvers are"
+	@echo "make notebooks   run the notebooks and write them with their pictures"
 	@echo "make clean   remove $(VENV) and everything else that was made here"
 	@echo
 	@echo "make PYTHON=/path/to/python3 … takes that Python for $(VENV)."
@@ -33,6 +34,9 @@ lint: $(VENV)/installed-dev
 
 bench: $(VENV)/installed-dev
 	@$(python) -m pytest benchmarks --benchmark-enable --benchmark-only
+
+notebooks: $(VENV)/installed-dev
+	@$(python) tools/run_notebooks.py
 
 clean:
 	@rm -rf $(VENV) build dist .mypy_cache .pytest_cache .ruff_cache .hypothesis .benchmarks

@@ -19,6 +19,7 @@ from .kinematics import Kinematics, Linearization
 from .loading import load
 from .loop import iterate, solve
 from .many import Solutions, solve_many
+from .picture import Picture, draw
 from .prepared import Prepared, prepare
 from .robot import Robot
 from .robot_catalog import catalog
@@ -57,6 +58,7 @@ __all__ = [
     "Kinematics",
     "Linearization",
     "Patience",
+    "Picture",
     "PinikError",
     "Prepared",
     "PseudoInverse",
@@ -79,6 +81,7 @@ __all__ = [
     "UnknownNameError",
     "UrdfWarning",
     "catalog",
+    "draw",
     "iterate",
     "live",
     "load",

@@ -1,4 +1,4 @@
-"""Where a robot stands when nothing was said, and its ground."""
+"""Where a robot stands when nothing was said, its ground and its size."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from .limits import Limits
 from .robot import Robot
 
-__all__ = ["home_configuration", "lowest_point"]
+__all__ = ["home_configuration", "lowest_point", "robot_size"]
 
 Array = NDArray[np.float64]
 
@@ -39,3 +39,21 @@ def lowest_point(robot: Robot, q: Array) -> float:
     data = robot.model.createData()
     pinocchio.framesForwardKinematics(robot.model, data, q)
     return float(min(placement.translation[2] for placement in data.oMf))
+
+
+def robot_size(robot: Robot) -> float:
+    """The longest way [m] from the root's origin to a link's along the joints between them; 1 where that is nothing.
+
+    Sliding joints are drawn out.
+    """
+    model = robot.model
+    by_id = {joint.id: joint for joint in robot.joints}
+    away = [0.0]  # [m] from the root's origin to each joint's
+    for joint_id in range(1, model.njoints):
+        joint = by_id[joint_id]
+        ends = joint.range_to_draw_from(joint.lower, joint.upper) if joint.kind == "prismatic" else (0.0,)
+        step = float(np.linalg.norm(model.jointPlacements[joint_id].translation)) + max(map(abs, ends))
+        away.append(away[model.parents[joint_id]] + step)
+    links = [model.frames[robot.frame_id(name)] for name in robot.description.links]
+    size = max(away[link.parentJoint] + float(np.linalg.norm(link.placement.translation)) for link in links)
+    return size or 1.0

@@ -8,6 +8,7 @@ import errno
 import html
 import json
 import os
+import secrets
 import socket
 import threading
 import webbrowser
@@ -22,7 +23,9 @@ import tornado.ioloop
 from numpy.typing import ArrayLike, NDArray
 
 from .. import errors
+from ..picture import Picture
 from ..robot import Robot
+from .notebook import as_html, draw_beside
 from .server import later_in_threads, make_application
 from .session import STEPS_PER_SECOND, Methods, Session
 from .show import Show
@@ -32,14 +35,14 @@ __all__ = ["LiveView"]
 T = TypeVar("T")
 
 _PORTS = range(7007, 7027)
-_NOTEBOOK_HEIGHT = 640  # pixels
 
 
 class LiveView:
     """A running live view. A context manager: leaving it frees the port.
 
-    In a notebook it shows itself as a frame. What the page can change, `send` can: every row of the table in
-    docs/live-protocol.md is a message, as in `view.send("motion", motion="random")`.
+    In a notebook it shows itself as a frame, and as a picture where the server has gone. What the page can change,
+    `send` can: every row of the table in docs/live-protocol.md is a message, as in
+    `view.send("motion", motion="random")`.
 
     Attributes:
         url: Where the page is.
@@ -65,6 +68,7 @@ class LiveView:
         sockets = _bind(host, port)
         self.port: int = sockets[0].getsockname()[1]
         self.url = f"http://{_addressed(host)}:{self.port}/"
+        self._mark = secrets.token_hex(8)
         self._workers = ThreadPoolExecutor(2, thread_name_prefix="pinik-live-worker")
         self._closed = threading.Event()
         ready: Future[tuple[tornado.ioloop.IOLoop, Show]] = Future()
@@ -81,7 +85,7 @@ class LiveView:
         loop = tornado.ioloop.IOLoop.current()
         try:
             show = Show(session, later_in_threads(loop, self._workers), version)
-            server = tornado.httpserver.HTTPServer(make_application(show, host))
+            server = tornado.httpserver.HTTPServer(make_application(show, host, self._mark))
         except BaseException as error:
             for listening in sockets:
                 listening.close()
@@ -111,11 +115,24 @@ class LiveView:
         self.close()
 
     def _repr_html_(self) -> str:
-        """What a notebook shows: the page in a frame."""
+        """What a notebook shows: the page in a frame, or where there is no server the picture of this moment."""
         if self._closed.is_set():
             return html.escape(repr(self))
-        style = f"width: 100%; height: {_NOTEBOOK_HEIGHT}px; border: 0"
-        return f'<iframe src="{self.url}" title="pinik live view" style="{style}"></iframe>'
+        methods = [instance["method"] for instance in self.state["instances"]]
+        caption = f"{self.robot.name}, seen by pinik.live"
+        if len(methods) > 1:
+            caption += f"; from left to right: {', '.join(methods)}"
+        return as_html(self.url, self._mark, self.picture(), caption)
+
+    def picture(self, view: str | tuple[float, float] = "angle", size: tuple[int, int] = (720, 360)) -> Picture:
+        """The instances that are seen, beside each other as they stand; `view` and `size` are as for `pinik.draw`."""
+
+        def now() -> tuple[Robot, list[NDArray[Any]], list[tuple[NDArray[Any], bool]]]:
+            session = self._show.session
+            balls = [(ball.position.copy(), ball.mode == "pinned") for ball in session.balls if ball.mode != "off"]
+            return session.robot, [instance.q.copy() for instance in session.seen], balls
+
+        return draw_beside(*self._do(now), view=view, size=size)
 
     def close(self) -> None:
         """Stop the server and free the port; a second time does nothing."""

@@ -14,6 +14,7 @@ import umsgpack
 from numpy.typing import NDArray
 
 from ..errors import EngineError
+from ..home import robot_size
 from ..robot import Robot
 
 if TYPE_CHECKING:
@@ -58,8 +59,7 @@ def meshcat_script() -> Path:
 def robot_message(robot: Robot, generation: int) -> dict[str, Any]:
     """The `robot` message: joints, links and frames by name and place.
 
-    `size` [m] is the longest way from the root's origin to a link's along the joints between them, sliding joints
-    drawn out; 1 where that is nothing. `frames` are the links that something moves, those at the ends first (all
+    `size` [m] is `robot_size`. `frames` are the links that something moves, those at the ends first (all
     links, where nothing moves).
     """
     model = robot.model
@@ -67,13 +67,6 @@ def robot_message(robot: Robot, generation: int) -> dict[str, Any]:
     links = [model.frames[robot.frame_id(name)] for name in robot.description.links]
     moved = [link.name for link in links if link.parentJoint]
     carriers = {joint.parent for joint in robot.description.joints}
-    away = [0.0]  # [m] from the root's origin to each joint's
-    for joint_id in range(1, model.njoints):
-        joint = by_id[joint_id]
-        ends = joint.range_to_draw_from(joint.lower, joint.upper) if joint.kind == "prismatic" else (0.0,)
-        step = float(np.linalg.norm(model.jointPlacements[joint_id].translation)) + max(map(abs, ends))
-        away.append(away[model.parents[joint_id]] + step)
-    size = max(away[link.parentJoint] + float(np.linalg.norm(link.placement.translation)) for link in links)
     return {
         "type": "robot",
         "generation": generation,
@@ -92,7 +85,7 @@ def robot_message(robot: Robot, generation: int) -> dict[str, Any]:
             {"name": link.name, "joint": link.parentJoint, "placement": _seven(link.placement)} for link in links
         ],
         "frames": sorted(moved, key=carriers.__contains__) or list(robot.description.links),
-        "size": size or 1.0,
+        "size": robot_size(robot),
         "warnings": list(robot.warnings),
     }
 

@@ -26,8 +26,8 @@ _LARGEST_MESSAGE = 65_536  # bytes; the longest set-up is a third of it
 _LOOPBACK = ("localhost", "127.0.0.1", "::1")
 
 
-def make_application(show: Show, host: str) -> tornado.web.Application:
-    """The routes of one show, for requests that address `host`."""
+def make_application(show: Show, host: str, mark: str = "") -> tornado.web.Application:
+    """The routes of one show, for requests that address `host`; `mark` is what a notebook knows it by."""
     common = {"show": show, "host": host}
     return tornado.web.Application(
         [
@@ -35,6 +35,7 @@ def make_application(show: Show, host: str) -> tornado.web.Application:
             (r"/page/([\w-]+\.(?:js|css|svg))", _File, {"path": str(PAGE), "host": host}),
             (r"/meshcat/(main\.min\.js)", _File, {"path": str(meshcat_script().parent), "host": host}),
             (r"/ws", _Socket, common),
+            (rf"/api/alive/{mark}\.svg", _Alive, common),
             (r"/api/state", _State, common),
             (r"/api/statistics\.csv", _StatisticsTable, common),
             (r"/api/animation\.html", _Animation, common),
@@ -137,6 +138,14 @@ class _File(_Guarded, tornado.web.StaticFileHandler):
     def initialize(self, path: str, host: str) -> None:  # type: ignore[override]
         tornado.web.StaticFileHandler.initialize(self, path)
         self._host = host
+
+
+class _Alive(_Handler):
+    """An image of nothing, for a notebook that asks whether the view it showed is still there."""
+
+    def get(self) -> None:
+        self.set_header("Content-Type", "image/svg+xml")
+        self.finish('<svg xmlns="http://www.w3.org/2000/svg" width="1" height="1"/>')
 
 
 class _State(_Handler):

@@ -1,0 +1,283 @@
+"""Pictures of robots without a browser or a server: `draw`."""
+
+from __future__ import annotations
+
+import io
+import operator
+import os
+import re
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from ..checks import as_array, as_finite_number, as_points, as_vector
+from ..errors import InputError, UnknownNameError
+from ..home import home_configuration, robot_size
+from ..robot import Robot
+from .bodies import Body, bodies_of
+from .camera import Camera, look_from
+from .render import render
+from .solids import ball
+
+__all__ = ["BALL", "Picture", "ball_radius", "checked_size", "draw", "view_direction"]
+
+Array = NDArray[np.float64]
+
+VIEWS = {"angle": (-0.6, 0.28), "front": (0.0, 0.12), "side": (-np.pi / 2, 0.12), "top": (-np.pi / 2, np.pi / 2)}
+"""Name → azimuth and elevation [rad] of the camera as seen from the robot; "top" is a map: x to the right, y up."""
+
+BALL = "#d81f2f"
+_TINT = 0.75
+_LENS = float(np.tan(np.deg2rad(26.0) / 2))
+_FILLED = 0.86
+_SMALLEST, _LARGEST = 16, 4000  # pixels
+
+
+@dataclass(frozen=True, eq=False)
+class Picture:
+    """A drawn picture. A notebook shows it as it is; for matplotlib it is `axes.imshow(picture.pixels)`.
+
+    Attributes:
+        pixels: Red, green, blue, opacity (h, w, 4), 0..255.
+        camera: From where it was drawn; `draw(..., view=picture.camera)` draws another from there.
+    """
+
+    pixels: NDArray[np.uint8]
+    camera: Camera
+
+    @property
+    def size(self) -> tuple[int, int]:
+        """Width and height [pixels]."""
+        height, width = self.pixels.shape[:2]
+        return width, height
+
+    def project(self, points: ArrayLike) -> Array:
+        """Where points of the robot's world are seen, for labels.
+
+        Args:
+            points: (3,) or (n, 3) [m].
+
+        Returns:
+            Pixels from the left and from the top (2,) or (n, 2), as `axes.imshow` counts them; NaN for a point behind
+            the camera.
+        """
+        single = _depth(points) == 1
+        x, y, depth = self.camera.seen(_points(points, "points"), self.size).T
+        depth = np.where(depth > 0.0, depth, np.nan)
+        found = np.stack([x / depth, y / depth], axis=1) - 0.5
+        return np.asarray(found[0] if single else found)
+
+    def save(self, path: str | os.PathLike[str]) -> None:
+        """Write it to a file, in the format of its name's end, such as .png or .jpg."""
+        from PIL import Image
+
+        image = Image.fromarray(self.pixels)
+        end = Path(path).suffix.lower()
+        if end not in Image.registered_extensions():
+            raise InputError(f"a picture's file ends in .png, .jpg or another format's name; got {os.fspath(path)!r}")
+        if end in (".jpg", ".jpeg", ".bmp", ".gif"):  # these know no opacity
+            white = Image.new("RGBA", image.size, "white")
+            image = Image.alpha_composite(white, image).convert("RGB")
+        image.save(path)
+
+    def png(self, colors: int | None = None) -> bytes:
+        """It as the bytes of a PNG file; with at most so many `colors`, 2 to 256, it takes half the space."""
+        from PIL import Image
+
+        opaque = bool((self.pixels[..., 3] == 255).all())
+        image = Image.fromarray(self.pixels[..., :3] if opaque else self.pixels)
+        if colors is not None:
+            if type(colors) is not int or not 2 <= colors <= 256:
+                raise InputError(f"a PNG has 2 to 256 colors, or all when None; got {colors!r}")
+            image = image.quantize(colors, Image.Quantize.MEDIANCUT if opaque else Image.Quantize.FASTOCTREE)
+        file = io.BytesIO()
+        image.save(file, "png", optimize=True)
+        return file.getvalue()
+
+    def _repr_png_(self) -> bytes:
+        """What a notebook shows."""
+        return self.png()
+
+    def __repr__(self) -> str:
+        return f"<Picture of {self.size[0]}×{self.size[1]} pixels>"
+
+
+def draw(
+    robot: Robot,
+    q: ArrayLike | None = None,
+    *,
+    balls: ArrayLike = (),
+    ball_color: str | Sequence[str] = BALL,
+    ball_radius: float | None = None,
+    opacity: ArrayLike = 1.0,
+    color: str | Sequence[str] | None = None,
+    offset: ArrayLike = (0.0, 0.0, 0.0),
+    view: str | tuple[float, float] | Camera = "angle",
+    size: tuple[int, int] = (800, 500),
+    ground: bool | float = True,
+    background: str | None = "#ffffff",
+) -> Picture:
+    """Draw a robot with its own shapes, at one configuration or at several in one picture.
+
+    A robot without shapes is drawn as a skeleton. It takes a fraction of a second, and for a robot with many meshes a
+    second or two more the first time.
+
+    Args:
+        robot: The robot.
+        q: A configuration (nq,), or several (n, nq); where the robot rests when None.
+        balls: Points (3,) or (k, 3) [m] at which a ball is drawn, such as targets.
+        ball_color: "#rrggbb", of all balls or of each.
+        ball_radius: [m]; in proportion to the robot when None.
+        opacity: In 0..1, of all configurations or of each (n,); those under 1 are ghosts.
+        color: Tints the robot, "#rrggbb", or each configuration.
+        offset: (3,) [m] by which each configuration stands beside the one before, or one for each (n, 3).
+        view: "angle", "front", "side" or "top"; the azimuth and elevation [rad] of the camera as seen from the robot;
+            or another picture's `camera`.
+        size: Width and height [pixels].
+        ground: Whether it stands on a ground, which lies under the lowest point of the robot, or at this height [m].
+        background: "#rrggbb", or None for a transparent one.
+
+    Raises:
+        UnknownNameError: No such view.
+        InputError: Something else that is not as above.
+
+    Warns:
+        UrdfWarning: Shapes that could not be read are left out.
+    """
+    if not isinstance(robot, Robot):
+        raise InputError(f"a picture is drawn of a robot that pinik.load returned; got {robot!r}")
+    size = checked_size(size)
+    configurations = _configurations(robot, q)
+    count = len(configurations)
+    opacities, offsets = _opacities(opacity, count), _offsets(offset, count)
+    tints = [None] * count if color is None else _each(color, count, "color", "configurations")
+    paper = None if background is None else _color(background, "background")
+    radius = _radius(robot, ball_radius)
+    points = _points(balls, "balls")
+    tones = _each(ball_color, len(points), "ball_color", "balls")
+    layers: dict[tuple[int, float], list[Body]] = {}
+    for k, (one, share, tint) in enumerate(zip(configurations, opacities, tints, strict=True)):
+        for body in bodies_of(robot, one):
+            shown = _placed(body, offsets[k], share, tint)
+            if shown.opacity > 0.0:
+                layers.setdefault((-1 if shown.opacity >= 1.0 else k, shown.opacity), []).append(shown)
+    robots = [body.solid.vertices for layer in layers.values() for body in layer]
+    if points.size:
+        spheres = [Body(ball(at, radius), tone, gloss=0.6) for at, tone in zip(points, tones, strict=True)]
+        layers.setdefault((-1, 1.0), []).extend(spheres)
+    if not layers:
+        raise InputError("there is nothing to draw: no configuration with an opacity over zero, and no ball")
+    everything = np.vstack([body.solid.vertices for layer in layers.values() for body in layer])
+    camera = _camera(view, everything, size)
+    floor = float(np.vstack(robots or [everything])[:, 2].min()) if ground is True else None
+    if not isinstance(ground, bool):
+        floor = as_finite_number(ground, "ground")
+    return Picture(render(list(layers.values()), camera, size, floor, paper), camera)
+
+
+def view_direction(view: str | tuple[float, float]) -> Array:
+    """From a robot to the camera (3,), of unit length; `view` as for `draw`, but no camera.
+
+    Raises:
+        UnknownNameError: No such view.
+        InputError: Not two angles.
+    """
+    if isinstance(view, str):
+        if view not in VIEWS:
+            raise UnknownNameError("view", view, VIEWS)
+        view = VIEWS[view]
+    azimuth, elevation = as_vector(view, 2, "view", "the camera's azimuth and elevation in radians")
+    flat = np.cos(elevation) * np.array([np.cos(azimuth), np.sin(azimuth)])
+    return np.array([*flat, np.sin(elevation)])
+
+
+def ball_radius(robot: Robot) -> float:
+    """Of the balls that are drawn beside a robot [m], as in the live view."""
+    return 0.025 * robot_size(robot)
+
+
+def _radius(robot: Robot, given: float | None) -> float:
+    radius = ball_radius(robot) if given is None else as_finite_number(given, "ball_radius")
+    if not radius > 0.0:
+        raise InputError(f"ball_radius is greater than zero [m]; got {given!r}")
+    return radius
+
+
+def _placed(body: Body, offset: Array, opacity: float, tint: Array | None) -> Body:
+    color = body.color if tint is None else (1.0 - _TINT) * body.color + _TINT * tint
+    return Body(body.solid.moved(np.eye(3), offset), color, body.opacity * opacity, body.gloss)
+
+
+def checked_size(size: tuple[int, int]) -> tuple[int, int]:
+    """Width and height [pixels]; InputError unless they are whole numbers and not too many."""
+    try:
+        width, height = (operator.index(side) for side in size)
+        fits = all(_SMALLEST <= side <= _LARGEST for side in (width, height))
+    except (TypeError, ValueError):
+        fits = False
+    if not fits:
+        raise InputError(f"size is a width and a height of {_SMALLEST} to {_LARGEST} pixels; got {size!r}")
+    return width, height
+
+
+def _configurations(robot: Robot, q: ArrayLike | None) -> list[Array]:
+    if q is None:
+        return [home_configuration(robot)]
+    if isinstance(q, (list, tuple)) and q and all(_depth(one) == 1 for one in q):
+        return [robot.check_configuration(one, f"q[{k}]") for k, one in enumerate(q)]
+    if isinstance(q, np.ndarray) and q.ndim == 2 and len(q):
+        return list(robot.check_configurations(q))
+    return [robot.check_configuration(q)]
+
+
+def _depth(values: Any) -> int:
+    """How many indices an array has; -1 for rows of different lengths."""
+    try:
+        return np.ndim(values)
+    except ValueError:
+        return -1
+
+
+def _opacities(opacity: ArrayLike, count: int) -> list[float]:
+    values = [opacity] * count if _depth(opacity) == 0 else list(as_vector(opacity, count, "opacity", "one for each q"))
+    numbers = [as_finite_number(value, "opacity") for value in values]
+    if any(not 0.0 <= number <= 1.0 for number in numbers):
+        raise InputError(f"opacity is between 0 and 1; got {opacity!r}")
+    return numbers
+
+
+def _each(color: str | Sequence[str], count: int, what: str, of: str) -> list[Array]:
+    """One colour for all, or one for each, as red, green and blue (3,)."""
+    if isinstance(color, str):
+        return [_color(color, what)] * count
+    if not isinstance(color, Iterable) or len(colors := list(color)) != count:
+        raise InputError(f"{what} is one colour, or one for each of {count} {of}; got {color!r}")
+    return [_color(one, what) for one in colors]
+
+
+def _offsets(offset: ArrayLike, count: int) -> Array:
+    if _depth(offset) == 1:
+        return np.arange(count)[:, None] * as_vector(offset, 3, "offset")
+    return as_array(offset, (count, 3), "offset", "one for each q")
+
+
+def _points(points: ArrayLike, what: str) -> Array:
+    if isinstance(points, (list, tuple, np.ndarray)) and len(points) == 0:
+        return np.zeros((0, 3))
+    return as_points([points] if _depth(points) == 1 else points, what)  # type: ignore[arg-type]
+
+
+def _color(text: str, what: str) -> Array:
+    if not isinstance(text, str) or not re.fullmatch(r"#[0-9a-fA-F]{6}", text):
+        raise InputError(f"{what} is a colour such as '#1f6fc4'; got {text!r}")
+    return np.array([int(text[k : k + 2], 16) for k in (1, 3, 5)]) / 255.0
+
+
+def _camera(view: str | tuple[float, float] | Camera, points: Array, size: tuple[int, int]) -> Camera:
+    if isinstance(view, Camera):
+        return view
+    return look_from(view_direction(view), points, aspect=size[0] / size[1], lens=_LENS, filled=_FILLED)

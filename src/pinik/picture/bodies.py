@@ -1,0 +1,113 @@
+"""What a picture shows as triangles: a robot's shapes at a configuration, or its skeleton."""
+
+from __future__ import annotations
+
+import warnings
+import weakref
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..errors import UrdfWarning
+from ..home import robot_size
+from ..robot import Robot
+from .solids import Solid, ball, rod
+
+__all__ = ["Body", "bodies_of"]
+
+Array = NDArray[np.float64]
+
+_BONE = np.array([0.553, 0.596, 0.647])  # the live view's colours of a skeleton
+_JOINT = np.array([0.122, 0.435, 0.769])
+
+
+@dataclass(frozen=True, eq=False)
+class Body:
+    """A surface in one colour.
+
+    Attributes:
+        solid: Its triangles, in the world.
+        color: Red, green, blue (3,), each in 0..1.
+        opacity: In 0..1.
+        gloss: How much it shines, in 0..1.
+    """
+
+    solid: Solid
+    color: Array
+    opacity: float = 1.0
+    gloss: float = 0.15
+
+
+@dataclass(frozen=True, eq=False)
+class _Part:
+    """A shape in its link's frame."""
+
+    link: str
+    solid: Solid
+    color: Array
+    opacity: float
+
+
+_PARTS: weakref.WeakKeyDictionary[Robot, list[_Part]] = weakref.WeakKeyDictionary()
+
+
+def bodies_of(robot: Robot, q: Array) -> list[Body]:
+    """A robot's shapes at `q` (nq,), or its skeleton where it has none.
+
+    Warns:
+        UrdfWarning: Shapes that could not be read, the first time.
+    """
+    parts = _parts(robot)
+    if not parts:
+        return list(_skeleton(robot, q))
+    places = {part.link: robot.placement(part.link, q) for part in parts}
+    return [
+        Body(part.solid.moved(places[part.link].rotation, places[part.link].translation), part.color, part.opacity)
+        for part in parts
+    ]
+
+
+def _parts(robot: Robot) -> list[_Part]:
+    """Read once for each robot: it takes seconds for a large one."""
+    if robot not in _PARTS:
+        from ..geometry import load_shapes  # over a second to import
+
+        shapes, faults = load_shapes(robot)
+        for fault in faults:
+            warnings.warn(f"{robot.name}: {fault}", UrdfWarning, stacklevel=4)
+        _PARTS[robot] = [
+            _Part(
+                shape.link,
+                Solid(
+                    np.asarray(shape.mesh.vertices, dtype=np.float64),
+                    np.asarray(shape.mesh.vertex_normals, dtype=np.float64),
+                    np.asarray(shape.mesh.faces, dtype=np.int64),
+                ).moved(shape.placement[:3, :3], shape.placement[:3, 3]),
+                np.clip(shape.color[:3], 0.0, 1.0),
+                float(np.clip(shape.color[3], 0.0, 1.0)),
+            )
+            for shape in shapes
+        ]
+    return _PARTS[robot]
+
+
+def _skeleton(robot: Robot, q: Array) -> Iterable[Body]:
+    """Spheres at the joints and rods between them, as the live view draws a robot without shapes."""
+    model = robot.model
+    size = robot_size(robot)
+    radius = 0.018 * size
+    robot.placement(robot.frame_names[0], q)  # puts the joints where they are
+    joints = [joint.copy() for joint in robot.data.oMi]
+    for joint_id, joint in enumerate(joints):
+        yield Body(ball(joint.translation, radius), _JOINT if joint_id else _BONE)
+    ways = [(joints[model.parents[k]].translation, joints[k].translation) for k in range(1, model.njoints)]
+    for name in robot.description.links:
+        link = model.frames[robot.frame_id(name)]
+        if np.linalg.norm(link.placement.translation) > 0.01 * size:
+            # A link that begins away from its joint, such as a tool's tip, is the end of one more rod.
+            ways.append((joints[link.parentJoint].translation, robot.placement(name, q).translation))
+    for start, end in ways:
+        if np.linalg.norm(end - start) > 1e-4:
+            yield Body(rod(start, end, 0.55 * radius, 0.385 * radius), _BONE)

@@ -1,0 +1,107 @@
+"""A ground that fades away, and the soft shadows on it."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .camera import Camera, look_from
+from .light import FAR, Mesh, Sun
+
+__all__ = ["Ground"]
+
+Array = NDArray[np.float64]
+
+_MAP = (512, 512)  # pixels of a blurred map of shadows; half as many each way as the sun's
+_FLOOR = np.array([0.90, 0.91, 0.925])  # sRGB
+_FADES = (0.7, 3.0)  # from where and to where the floor fades away, in radii of what stands on it
+_CAST, _NEAR = 0.26, 0.30  # how dark the shadows are
+
+
+class Ground:
+    """A floor with the sun's shadow, the softer the higher what casts it, and a dark place under what is near.
+
+    Args:
+        height: Of the floor [m].
+        meshes: What stands on it.
+        sun: What shines.
+        points: Of a hull of everything (n, 3) [m].
+    """
+
+    color = _FLOOR
+
+    def __init__(self, height: float, meshes: Sequence[Mesh], sun: Sun, points: Array) -> None:
+        self._height, self._sun, self._radius = height, sun.camera, sun.radius
+        self._middle = (points[:, :2].min(axis=0) + points[:, :2].max(axis=0)) / 2
+        self._below = look_from(np.array([0.0, 0.0, -1.0]), points, aspect=1.0, lens=FAR, filled=0.6)
+        levels = np.array([0.0, 0.25, 1.0]) * sun.radius
+        lit, far = np.ones(_MAP[::-1]), np.ones(_MAP[::-1])
+        for mesh, map_ in zip(meshes, sun.maps, strict=True):
+            depth = map_.depth[::2, ::2]
+            above = self._above(sun.camera, depth)
+            cast = np.zeros(_MAP[::-1])
+            for k, level in enumerate(levels):
+                share = np.where(np.isfinite(depth), np.interp(above, levels, np.eye(len(levels))[k]), 0.0)
+                cast += _blurred(share, self._pixels(sun.camera, 0.012 * sun.radius + 0.06 * level, points))
+            lit *= 1.0 - mesh.opacity * cast.clip(0.0, 1.0)
+            depth = mesh.drawn_by(self._below, _MAP).depth
+            near = np.exp(-self._above(self._below, depth).clip(0.0) / (0.1 * sun.radius))
+            near = np.where(np.isfinite(depth), near, 0.0)
+            far *= 1.0 - mesh.opacity * _blurred(near, self._pixels(self._below, 0.03 * sun.radius, points))
+        self._cast, self._near = 1.0 - lit, 1.0 - far
+
+    def _above(self, camera: Camera, depth: Array) -> Array:
+        """How high over the floor [m] what a map shows is; zero where it shows nothing."""
+        above = np.zeros_like(depth)
+        rows, columns = np.nonzero(np.isfinite(depth))
+        ways = camera.rays(columns + 0.5, rows + 0.5, _MAP)[:, 2]
+        above[rows, columns] = camera.position[2] + depth[rows, columns] * ways - self._height
+        return above
+
+    def _pixels(self, camera: Camera, length: float, points: Array) -> float:
+        """How long a length [m] is on a map."""
+        away = (points.mean(axis=0) - camera.position) @ camera.axes[2]
+        return float(length * _MAP[1] / (2.0 * FAR * away))
+
+    def seen_by(self, camera: Camera, size: tuple[int, int]) -> tuple[Array, Array]:
+        """The floor's strength and its darkness by shadows, in 0..1, at each pixel (h, w)."""
+        width, height = size
+        rows, columns = np.indices((height, width))
+        rays = camera.rays(columns + 0.5, rows + 0.5, size)
+        hit = rays[..., 2] * (self._height - camera.position[2]) > 1e-9
+        ahead = (self._height - camera.position[2]) / rays[hit][:, 2]
+        points = camera.position + rays[hit] * ahead[:, None]
+        away = np.linalg.norm(points[:, :2] - self._middle, axis=1) / self._radius
+        floor, dark = np.zeros((height, width)), np.zeros((height, width))
+        t = ((away - _FADES[0]) / (_FADES[1] - _FADES[0])).clip(0.0, 1.0)
+        floor[hit] = 1.0 - t * t * (3.0 - 2.0 * t)
+        cast, near = _sampled(self._cast, self._sun, points), _sampled(self._near, self._below, points)
+        dark[hit] = 1.0 - (1.0 - _CAST * cast) * (1.0 - _NEAR * near)
+        return floor, dark
+
+
+def _sampled(image: Array, camera: Camera, points: Array) -> Array:
+    """A map's values where a camera sees points (k, 3), between its pixels linearly; 0 outside."""
+    x, y, depth = camera.seen(points, _MAP).T
+    x, y = x / depth - 0.5, y / depth - 0.5
+    found = np.zeros(len(points))
+    inside = np.flatnonzero((x >= 0) & (y >= 0) & (x < _MAP[0] - 1) & (y < _MAP[1] - 1))
+    x, y = x[inside], y[inside]
+    column, row = x.astype(np.int64), y.astype(np.int64)
+    u, v = x - column, y - row
+    upper = image[row, column] * (1 - u) + image[row, column + 1] * u
+    lower = image[row + 1, column] * (1 - u) + image[row + 1, column + 1] * u
+    found[inside] = upper * (1 - v) + lower * v
+    return found
+
+
+def _blurred(image: Array, sigma: float) -> Array:
+    """Three box filters each way, which are nearly a Gaussian of this deviation [pixels]."""
+    half = max(round(sigma - 0.5), 1)
+    for _ in range(3):
+        for _ in range(2):
+            total = np.cumsum(np.pad(image, [(half + 1, half), (0, 0)]), axis=0)
+            image = ((total[2 * half + 1 :] - total[: -2 * half - 1]) / (2 * half + 1)).T
+    return image

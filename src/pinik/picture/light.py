@@ -1,0 +1,128 @@
+"""Bodies in the light of a sun, which casts shadows, and of a sky."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .bodies import Body
+from .camera import Camera, look_from
+from .raster import Raster, rasterize
+
+__all__ = ["FAR", "SHADOW_MAP", "Mesh", "Sun", "to_linear", "to_srgb"]
+
+Array = NDArray[np.float64]
+
+SHADOW_MAP = (1024, 1024)  # pixels
+FAR = 0.02  # lens of a camera that stands so far away that it sees almost in parallel
+_SKY, _KEY, _FILL = 0.44, 0.70, 0.13
+_TAPS = 6  # looks into the shadow map for each sample; the four samples of a pixel take different ones
+
+
+def to_linear(color: Array) -> Array:
+    """sRGB in 0..1 as amounts of light."""
+    return np.asarray(color) ** 2.2
+
+
+def to_srgb(light: Array) -> Array:
+    """Amounts of light as sRGB in 0..1; what is very bright is held back, so that white things keep their form."""
+    held = light / np.sqrt(1.0 + 0.35 * light**2)
+    return np.asarray(np.clip(held, 0.0, 1.0) ** (1.0 / 2.2))
+
+
+@dataclass(frozen=True, eq=False)
+class Mesh:
+    """Bodies of one opacity as one mesh.
+
+    Attributes:
+        vertices: (v, 3) [m].
+        normals: (v, 3).
+        faces: (f, 3).
+        color: Of each face (f, 3), amounts of light.
+        gloss: Of each face (f,).
+        opacity: In 0..1.
+    """
+
+    vertices: Array
+    normals: Array
+    faces: NDArray[np.int64]
+    color: Array
+    gloss: Array
+    opacity: float
+
+    @classmethod
+    def of(cls, bodies: Sequence[Body]) -> Mesh:
+        """At least one body; the first one's opacity counts."""
+        solids = [body.solid for body in bodies]
+        starts = np.cumsum([0, *(len(solid.vertices) for solid in solids[:-1])])
+        counts = [len(solid.faces) for solid in solids]
+        return cls(
+            np.vstack([solid.vertices for solid in solids]),
+            np.vstack([solid.normals for solid in solids]),
+            np.vstack([solid.faces + start for solid, start in zip(solids, starts, strict=True)]),
+            np.repeat(to_linear(np.array([body.color for body in bodies])), counts, axis=0),
+            np.repeat([body.gloss for body in bodies], counts),
+            bodies[0].opacity,
+        )
+
+    def drawn_by(self, camera: Camera, size: tuple[int, int]) -> Raster:
+        """What a camera sees of it."""
+        return rasterize(camera.seen(self.vertices, size)[self.faces], size)
+
+
+class Sun:
+    """A light far away, over the viewer's left shoulder.
+
+    Args:
+        meshes: What may cast shadows.
+        camera: Who looks.
+        points: Of a hull of everything that is lit (n, 3) [m].
+    """
+
+    def __init__(self, meshes: Sequence[Mesh], camera: Camera, points: Array) -> None:
+        right, _, ahead = camera.axes
+        flat = np.array([*-ahead[:2], 0.0]) if np.linalg.norm(ahead[:2]) > 0.1 else np.array([1.0, 0.0, 0.0])
+        flat /= np.linalg.norm(flat)
+        self.direction = _unit(0.75 * flat - 0.65 * right + [0.0, 0.0, 1.35])
+        self._fill = _unit(0.35 * flat + 0.9 * right + [0.0, 0.0, 0.45])
+        self.radius = float(np.linalg.norm(np.ptp(points, axis=0))) / 2
+        self.camera = look_from(self.direction, points, aspect=1.0, lens=FAR, filled=0.75)
+        away = (points.mean(axis=0) - self.camera.position) @ self.camera.axes[2]
+        self._pixel = float(2.0 * FAR * away / SHADOW_MAP[1])  # [m]
+        self.maps = [mesh.drawn_by(self.camera, SHADOW_MAP) for mesh in meshes]
+        solid = [k for k, mesh in enumerate(meshes) if mesh.opacity >= 1.0]
+        self._depth = self.maps[solid[0]].depth if solid else np.full(SHADOW_MAP[::-1], np.inf)
+
+    def shines_on(self, points: Array, normals: Array, sample: NDArray[np.int64]) -> Array:
+        """How much of the sun reaches points (k, 3) on surfaces; `sample` (k,) in 0..3 says which of a pixel's four."""
+        x, y, depth = self.camera.seen(points + 3.0 * self._pixel * normals, SHADOW_MAP).T
+        x, y = x / depth, y / depth
+        bias = 2.0 * self._pixel
+        lit = np.zeros(len(points))
+        for tap in range(_TAPS):
+            turn = 4 * tap + sample
+            away, angle = 3.2 * np.sqrt((turn + 0.5) / (4 * _TAPS)), 2.39996 * turn  # the golden angle
+            column = np.clip((x + away * np.cos(angle)).astype(np.int64), 0, SHADOW_MAP[0] - 1)
+            row = np.clip((y + away * np.sin(angle)).astype(np.int64), 0, SHADOW_MAP[1] - 1)
+            lit += self._depth[row, column] > depth - bias
+        return lit / _TAPS
+
+    def shade(
+        self, points: Array, normals: Array, color: Array, gloss: Array, back: Array, sample: NDArray[np.int64]
+    ) -> Array:
+        """Light (k, 3) that comes from surface points; `back` (k, 3) are the ways to the camera."""
+        rim = 0.84 + 0.16 * np.einsum("kc,kc->k", normals, back).clip(0.0)  # so that white stands out against white
+        key = np.maximum(normals @ self.direction, 0.0) * self.shines_on(points, normals, sample)
+        fill = np.maximum(normals @ self._fill, 0.0)
+        sky = _SKY * (0.66 + 0.34 * normals[:, 2])
+        half = self.direction + back
+        half /= np.linalg.norm(half, axis=1, keepdims=True)
+        shine = np.einsum("kc,kc->k", normals, half).clip(0.0) ** 50.0 * gloss * (key > 0.0)
+        return np.asarray(color * (rim * (sky + _KEY * key + _FILL * fill))[:, None] + shine[:, None])
+
+
+def _unit(vector: Array) -> Array:
+    return np.asarray(vector / np.linalg.norm(vector))

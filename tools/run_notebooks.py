@@ -1,0 +1,68 @@
+"""Run notebooks from top to bottom and write them with what they showed, the same on every machine.
+
+python tools/run_notebooks.py             # all of notebooks/
+python tools/run_notebooks.py 05 06       # those whose names begin so
+"""
+
+from __future__ import annotations
+
+import argparse
+import time
+from pathlib import Path
+
+import nbformat
+from nbclient import NotebookClient
+
+FOLDER = Path(__file__).parents[1] / "notebooks"
+LONGEST = 120  # seconds that one cell may take
+
+
+def run(path: Path) -> nbformat.NotebookNode:
+    """The notebook with the outputs of a fresh kernel in its own folder; the file stays as it is.
+
+    Raises:
+        nbclient.exceptions.CellExecutionError: A cell raised; the message shows it.
+    """
+    notebook = nbformat.read(path, as_version=4)
+    client = NotebookClient(
+        notebook,
+        timeout=LONGEST,
+        kernel_name="python3",
+        record_timing=False,
+        coalesce_streams=True,
+        resources={"metadata": {"path": str(path.parent)}},
+    )
+    client.execute()
+    return tidy(notebook)
+
+
+def tidy(notebook: nbformat.NotebookNode) -> nbformat.NotebookNode:
+    """Without what depends on the machine, its Python or the hour."""
+    notebook.metadata = nbformat.from_dict(
+        {
+            "kernelspec": {"display_name": "Python 3", "language": "python", "name": "python3"},
+            "language_info": {"file_extension": ".py", "mimetype": "text/x-python", "name": "python"},
+        }
+    )
+    for number, cell in enumerate(notebook.cells):
+        cell.metadata = nbformat.from_dict({})
+        cell.id = f"cell-{number}"
+        for output in cell.get("outputs", ()):
+            if "metadata" in output:
+                output.metadata = nbformat.from_dict({})
+    return notebook
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("names", nargs="*", default=[""], help="how the names of the wanted ones begin; all when none")
+    wanted = tuple(parser.parse_args().names)
+    for path in sorted(FOLDER.glob("*.ipynb")):
+        if path.name.startswith(wanted):
+            began = time.perf_counter()
+            nbformat.write(run(path), path)
+            print(f"{path.name}: {time.perf_counter() - began:.1f} s, {path.stat().st_size / 1000:.0f} kB")
+
+
+if __name__ == "__main__":
+    main()
