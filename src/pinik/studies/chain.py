@@ -22,8 +22,12 @@ _LINK = """
     <visual>
       <origin xyz="{middle!r} 0 0" rpy="0 {quarter_turn!r} 0"/>
       <geometry><cylinder radius="{radius!r}" length="{bone!r}"/></geometry>
+      <material name="bone"><color rgba="0.12 0.44 0.77 1"/></material>
     </visual>
-    <visual><geometry><sphere radius="{knob!r}"/></geometry></visual>
+    <visual>
+      <geometry><sphere radius="{knob!r}"/></geometry>
+      <material name="knob"><color rgba="0.11 0.13 0.16 1"/></material>
+    </visual>
   </link>"""
 
 
