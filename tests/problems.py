@@ -123,6 +123,9 @@ def parameters_of(draw: st.DrawFn, method: str, robot: pinik.Robot) -> dict[str,
     """A few of a method's parameters, the rest left as they are."""
     one_axis = [joint.name for joint in robot.joints if joint.has_one_axis and joint.nv]
     several = st.lists(st.sampled_from(one_axis), max_size=4, unique=True)
+    stiffness = several.flatmap(
+        lambda names: st.fixed_dictionaries({n: st.sampled_from([0.0, 0.1, 0.5, 1.0]) for n in names})
+    )
     jacobian = {"step_size": powers(0.01, 2.0), "target_jacobian": st.booleans()}
     clamps = {"max_step": powers(1e-3, 10.0) | st.none(), "max_residual": powers(1e-3, 3.0) | st.none()}
     own: dict[str, dict[str, st.SearchStrategy[Any]]] = {
@@ -139,13 +142,10 @@ def parameters_of(draw: st.DrawFn, method: str, robot: pinik.Robot) -> dict[str,
         },
         "jt": {"alpha": powers(1e-3, 10.0) | st.none()},
         "ccd": {
-            "stiffness": several.flatmap(
-                lambda names: st.fixed_dictionaries({n: st.sampled_from([0.0, 0.1, 0.5, 1.0]) for n in names})
-            ),
             "relaxation": st.floats(0.01, 1.99) | st.none(),
             "position_weight": powers(0.01, 1e3),
             "scaling": st.sampled_from(["area", "printed"]),
         },
     }
-    choices = own[method] | clamps | ({} if method == "ccd" else jacobian)
+    choices = own[method] | clamps | {"stiffness": stiffness} | ({} if method == "ccd" else jacobian)
     return {name: draw(value) for name, value in choices.items() if draw(st.booleans())}

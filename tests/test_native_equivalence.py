@@ -86,8 +86,11 @@ def test_states_tell_the_same(problem):
         bold = a[0].attempt < 3
         for before, (one, other) in zip([None, *a], zip(a, b, strict=False), strict=False):
             gap = distance(problem.robot, one.q, other.q)
+            if gap > SAME and before is None:  # of starts that are equally near, rounding may choose another one
+                assert a[0].attempt > 0
+                assert one.residual == pytest.approx(other.residual, rel=1e-12)
+                return
             if gap > SAME:  # at a threshold, and nothing after it need agree
-                assert before is not None
                 assert any(
                     is_a_threshold(problem.robot, python_step(python, bold=dares), before.q, gap)
                     for dares in {bold, False}

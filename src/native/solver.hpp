@@ -144,6 +144,23 @@ class Directions {
 
   // dq of the free coordinates, those held left out; `at.e` is what is pulled by, `at.distance` what damps.
   void step(const Linearization<Rows>& at, const std::vector<char>& held, Vector& dq) {
+    if (solver_.stiffness.empty()) return unweighted(at, held, dq);
+    weighted_ = at;
+    for (Eigen::Index c = 0; c < at.J.cols(); ++c) weighted_.J.col(c) *= root(c);
+    unweighted(weighted_, held, dq);
+    for (Eigen::Index c = 0; c < at.J.cols(); ++c) dq[c] *= root(c);
+  }
+
+ private:
+  const Solver& solver_;
+  const Problem& problem_;
+  Square A_;
+  Linearization<Rows> weighted_;
+
+  // √w of a coordinate.
+  double root(Eigen::Index c) const { return std::sqrt(solver_.stiffness[static_cast<std::size_t>(c)]); }
+
+  void unweighted(const Linearization<Rows>& at, const std::vector<char>& held, Vector& dq) {
     switch (solver_.method) {
       case Method::transpose:
         return transpose(at, dq);
@@ -153,11 +170,6 @@ class Directions {
         return damped_least_squares(at, dq);
     }
   }
-
- private:
-  const Solver& solver_;
-  const Problem& problem_;
-  Square A_;
 
   void transpose(const Linearization<Rows>& at, Vector& dq) const {
     dq.noalias() = at.J.transpose() * at.e;
@@ -252,6 +264,7 @@ class Directions {
             left = std::remainder(left, 2.0 * M_PI);
           }
           pull[static_cast<Eigen::Index>(c)] = solver_.rest_gain * left;
+          if (!solver_.stiffness.empty()) pull[static_cast<Eigen::Index>(c)] *= root(static_cast<Eigen::Index>(c));
         }
     return pull;
   }

@@ -42,6 +42,8 @@ class Sweep {
 
  private:
   static constexpr int halvings = 12;
+  // A turn that changes g by no more than the rounding of world coordinates is none.
+  static constexpr double indifferent = 1e-12;
 
   const Solver& solver_;
   Kinematics<Rows>& kinematics_;
@@ -123,7 +125,6 @@ class Sweep {
   static double best_turn(const Mat3& M, const Vec3& axis, double low, double high, bool shortest) {
     const double k1 = axis.dot(M * axis), k2 = M.trace();
     const double k3 = axis.dot(Vec3(M(1, 2) - M(2, 1), M(2, 0) - M(0, 2), M(0, 1) - M(1, 0)));
-    constexpr double indifferent = 1e-14;  // a turn that changes g by less than rounding is none
     if (std::hypot(k3, k2 - k1) <= indifferent * (std::abs(k1) + std::abs(k2) + std::abs(k3))) return 0.0;
     const double best = std::atan2(k3, k2 - k1);
     if (low <= best && best <= high) return best;
@@ -158,7 +159,8 @@ class Sweep {
     kinematics_.linearize(at_);
     const auto column = at_.J.col(static_cast<Eigen::Index>(c));
     const double squared = column.squaredNorm();
-    if (squared == 0.0) return 0.0;
+    const double least = indifferent * kinematics_.problem.lightest;
+    if (squared <= least * least) return 0.0;  // its followers cancel it, but for rounding
     const auto [low, high] = room(coordinate, q, limits);
     const double wanted = part * column.dot(at_.e) / squared;
     double change = std::min({std::max({wanted, low, -solver_.max_step}), high, solver_.max_step});

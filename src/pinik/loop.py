@@ -44,7 +44,8 @@ def iterate(
 
     Ends with the state whose `status` is set: converged, stalled or out of iterations. It serves the three ways to
     run: drain it (until reached); take `max_iterations=1` per simulation step from the last q (chase); or a few
-    (hybrid). `states.send(targets)` moves the targets while it runs and starts its count of iterations anew.
+    (hybrid). `states.send(targets)` moves the targets while it runs, starts its count of iterations anew, takes the
+    next step and returns its state, also after a state that was the last.
 
     Args:
         robot: The robot.

@@ -5,7 +5,7 @@ from __future__ import annotations
 import functools
 import importlib.util
 import math
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 from weakref import WeakKeyDictionary
@@ -275,10 +275,10 @@ def _solver(solver: Solver, kinematics: Kinematics) -> Any:
     native = _load().Solver()
     native.method = _METHODS.index(type(solver))
     native.max_step, native.max_residual = solver.max_step, solver.max_residual
+    stiffness: Mapping[str, float] = solver.stiffness  # type: ignore[attr-defined]
+    if stiffness:
+        native.stiffness = [stiffness.get(c.joint.name, 1.0) for c in kinematics.coordinates]
     if isinstance(solver, CCD):
-        stiffness = solver.stiffness
-        if stiffness:
-            native.stiffness = [stiffness.get(c.joint.name, 1.0) for c in kinematics.coordinates]
         native.relaxation = solver.relaxation_for(kinematics)
         native.position_weight = solver.position_weight
         native.printed_scaling = solver.scaling == "printed"

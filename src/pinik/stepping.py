@@ -31,7 +31,7 @@ def advance(
     assert isinstance(solver, JacobianSolver)
     if solver.max_residual < math.inf:
         at = at._replace(e=kinematics.shortened(at.e, solver.max_residual))
-    q = _stepped(solver.step(at, kinematics), solver, kinematics, at, scale)
+    q = _stepped(solver, kinematics, at, scale)
     if not limits.enabled:
         return q, 0
     inside = limits.clip(q)
@@ -40,11 +40,13 @@ def advance(
     return _step_along_limits(q, solver, kinematics, limits, at, scale), 0
 
 
-def _stepped(dq: Array, solver: JacobianSolver, kinematics: Kinematics, at: Linearization, scale: float) -> Array:
+def _stepped(solver: JacobianSolver, kinematics: Kinematics, at: Linearization, scale: float) -> Array:
     """The configuration after the step, clamped and scaled; joints that are not free stay to the last bit."""
+    roots = solver.roots(kinematics)
+    dq = solver.step(at if roots is None else at._replace(J=at.J * roots), kinematics)
     if np.shape(dq) != at.free.shape:
         raise InputError(f"{solver.name}.direction returns dq of shape {at.free.shape}; got {np.shape(dq)}")
-    dq = dq * at.free
+    dq = dq * (at.free if roots is None else at.free * roots)
     length = math.sqrt(dq.dot(dq))
     if not math.isfinite(length):
         return at.q  # no step: the loop will say that it stalled
@@ -79,4 +81,4 @@ def _step_along_limits(
         J = at.J.copy()
         J[:, held] = 0.0
         free = at._replace(J=J, free=at.free & ~held)
-        q = _stepped(solver.step(free, kinematics), solver, kinematics, free, scale)
+        q = _stepped(solver, kinematics, free, scale)

@@ -53,6 +53,12 @@ def test_the_table_has_a_line_for_each_row_and_says_what_it_means(run):
     assert result.err == ""
 
 
+def test_a_preset_s_parameter_is_changed(run):
+    options = ("compare", "--preset", "thesis", "--steps", 1, "--json")
+    usual, changed = run(*options).json, run(*options, "--param", "dls.damping=0.5").json
+    assert changed["parameters"] == usual["parameters"] | {"dls": usual["parameters"]["dls"] | {"damping": 0.5}}
+
+
 def test_another_robot_and_frame(run):
     answer = run("compare", "--robot", "panda", "--frame", "panda_link8", "--steps", 1, "--json").json
     assert (answer["robot"], answer["frame"], answer["joints"]) == ("panda", "panda_link8", 7)
@@ -68,6 +74,7 @@ def test_another_robot_and_frame(run):
         (("--pieces", 0), "--pieces is a whole number of at least 1"),
         (("--engine", "fast"), "engine"),
         (("--preset", "thesis", "--reading", "bones", "--engine", "native"), "the thesis's own program"),
+        (("--preset", "thesis", "--reading", "bones", "--param", "jt.alpha=1"), "the thesis's own program"),
         (("--preset", "thesis", "--reading", "bones", "--robot", "panda"), "two hinges about one point"),
     ],
 )

@@ -18,8 +18,10 @@ PLACEHOLDERS = {
     "angles": "JOINT",
     "joint_placements": "JOINT",
     "mimics": "JOINT",
+    "answers": "NAME",
     "parameters": "NAME",
     "poses": "POSE",
+    "stiffness": "JOINT",
 }
 TARGETS = [
     {"frame": "tip", "position": [0.2, 0.1, 0.8], "rpy": [0, 0.3, 0], "tool": [0, 0, 0.1], "weight": 2},
@@ -37,6 +39,7 @@ RUNS = {
     "check": [("check", "ur3_empty", "--json"), ("check", "two_link", "--json")],
     "robots": [("robots", "--json")],
     "compare": [("compare", "--steps", "1", "--json")],
+    "accuracy": [("accuracy", "--problems", "1", "--digits", "1", "--json")],
 }
 
 

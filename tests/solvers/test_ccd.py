@@ -9,6 +9,7 @@ import pinocchio
 import pytest
 
 import pinik
+from engines import needs_native
 from pinik import CCD, Kinematics, Target, Tolerance
 from pinik.limits import Limits
 from robots import load_quietly
@@ -309,3 +310,25 @@ def test_a_joint_of_stiffness_zero_is_held_through_restarts_as_well(arm):
     assert s.angles["bone1_x"] == 0.0
     held = arm.solve("tip", placement=wanted, method="ccd", stiffness=dict.fromkeys(arm.joint_names, 0.0))
     assert (held.iterations, held.joint_updates) == (0, 0)
+
+
+@pytest.mark.parametrize("engine", ["python", pytest.param("native", marks=needs_native)])
+def test_a_leader_whose_followers_cancel_what_it_does_stays(engine):
+    """A parallel gripper's finger tip keeps its direction; rounding in its column must not send the finger away."""
+    x, y, z = pinocchio.rpy.rpyToMatrix(0.4, 0.7, 0.2).T @ [0.48, 0.6, 0.64]  # the leader's axis, seen from the pad
+    text = robot_text(
+        *(link(name) for name in ("base", "finger", "pad", "tip")),
+        joint("lead", "base", "finger", '<origin xyz="0 0 0" rpy="0.3 0.2 0.1"/><axis xyz="0.48 0.6 0.64"/>'),
+        joint("z_follow", "finger", "pad", f'<origin xyz="0.1 0 0" rpy="0.4 0.7 0.2"/><axis xyz="{x} {y} {z}"/>',
+              '<mimic joint="lead" multiplier="-1"/>'),
+        joint("turn", "pad", "tip", '<origin xyz="0.1 0 0" rpy="0.1 0.2 0.3"/><axis xyz="0 0 1"/>'),
+    )  # fmt: skip
+    gripper = load_quietly(text)
+    wanted = gripper.placement("tip", gripper.configuration({"turn": 1.1})).rotation[:, 0]
+    start = gripper.configuration({"lead": 0.3, "turn": -0.7})
+    column = gripper.jacobian("tip", start)[3:, gripper.joint_names.index("lead")]
+    assert 0.0 < np.abs(column).max() < 1e-15, "this is a test of rounding"
+    options = {"method": "ccd", "limits": False, "restarts": 0, "engine": engine}
+    s = gripper.solve("tip", axis="x", direction=wanted, q0=start, **options)
+    assert s.success
+    assert s.angles["lead"] == 0.3

@@ -10,6 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import pinik
+from engines import needs_native
 from pinik import DampedLeastSquares, JacobianTranspose, PseudoInverse
 
 
@@ -190,3 +191,67 @@ def test_d_max_shortens_the_pull_and_keeps_its_direction(method, arm):
 def test_the_target_jacobian_reaches_targets_as_well(method, arm):
     s = arm.solve("tip", position=[0.3, 0.2, 0.8], method=method, target_jacobian=True)
     assert s.success, s.message
+
+
+WEIGHTS = {"bone1_x": 0.25, "bone3_z": 0.04, "bone6_x": 0.5}
+
+
+def one_step(arm, solver, q0):
+    """(step, J, e, √w) of the loop's first iteration from q0, by plain arithmetic but for the step."""
+    target = pinik.Target("tip", [0.5, 0.1, 0.7])
+    states = list(pinik.iterate(arm, target, solver, q0, limits=False, max_iterations=1))
+    e = target.position - arm.placement("tip", q0).translation
+    roots = np.sqrt([WEIGHTS.get(name, 1.0) for name in arm.joint_names])
+    return states[1].q - q0, arm.jacobian("tip", q0)[:3], e, roots
+
+
+def test_stiffness_weighs_the_transpose_s_gradient(arm):
+    """Welman's way: Δq_i = α w_i (Jᵀe)_i."""
+    solver = JacobianTranspose(alpha=0.1, max_step=math.inf, stiffness=WEIGHTS)
+    dq, J, e, roots = one_step(arm, solver, arm.random(1))
+    assert np.allclose(dq, 0.1 * roots**2 * (J.T @ e), atol=1e-14)
+
+
+def test_stiffness_weighs_the_pseudo_inverse_s_norm(arm):
+    """Of all steps with J dq = e the one with the smallest Σ dq² / w."""
+    dq, J, e, roots = one_step(arm, PseudoInverse(max_step=math.inf, stiffness=WEIGHTS), arm.random(1))
+    assert np.allclose(J @ dq, e, atol=1e-12)
+    _, _, right = np.linalg.svd(J)
+    kernel = right[3:]
+    assert np.allclose(kernel @ (dq / roots**2), 0.0, atol=1e-12)  # no way along the null space makes it smaller
+
+
+def test_stiffness_weighs_the_damping(arm):
+    """‖J dq − e‖² + λ² Σ dq² / w, as one least-squares problem."""
+    solver = DampedLeastSquares(rule="constant", damping=0.3, stiffness=WEIGHTS)
+    dq, J, e, roots = one_step(arm, solver, arm.random(1))
+    stacked = np.vstack([J, 0.3 * np.diag(1.0 / roots)])
+    expected, *_ = np.linalg.lstsq(stacked, np.concatenate([e, np.zeros(len(roots))]), rcond=None)
+    assert np.allclose(dq, expected, atol=1e-12)
+
+
+def test_a_joint_goes_to_the_rest_posture_by_its_weight(arm):
+    """φ leads joint i gain · w_i of the way, as far as the tip stays where it is."""
+    q0 = arm.random(1)
+    target = pinik.Target("tip", arm.placement("tip", q0).translation)
+    rest = dict.fromkeys(arm.joint_names, 0.3)
+    solver = PseudoInverse(rest_posture=rest, rest_gain=0.5, max_step=math.inf, stiffness=WEIGHTS)
+    kinematics = pinik.Kinematics(arm, target)
+    roots = np.sqrt([WEIGHTS.get(name, 1.0) for name in arm.joint_names])
+    seen = kinematics.linearize(q0)
+    dq = roots * solver.step(seen._replace(J=seen.J * roots), kinematics)
+    weighted = seen.J * roots
+    pull = roots * 0.5 * (0.3 - q0)
+    expected = roots * (pull - np.linalg.pinv(weighted) @ (weighted @ pull))
+    assert np.allclose(dq, expected, atol=1e-12)
+    assert np.abs(seen.J @ dq).max() < 1e-12
+
+
+@pytest.mark.parametrize("engine", ["python", pytest.param("native", marks=needs_native)])
+@pytest.mark.parametrize("method", ["jt", "pinv", "dls"])
+def test_a_joint_of_stiffness_zero_stays_and_the_answer_is_still_found(arm, method, engine):
+    wanted = arm.placement("tip", arm.random(5)).translation
+    q0 = arm.random(6)
+    s = arm.solve("tip", position=wanted, method=method, q0=q0, stiffness={"bone2_z": 0.0}, engine=engine)
+    assert s.success
+    assert s.q[arm.joint_names.index("bone2_z")] == q0[arm.joint_names.index("bone2_z")]

@@ -9,7 +9,7 @@ from typing import Annotated, Any
 import typer
 
 from ..errors import PinikError
-from . import check, compare, fk, info, jacobian, live, output, robots, solve
+from . import accuracy, check, compare, fk, info, jacobian, live, output, robots, solve
 from .exits import CommandError, ExitStatus, in_words
 
 __all__ = ["main"]
@@ -28,6 +28,7 @@ _app.command("check")(check.check)
 _app.command("robots")(robots.robots)
 _app.command("live")(live.live)
 _app.command("compare", epilog=compare.EPILOG)(compare.compare)
+_app.command("accuracy")(accuracy.accuracy)
 
 
 @_app.callback(invoke_without_command=True)

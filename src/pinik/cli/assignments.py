@@ -5,8 +5,10 @@ from __future__ import annotations
 import json
 import os
 import sys
-from collections.abc import Iterable
-from typing import Any
+from collections.abc import Iterable, Mapping
+from typing import Annotated, Any
+
+import typer
 
 from ..errors import PinikError, UnknownNameError
 from ..robot import Robot
@@ -15,7 +17,16 @@ from .exits import CommandError, in_words
 from .output import say
 from .units import Units
 
-__all__ = ["configuration", "solver_with"]
+__all__ = ["MethodParameters", "configuration", "solver_with", "solvers_with"]
+
+MethodParameters = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--param",
+        metavar="METHOD.NAME=VALUE",
+        help="A parameter of one of the methods, such as jt.alpha=0.1 ('pinik solve --help' lists them); repeatable.",
+    ),
+]
 
 
 def configuration(
@@ -76,7 +87,28 @@ def solver_with(method: str, parameters: Iterable[str] | None) -> Solver:
         UnknownNameError: No such method or parameter.
         CommandError, InputError: A text or value that cannot be used.
     """
-    solver = _solver(method)
+    return _changed(_solver(method), parameters)
+
+
+def solvers_with(solvers: Mapping[str, Solver], parameters: Iterable[str] | None) -> dict[str, Solver]:
+    """Several solvers, by their short names, with "METHOD.NAME=VALUE" parameters in place of their own.
+
+    Raises:
+        UnknownNameError: No such method or parameter.
+        CommandError, InputError: A text or value that cannot be used.
+    """
+    own: dict[str, list[str]] = {name: [] for name in solvers}
+    for text in parameters or ():
+        method, dot, rest = text.partition(".")
+        if not dot or "=" in method:
+            raise CommandError(f"--param takes METHOD.NAME=VALUE; got {text!r}")
+        if method not in own:
+            raise UnknownNameError("method", method, own)
+        own[method].append(rest)
+    return {name: _changed(solver, own[name]) for name, solver in solvers.items()}
+
+
+def _changed(solver: Solver, parameters: Iterable[str] | None) -> Solver:
     values = {}
     for name, text in _pairs(parameters, "--param", "NAME=VALUE"):
         if name not in solver.parameters:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import textwrap
 from collections.abc import Sequence
 from pathlib import Path
@@ -17,10 +18,12 @@ from ..studies.comparison import compare as run_comparisons
 from ..studies.thesis import METHODS, PRESETS, Contest, Mismatch, contest, counted_iterations, mismatch, published
 from ..viewer.effectors import principal_frames
 from . import output
-from .comparison_plot import check_plot, draw_comparison
+from .assignments import MethodParameters, solvers_with
+from .comparison_plot import draw_comparison
 from .exits import ExitStatus
 from .loading import load_robot
 from .options import AsJson, PackageDirs
+from .plots import check_plot
 from .progress import progress
 from .tables import emit_table
 
@@ -53,6 +56,7 @@ def compare(
         int, typer.Option(metavar="N", help="Move the ball from place to place in so many pieces, each solved.")
     ] = 1,
     seed: Annotated[int, typer.Option(metavar="N", help="Of the random places.")] = 0,
+    param: MethodParameters = None,
     engine: Annotated[
         str, typer.Option(metavar="auto|python|native", help="Which engine computes; thesis: python, the bare loop.")
     ] = "auto",
@@ -80,6 +84,9 @@ def compare(
     machine = load_robot(robot, package_dirs=package_dir)
     chosen = contest(machine, frame or principal_frames(machine)[0], preset, reading, pieces)
     _check_engine(engine, chosen)
+    if param and not chosen.solvers:
+        raise InputError(f"the reading {chosen.reading!r} is the thesis's own program; --param changes pinik's methods")
+    chosen = dataclasses.replace(chosen, solvers=solvers_with(chosen.solvers, param))
     with progress(f"{preset}, {chosen.reading}", count * len(METHODS) * len(COMPARISONS)) as tick:
         rows = list(
             run_comparisons(

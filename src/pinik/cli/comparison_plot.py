@@ -6,9 +6,9 @@ from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from .exits import CommandError
+from .plots import METHOD_COLORS, save_plot
 
-__all__ = ["check_plot", "draw_comparison"]
+__all__ = ["draw_comparison"]
 
 Figures = Mapping[str, Any]
 
@@ -17,23 +17,6 @@ _PANELS: tuple[tuple[str, str, Callable[[Figures], float]], ...] = (
     ("iterations", "iterations a step", lambda row: row["counted_iterations"]),
     ("efficiency", "efficiency [%]", lambda row: 100.0 * row["efficiency"]),
 )
-
-
-def check_plot(path: Path) -> None:
-    """See that a picture can be drawn, before minutes are spent on what it should show.
-
-    Raises:
-        CommandError: matplotlib is not installed, it does not write such files, or there is no such folder.
-    """
-    try:
-        from matplotlib.figure import Figure
-    except ImportError:
-        raise CommandError("--plot needs matplotlib: pip install 'pinik[plots]'") from None
-    kinds = Figure().canvas.get_supported_filetypes()
-    if path.suffix.removeprefix(".").lower() not in kinds:
-        raise CommandError(f"--plot {path}: the name's end is one of {', '.join(sorted(kinds))}")
-    if not path.parent.is_dir():
-        raise CommandError(f"--plot {path}: there is no such folder")
 
 
 def draw_comparison(answer: Mapping[str, Any], path: Path) -> None:
@@ -54,7 +37,7 @@ def draw_comparison(answer: Mapping[str, Any], path: Path) -> None:
         for number, method in enumerate(methods):
             own = [row for row in rows if row["method"] == method]
             at = [names.index(row["comparison"]) + (number - (len(methods) - 1) / 2) * width for row in own]
-            panel.bar(at, [of(row) for row in own], width, label=method, color=f"C{number}")
+            panel.bar(at, [of(row) for row in own], width, label=method, color=METHOD_COLORS[method])
             theirs = [_published(row, key) for row in own]
             panel.bar(at, theirs, width, fill=False, edgecolor="black", linewidth=0.7)
         panel.set_title(title)
@@ -68,10 +51,7 @@ def draw_comparison(answer: Mapping[str, Any], path: Path) -> None:
         f"{answer['robot']}, {answer['frame']}: preset {answer['preset']}, reading {answer['reading']}, "
         f"{answer['steps']} steps; outlined: the thesis's Table 4.1"
     )
-    try:
-        figure.savefig(path, dpi=150)
-    except OSError as error:
-        raise CommandError(f"--plot {path}: it cannot be written: {error.strerror}") from None
+    save_plot(figure, path)
 
 
 def _published(row: Figures, key: str) -> float:

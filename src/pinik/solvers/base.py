@@ -20,7 +20,16 @@ if TYPE_CHECKING:
     from ..limits import Limits
     from ..targets import Tolerance
 
-__all__ = ["JacobianSolver", "Patience", "Solver", "SweepingSolver", "max_step_parameter", "parameter"]
+__all__ = [
+    "JacobianSolver",
+    "Patience",
+    "Solver",
+    "SweepingSolver",
+    "max_step_parameter",
+    "parameter",
+    "stiffness_parameter",
+    "without_motion",
+]
 
 Array = NDArray[np.float64]
 
@@ -68,6 +77,16 @@ def max_step_parameter(default: float) -> Any:
     """The clamp on a step, which methods set differently."""
     help_ = "largest change of one joint in one step"
     return parameter(default, help_, unit="rad or m", low=1e-6, slider=(0.01, 3.2), unbounded=True)
+
+
+def stiffness_parameter(help: str) -> Any:
+    """How willingly each joint moves, as a part of 1."""
+    return parameter({}, help, low=0.0, high=1.0)
+
+
+def without_motion(stiffness: Mapping[str, float]) -> tuple[str, ...]:
+    """Joints of stiffness 0, which no restart may move either."""
+    return tuple(name for name, part in stiffness.items() if part == 0.0)
 
 
 @dataclass(frozen=True)
@@ -161,10 +180,17 @@ class Solver:
 
 @dataclass(frozen=True, kw_only=True)
 class JacobianSolver(Solver, ABC):
-    """A method whose step is a function of Jacobian and residual; subclasses write `direction` and are complete."""
+    r"""A method whose step is a function of Jacobian and residual; subclasses write `direction` and are complete.
+
+    With stiffness weights, $W = \operatorname{diag}(w_i)$, the loop takes $\sqrt W\,\text{direction}(J\sqrt W, e)$: the
+    transpose becomes $\alpha W J^\top e$, and in the other two a joint's change counts by its square over $w_i$.
+    """
 
     name = ""
 
+    stiffness: Mapping[str, float] = stiffness_parameter(
+        "w_i: how willingly a joint moves beside the others; 1 where none is named"
+    )
     step_size: float = parameter(
         1.0, "factor on the step, after its clamp (the thesis's α)", low=1e-6, high=2.0, slider=(0.01, 2.0)
     )
@@ -177,6 +203,21 @@ class JacobianSolver(Solver, ABC):
     def step(self, at: Linearization, kinematics: Kinematics) -> Array:
         """`direction` at a configuration; a method that looks at more than J and e overrides this."""
         return self.direction(at.J, at.e)
+
+    @property
+    def held(self) -> tuple[str, ...]:
+        """Joints of stiffness 0."""
+        return without_motion(self.stiffness)
+
+    def roots(self, kinematics: Kinematics) -> Array | None:
+        """√w_i of every tangent coordinate (nv,); None where each is 1."""
+        if not self.stiffness:
+            return None
+        roots = np.ones(kinematics.model.nv)
+        for name, part in self.stiffness.items():
+            joint = kinematics.robot.settable_joint(name)
+            roots[joint.idx_v : joint.idx_v + joint.nv] = math.sqrt(part)
+        return roots
 
 
 @dataclass(frozen=True, kw_only=True)

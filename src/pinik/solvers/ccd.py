@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import pinocchio
 
-from .base import Array, Patience, SweepingSolver, parameter
+from .base import Array, Patience, SweepingSolver, parameter, stiffness_parameter, without_motion
 from .chaser import Chaser
 
 if TYPE_CHECKING:
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 __all__ = ["CCD"]
 
-_INDIFFERENT = 1e-14  # a joint whose turn changes g by less than rounding stays
+_INDIFFERENT = 1e-12  # a joint whose turn changes g by no more than the rounding of world coordinates stays
 _HALVINGS = 12
 _NOTHING = np.zeros((3, 3))
 _RELAXATION_OF_POSES = 1.7
@@ -55,8 +55,8 @@ class CCD(SweepingSolver):
     restarts = 30
     patience = Patience(30, 0.05)
 
-    stiffness: Mapping[str, float] = parameter(
-        {}, "w_i: the part of its best change that a joint makes; 1 where none is named", low=0.0, high=1.0
+    stiffness: Mapping[str, float] = stiffness_parameter(
+        "w_i: the part of its best change that a joint makes; 1 where none is named"
     )
     relaxation: float | None = parameter(
         None,
@@ -111,8 +111,8 @@ class CCD(SweepingSolver):
 
     @property
     def held(self) -> tuple[str, ...]:
-        """Joints of stiffness 0, which no restart may move either."""
-        return tuple(name for name, part in self.stiffness.items() if part == 0.0)
+        """Joints of stiffness 0."""
+        return without_motion(self.stiffness)
 
     def relaxation_for(self, kinematics: Kinematics) -> float:
         """The relaxation, or what it is for these targets where it is None."""
@@ -157,7 +157,7 @@ class CCD(SweepingSolver):
         at = kinematics.linearize(q)
         J = at.J[:, column]
         squared = float(J.dot(J))
-        if squared == 0.0:
+        if squared <= (_INDIFFERENT * kinematics.lightest) ** 2:  # its followers cancel it, but for rounding
             return 0.0
         low, high = coordinate.room(q, limits)
         change = min(max(part * float(J.dot(at.e)) / squared, low, -self.max_step), high, self.max_step)

@@ -59,4 +59,7 @@ class PseudoInverse(JacobianSolver):
         for name, angle in self.rest_posture.items():
             robot.settable_joint(name).set_angle(rest, angle)
         pull = self.rest_gain * pinocchio.difference(robot.model, at.q, rest) * at.free
+        roots = self.roots(kinematics)
+        if roots is not None:
+            pull = pull * roots
         return self.direction(at.J, at.e, pull, kinematics.lightest)

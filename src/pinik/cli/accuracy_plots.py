@@ -1,0 +1,177 @@
+"""Welman's figures as pictures of what `pinik accuracy --json` prints."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from .plots import METHOD_COLORS, save_plot
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+__all__ = ["draw_accuracy", "draw_spread", "draw_straight_arm"]
+
+Figures = Mapping[str, Any]
+
+_INK, _FAINT, _BALL = "#1b2129", "#b4bdc8", "#d81f2f"
+_TITLES = {"near": "well within reach", "edge": "at the edge of reach"}
+
+
+def draw_accuracy(answer: Figures, path: Path, option: str) -> None:
+    """Figs. 4.4 and 4.5: the arms, iterations and time against digits of accuracy; a row for each target.
+
+    Raises:
+        CommandError: The file cannot be written.
+    """
+    from matplotlib.figure import Figure
+
+    figure = Figure(figsize=(12.0, 7.6), layout="constrained")
+    grid = figure.subplots(2, 3, width_ratios=(1.0, 1.0, 1.0))
+    for row, example in zip(grid, answer["examples"], strict=True):
+        case = example["case"]
+        arms, iterations, times = row
+        _draw_arm(arms, example["start"], _FAINT, width=8.0)
+        for width, (method, outline) in zip((6.5, 5.0, 3.5, 2.0), example["answers"].items(), strict=True):
+            _draw_arm(arms, outline, METHOD_COLORS[method], width)  # ever thinner, so that equal answers show
+        _draw_ball(arms, example["position"])
+        _frame_arms(arms, [example["start"], *example["answers"].values()])
+        arms.set_title(f"{_TITLES[case]}: start and answers", fontsize=10)
+        for panel, key, factor, what in (
+            (iterations, "iterations", 1.0, "iterations (sweeps of ccd)"),
+            (times, "time_s", 1e6, "time [µs]"),
+        ):
+            for method, color in METHOD_COLORS.items():
+                own = [
+                    (cost["digits"], factor * cost[key])
+                    for cost in answer["rows"]
+                    if (cost["case"], cost["method"]) == (case, method) and cost[key] is not None
+                ]
+                panel.plot(*np.array(own).reshape(-1, 2).T, "o-", color=color, label=method, markersize=4)
+            _scale_by_powers(panel)
+            panel.set_xlabel("digits of accuracy")
+            panel.set_xticks(sorted({cost["digits"] for cost in answer["rows"]}))
+            panel.set_title(f"{_TITLES[case]}: {what}", fontsize=10)
+            panel.grid(axis="y", color="#e3e7ec")
+            _without_box(panel)
+    lines, labels = grid[0][1].get_legend_handles_labels()
+    figure.legend(lines, labels, loc="outside lower center", ncols=len(labels), frameon=False)
+    figure.suptitle(
+        f"{answer['robot']}: what a digit costs; medians of {answer['problems']} problems, "
+        f"{answer['rows'][0]['engine']} engine (Welman, figs. 4.4 and 4.5)"
+    )
+    save_plot(figure, path, option)
+
+
+def draw_straight_arm(answer: Figures, path: Path, option: str) -> None:
+    """Fig. 4.2: what each method alone makes of a straight arm pulled inwards, and `pinik.solve` beside it.
+
+    Raises:
+        CommandError: The file cannot be written.
+    """
+    from matplotlib.figure import Figure
+
+    places = list(dict.fromkeys(pull["place"] for pull in answer["straight"]))
+    figure = Figure(figsize=(12.0, 3.4), layout="constrained")
+    grid = figure.subplots(len(places), len(METHOD_COLORS))
+    length = answer["length_m"]
+    bones = np.linspace(0.0, length, answer["joints"] + 1)
+    straight = np.column_stack([bones, np.zeros_like(bones)]).tolist()
+    for row, place in zip(grid, places, strict=True):
+        own = [pull for pull in answer["straight"] if pull["place"] == place]
+        shown = [straight, *(pull[way]["outline"] for pull in own for way in ("alone", "restarted"))]
+        for panel, pull in zip(row, own, strict=True):
+            alone, restarted = pull["alone"], pull["restarted"]
+            _draw_arm(panel, straight, _FAINT, width=5.0)
+            _draw_arm(panel, restarted["outline"], METHOD_COLORS[pull["method"]], dashed=True)
+            _draw_arm(panel, alone["outline"], METHOD_COLORS[pull["method"]])
+            _draw_ball(panel, (place * length, 0.0))
+            _frame_arms(panel, shown)
+            panel.set_title(f"{pull['method']}: {_outcome(alone)}", fontsize=10)
+    figure.suptitle(
+        "A straight arm (grey) pulled inwards along its own line (Welman, fig. 4.2): each method alone (solid), "
+        "pinik.solve (dashed)"
+    )
+    save_plot(figure, path, option)
+
+
+def _outcome(alone: Figures) -> str:
+    if alone["status"] == "CONVERGED":
+        return f"there in {alone['iterations']} iterations"
+    return f"stuck {alone['position_error_m']:.2g} m short"
+
+
+def draw_spread(answer: Figures, path: Path, option: str) -> None:
+    """Each joint's share of the motion, freely and with stiffness weights.
+
+    Raises:
+        CommandError: The file cannot be written.
+    """
+    from matplotlib.figure import Figure
+
+    figure = Figure(figsize=(12.0, 3.6), layout="constrained")
+    panels = figure.subplots(1, len(METHOD_COLORS), sharey=True)
+    numbers = np.arange(1, answer["joints"] + 1)
+    for panel, (method, color) in zip(panels, METHOD_COLORS.items(), strict=True):
+        free, weighted = sorted(
+            (own for own in answer["spread"] if own["method"] == method), key=lambda own: bool(own["stiffness"])
+        )
+        panel.bar(numbers - 0.2, 100.0 * np.array(free["shares"]), 0.4, color=color, label="all alike")
+        panel.bar(
+            numbers + 0.2, 100.0 * np.array(weighted["shares"]), 0.4, edgecolor=color, fill=False, hatch="////",
+            label="firmer towards the tip",
+        )  # fmt: skip
+        panel.axhline(100.0 / len(numbers), color=_INK, linewidth=0.7, linestyle=":")
+        panel.set_title(
+            f"{method}: {free['moving_joints']:.1f} → {weighted['moving_joints']:.1f} joints' worth", fontsize=10
+        )
+        panel.set_xlabel("joint, base first")
+        panel.set_xticks(numbers)
+        _without_box(panel)
+    panels[0].set_ylabel("share of the motion [%]")
+    figure.legend(*panels[0].get_legend_handles_labels(), loc="outside lower center", ncols=2, frameon=False)
+    figure.suptitle(f"{answer['robot']}: who moves when the tip is dragged a fifth of the length aside (Welman, §4.3)")
+    save_plot(figure, path, option)
+
+
+def _draw_arm(
+    panel: Axes, outline: Sequence[Sequence[float]], color: str, width: float = 2.0, dashed: bool = False
+) -> None:
+    points = np.array(outline)
+    panel.plot(
+        *points.T, color=color, linewidth=width, linestyle="--" if dashed else "-", marker="o", markersize=1.8 * width,
+        alpha=0.6 if dashed else 1.0, solid_capstyle="round",
+    )  # fmt: skip
+
+
+def _draw_ball(panel: Axes, position: Sequence[float]) -> None:
+    panel.plot(*position[:2], "o", color=_BALL, markersize=9, markeredgecolor="white", zorder=5)
+
+
+def _frame_arms(panel: Axes, outlines: Sequence[Sequence[Sequence[float]]]) -> None:
+    """Equal scales, all arms inside, no axes."""
+    points = np.vstack([np.array(outline) for outline in outlines])
+    margin = 0.08 * float(np.ptp(points, axis=0).max())
+    low, high = points.min(axis=0) - margin, points.max(axis=0) + margin
+    panel.set_xlim(low[0], high[0])
+    panel.set_ylim(low[1], high[1])
+    panel.set_aspect("equal")
+    panel.axis("off")
+
+
+def _scale_by_powers(panel: Axes) -> None:
+    """A logarithmic scale over whole powers of ten, in plain numbers."""
+    from matplotlib.ticker import FuncFormatter, NullFormatter
+
+    panel.set_yscale("log")
+    low, high = panel.get_ylim()
+    panel.set_ylim(10.0 ** np.floor(np.log10(low)), 10.0 ** np.ceil(np.log10(high)))
+    panel.yaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:,.10g}"))
+    panel.yaxis.set_minor_formatter(NullFormatter())
+
+
+def _without_box(panel: Axes) -> None:
+    panel.spines[["top", "right"]].set_visible(False)
