@@ -28,6 +28,7 @@ def run(path: Path) -> nbformat.NotebookNode:
         notebook,
         timeout=LONGEST,
         kernel_name="python3",
+        extra_arguments=["--log-level=ERROR"],  # else each kernel warns that it is spoken to without encryption
         record_timing=False,
         coalesce_streams=True,
         resources={"metadata": {"path": str(path.parent)}},

@@ -8,6 +8,7 @@ import itertools
 
 import numpy as np
 import pytest
+import trimesh
 from PIL import Image
 
 import pinik
@@ -202,6 +203,16 @@ def test_a_roof_darkens_what_it_keeps_the_sun_from():
     assert (cast - lit).max() > 25
 
 
+def test_a_ball_keeps_its_colour_in_the_shade():
+    plates = pinik.load(TWO_PLATES)
+    ball = {"balls": [0, 0, 0.1], "ball_radius": 0.06}
+    picture = pinik.draw(plates, [0.3], **ball, view=(0.0, 0.2), size=(200, 200), ground=False)
+    x, y = picture.project(ball["balls"])
+    r, g, b = picture.pixels[round(y), round(x), :3].astype(int)
+    assert r > 150
+    assert max(g, b) < 0.4 * r
+
+
 def test_what_stands_on_the_ground_has_its_shadow_there_to_the_right_of_it():
     options = {"view": (0.0, 0.4), "size": (300, 200)}
     bare, ground = (pinik.draw(cube("0.2 0.2 1"), ground=on, background=None, **options) for on in (False, True))
@@ -247,6 +258,21 @@ def test_light_differs_from_face_to_face_of_a_box():
     assert np.diff(sorted(shades)).min() > 5
 
 
+def test_a_mesh_that_is_inside_out_looks_as_if_it_were_not(tmp_path):
+    pictures = []
+    for name in ("out", "in"):
+        mesh = trimesh.creation.icosphere(2, 0.5)
+        if name == "in":
+            mesh.invert()
+        mesh.export(tmp_path / f"{name}.stl")
+        text = f'<robot name="r"><link name="l"><visual><geometry><mesh filename="{tmp_path}/{name}.stl"/>'
+        robot = pinik.load(text + "</geometry></visual></link></robot>")
+        pictures.append(pinik.draw(robot, size=(120, 90), ground=False).pixels.astype(int))
+    outwards, inwards = pictures
+    assert np.ptp(outwards[45, 40:80]) > 10
+    assert np.abs(outwards - inwards).max() <= 2
+
+
 def test_paper_is_white_a_colour_or_none():
     options = {"size": (120, 80), "ground": False}
     white, green, clear = (pinik.draw(cube(), background=b, **options) for b in ("#ffffff", "#00ff00", None))
@@ -267,6 +293,15 @@ def test_the_same_camera_sees_the_same(arm):
     points = rng.normal(size=(5, 3))
     moved = pinik.draw(arm, arm.random(rng), view=first.camera, size=(160, 100))
     assert (moved.project(points) == first.project(points)).all()
+
+
+def test_pixels_are_counted_from_the_middle_of_the_first_as_matplotlib_does():
+    picture = pinik.draw(cube(), view=from_far_away((1, -1, 0.5)), size=(201, 200), ground=False, background=None)
+    rows, columns = np.indices(picture.pixels.shape[:2])
+    opacity = picture.pixels[..., 3].astype(float)
+    middle = [(opacity * columns).sum() / opacity.sum(), (opacity * rows).sum() / opacity.sum()]
+    assert picture.project([0.0, 0.0, 0.0]) == pytest.approx([100.0, 99.5], abs=1e-9)
+    assert middle == pytest.approx([100.0, 99.5], abs=0.05)
 
 
 def test_a_point_behind_the_camera_is_nowhere(arm):
