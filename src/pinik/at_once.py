@@ -63,6 +63,5 @@ def _verdict(settings: Settings, goal: Array, missed: float) -> Status:
         return Status.UNREACHABLE
     kinematics = settings.kinematics
     kinematics.retarget(native.targets_of(kinematics.targets, goal))
-    proof = shortfall(kinematics, settings.limits)
-    is_proved = proof is not None and proof.distance > settings.tolerance.position
-    return Status.UNREACHABLE if is_proved else Status.STALLED
+    proof = shortfall(kinematics, settings.limits, settings.tolerance.position)
+    return Status.STALLED if proof is None else Status.UNREACHABLE

@@ -126,9 +126,7 @@ class _Attempts:
     def outcome(self) -> Outcome:
         """Make them and judge the best."""
         asked = self.settings
-        proof = shortfall(asked.kinematics, asked.limits)
-        if proof is not None and proof.distance <= asked.tolerance.position:
-            proof = None
+        proof = shortfall(asked.kinematics, asked.limits, asked.tolerance.position)
         if not asked.kinematics.free.any():
             self._attempt(self._start(), TO_THE_END, 0)
             status = Status.STALLED

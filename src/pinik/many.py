@@ -128,6 +128,7 @@ class Solutions(native.Answers):
             raise IndexError(f"there are {len(self)} solutions; got {index}")
         targets = native.targets_of(prepared.targets, self._goals[index])
         asked.kinematics.retarget(targets)
+        missed = self.status[index] is Status.UNREACHABLE
         outcome = Outcome(
             self.status[index],
             self.q[index].copy(),
@@ -135,7 +136,7 @@ class Solutions(native.Answers):
             int(self.iterations[index]),
             int(self.joint_updates[index]),
             int(self.restarts[index]),
-            shortfall(asked.kinematics, asked.limits) if self.status[index] is Status.UNREACHABLE else None,
+            shortfall(asked.kinematics, asked.limits, asked.tolerance.position) if missed else None,
             (),
             targets,
             float(self.time[index]),

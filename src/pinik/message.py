@@ -119,7 +119,9 @@ def _length(metres: float) -> str:
         return f"{100.0 * metres:.3g} cm"
     if metres >= 1e-5:
         return f"{1000.0 * metres:.2g} mm"
-    return f"{1e6 * metres:.2g} µm" if metres >= 1e-7 else f"{1e6 * metres:.2f} µm"
+    if metres >= 1e-8:
+        return f"{1e6 * metres:.2g} µm"
+    return "less than 0.01 µm"
 
 
 def _angle(radians: float) -> str:

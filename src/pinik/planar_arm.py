@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from .closed_form import ELBOWS, two_bone
+from .closed_form import ELBOWS, elbow_angles
 
 __all__ = ["ROUNDING", "PlanarArm", "Turns", "turn"]
 
@@ -53,8 +53,9 @@ class PlanarArm:
 
     def joint_angles(self, angles: ArrayLike) -> Array:
         """(q₁, q₂) for (θ₁, θ₂) [rad]: (…, 2) from (…, 2)."""
-        first, second = np.moveaxis(np.asarray(angles, dtype=np.float64), -1, 0)
-        return np.stack([first, self.sense * (second - self.bend)], axis=-1)
+        values = np.array(angles, dtype=np.float64)
+        values[..., 1] = self.sense * (values[..., 1] - self.bend)
+        return values
 
     def elbows(self, points: Array, now: Array, slack: Array) -> tuple[Array, Array]:
         """Both answers of `two_bone`, up first, ranges aside.
@@ -69,11 +70,14 @@ class PlanarArm:
         Returns:
             The joints' values (N, 2 elbows, 2) [rad], and what both tips then miss their point by (N,) [m].
         """
-        at_base = np.hypot(points[:, 0], points[:, 1]) <= slack
-        found = two_bone(self.l1, self.l2, np.where(at_base[:, np.newaxis], 0.0, points))
-        values = self.joint_angles(found.angles)
+        x, y = points.T
+        distance = np.hypot(x, y)
+        at_base = distance <= slack
+        distance[at_base] = 0.0
+        angles, outside = elbow_angles(self.l1, self.l2, np.arctan2(y, x), distance)
+        values = self.joint_angles(angles)
         values[at_base, :, 0] = now[at_base, :1]
-        return values, found.shortfall
+        return values, np.maximum(outside, 0.0)
 
     def nearest(self, points: Array, now: Array, ranges: Array, slack: Array, elbow: str) -> Array:
         """The joints' values (N, 2) inside their ranges [rad] that bring the tips nearest to their points.
@@ -137,6 +141,9 @@ def turn(wanted: Array, ranges: Array, now: Array) -> Turns:
     """Hinges' angles turned by whole turns into their ranges (…, 2), near to where they stand `now`; all in rad."""
     low, high = ranges[..., 0], ranges[..., 1]
     angle = now + _within_half_a_turn(wanted - now)
+    is_inside: Truths = (low <= angle) & (angle <= high)
+    if is_inside.all():
+        return Turns(angle, angle, is_inside)
     with np.errstate(invalid="ignore"):  # infinite ends have no multiples, and nothing lies beyond them
         inside = np.where(angle > high, high - (high - angle) % math.tau, angle)
         inside = np.where(angle < low, low + (angle - low) % math.tau, inside)

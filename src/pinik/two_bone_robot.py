@@ -26,6 +26,7 @@ Array = NDArray[np.float64]
 
 _LARGEST_TILT = 1e-5  # [rad]: what a URDF's 1.5708 or 3.14159 may turn an axis away by
 _NO_LENGTH = 1e-9  # of the longer bone
+_MOST_NAMED = 3  # joints in the way
 
 
 class OffPlane(NamedTuple):
@@ -256,7 +257,7 @@ class TwoBone:
         Returns:
             (N, nq).
         """
-        flat, _ = self.in_plane(positions)
+        flat = (positions - self.origin) @ self.axes[:, :2]
         values = self._arm.nearest(flat, self.angles_at(q), ranges, self._slack(positions), elbow)
         return self._configurations(values, q.copy())
 
@@ -300,7 +301,9 @@ def _two_hinges(robot: Robot, frame: str, relative_to: str | None) -> tuple[Join
     if not still <= moving:
         raise _refusal(frame, f"{relative_to!r} has joints of its own that move it relative to {frame!r}")
     movers = [joint for joint in robot.joints if joint.id in moving - still]
-    names = ", ".join(f"{joint.name!r} ({joint.kind})" for joint in movers)
+    names = ", ".join(f"{joint.name!r} ({joint.kind})" for joint in movers[:_MOST_NAMED])
+    if len(movers) > _MOST_NAMED:
+        names += f" and {len(movers) - _MOST_NAMED} more"
     if len(movers) != 2:
         number = {0: "no joint moves", 1: "only one joint moves"}.get(len(movers), f"{len(movers)} joints move")
         raise _refusal(frame, f"{number} it{seen}" + (f": {names}" if movers else ""))

@@ -158,7 +158,7 @@ class Instance:
         try:
             state = self._run(asked, began + seconds)
         except _RefusedError as refusal:
-            self.status, self.counted, self._trouble = "REFUSED", False, str(refusal)
+            self.status, self.counted, self._trouble = "REFUSED", False, f"waiting: {refusal}"
             return
         except Exception as error:  # a solver of the user's own may raise whatever it likes
             self._fail(error, self._clock() - began)
@@ -228,10 +228,9 @@ class Instance:
         if all(error.within(tolerance) for error in errors):
             status = Status.CONVERGED
         else:
-            proof = shortfall(kinematics, Limits.of(self.robot, self._chase.limits))
-            is_proved = proof is not None and proof.distance > tolerance.position
+            proof = shortfall(kinematics, Limits.of(self.robot, self._chase.limits), tolerance.position)
             stalled = status is Status.STALLED
-            if is_proved or (stalled and is_nearest(self._solver, kinematics, errors, tolerance)):
+            if proof is not None or (stalled and is_nearest(self._solver, kinematics, errors, tolerance)):
                 status = Status.UNREACHABLE
             elif status is Status.CONVERGED:
                 status = Status.STALLED
