@@ -11,10 +11,10 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import pinik
+from hinges import two_hinges
 from pinik import Status, Target
 from pinik.at_once import lands_at_once
 from robots import load_quietly
-from two_hinges import two_hinges
 
 # Places on a grid as well: on borders, on axes, on top of each other, out of the plane.
 numbers = st.one_of(st.floats(-1.0, 1.0), st.sampled_from([0.0, 0.1, 0.2, 0.3, 0.5, 0.8, -0.8]))

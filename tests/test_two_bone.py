@@ -12,9 +12,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import pinik
+from hinges import two_hinges
 from pinik import Status, Target, TwoBone
 from robots import load_quietly
-from two_hinges import two_hinges
 
 
 class Case(NamedTuple):
@@ -322,6 +322,52 @@ class TestAsAMethod:
             assert s.status is Status.UNREACHABLE
             assert "unreachable" in s.message
         assert s.iterations <= 2
+
+    @pytest.mark.parametrize(
+        ("asked", "words"),
+        [
+            (
+                (0.5, 0.3, 0.22),
+                "the target of hand lies 12 cm off the plane in which it moves, whose normal is NORMAL; 12",
+            ),
+            (
+                (0.5, 0.3, 0.05),
+                "the target of hand lies 5 cm off the plane in which it moves, whose normal is NORMAL; 5 ",
+            ),
+            (
+                (3.0, 0.0, 0.2),
+                "beyond its chain's reach of 80 cm and 10 cm off the plane in which it moves, whose normal",
+            ),
+        ],
+    )
+    @pytest.mark.parametrize(
+        ("rpy", "normal"),
+        [
+            ((0.0, 0.0, 0.4), "the z axis of the world"),
+            ((math.pi, 0.0, 0.0), "the z axis of the world"),
+            ((math.pi / 2, 0.0, 0.0), "the y axis of the world"),
+            ((0.0, math.pi / 2, 0.0), "the x axis of the world"),
+            ((0.0, math.atan2(3.0, 4.0), 0.0), "(0.6, 0, 0.8) in the axes of the world"),
+        ],
+    )
+    def test_the_message_says_how_far_off_the_plane_and_which_plane_that_is(self, asked, words, rpy, normal):
+        turned = pinocchio.rpy.rpyToMatrix(np.array(rpy))
+        robot = two_hinges(rpy=rpy)
+        s = robot.solve("hand", turned @ asked, method="two_bone")
+        assert s.status is Status.UNREACHABLE
+        assert words.replace("NORMAL", normal) in s.message
+        flat = robot.solve("hand", turned @ [*asked[:2], 0.1], method="two_bone")
+        assert "plane" not in flat.message
+
+    def test_the_plane_of_a_pair_inside_a_chain_is_told_in_the_axes_of_the_link_before(self, two_link):
+        floating = two_link.with_root("free_flyer")
+        s = floating.solve("tip", [0.5, 0.3, -0.02], relative_to="base", method="two_bone", q0=floating.random(1))
+        assert "lies 2 cm off the plane in which it moves, whose normal is the z axis of frame 'base'" in s.message
+
+    def test_what_is_within_the_tolerance_is_off_no_plane(self, two_link):
+        s = two_link.solve("tip", [2.0, 0.0, 9e-5], method="two_bone")
+        assert "plane" not in s.message
+        assert "off the plane" in two_link.solve("tip", [2.0, 0.0, 1.1e-4], method="two_bone").message
 
     def test_the_message_says_how_far_and_which_limit(self):
         s = two_hinges(((-3.0, 3.0), (0.0, 0.5))).solve("hand", [0.5, 0.0, 0.1], method="two_bone")
