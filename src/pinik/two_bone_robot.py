@@ -204,12 +204,8 @@ class TwoBone:
         """
         robot, point = self.robot, as_point(position, "position")
         start = robot.neutral() if q0 is None else robot.check_configuration(q0, "q0")
-        ranges, now, slack = (
-            self.ranges(Limits.of(robot, limits)),
-            self.angles_at(start),
-            self._slack(point[np.newaxis]),
-        )
-        flat, beside = self.in_plane(point[np.newaxis])
+        ranges, now = self.ranges(Limits.of(robot, limits)), self.angles_at(start)
+        (slack,), (flat, beside) = self._slack(point[np.newaxis]), self.in_plane(point[np.newaxis])
         ways, missed = self._arm.elbows(flat, now[np.newaxis], slack)
         turns = turn(ways[0], ranges, now)
         inside: NDArray[np.bool_] = np.all(turns.fits, axis=-1)
@@ -223,7 +219,7 @@ class TwoBone:
             elbows=(ELBOWS[order[0]], ELBOWS[order[1]]),
             inside=inside[order],
             errors=np.array([self._error(each, point) for each in q]),
-            reachable=shortfall <= slack[0],
+            reachable=bool(shortfall <= slack),
             shortfall=shortfall,
             out_of_plane=float(beside[0]),
             nearest=nearest,

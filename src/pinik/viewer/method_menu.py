@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 
 from ..errors import InputError
+from ..kinematics import Kinematics
 from ..robot import Robot
-from ..run import compiled_for
 from ..solvers import CLOSED_FORMS, Solver, make_solver
 from ..targets import Target
 
@@ -22,7 +22,7 @@ def check_balls(solver: Solver, robot: Robot, frames: Sequence[str]) -> None:
     refusals = []
     for frame in frames:
         try:
-            compiled_for(solver, robot, Target(frame, position=(0.0, 0.0, 0.0)))
+            solver.check(Kinematics(robot, Target(frame, position=(0.0, 0.0, 0.0))))
             return
         except InputError as error:
             refusals.append(f"{solver.name} cannot chase a ball here: {error}")
@@ -48,15 +48,15 @@ def fitting(
     """The solvers for another robot, and what was done to them, in words.
 
     Parameters lose what they say of joints that the robot does not have. A method that cannot chase a ball there makes
-    room for the first that can and is not among the others.
+    room for the first that can, and is not among the others if there is such a one.
     """
     fit, notes = [_with_joints_of(robot, solver) for solver in solvers], []
     for number, solver in enumerate(fit):
         try:
             check_balls(solver, robot, frames)
         except InputError as error:
-            taken = {other.name for other in fit}
-            name = next(name for name in offered(methods, robot, frames) if name not in taken)
+            taken = [other.name for other in fit]
+            name = min(offered(methods, robot, frames), key=lambda name: name in taken)
             fit[number] = make_solver(methods[name])
             notes.append(f"instance {number + 1} goes on with {name}: {error}")
     return fit, notes

@@ -100,6 +100,7 @@ class Session:
         self.running = False
         self.steps = 0
         self.notes: list[str] = []
+        self._offered: tuple[list[str], list[str]] = ([], [])  # for which frames, what
         self.chase = Chase()
         self.motion = Motion(robot, seed)
         self._seed = seed
@@ -135,7 +136,9 @@ class Session:
     @property
     def offered(self) -> list[str]:
         """Names of the methods that can chase one of the balls."""
-        return offered(self.methods, self.robot, self._frames)
+        if self._offered[0] != self._frames:  # compiling a question takes milliseconds, and a state tells this
+            self._offered = self._frames, offered(self.methods, self.robot, self._frames)
+        return self._offered[1]
 
     @property
     def summaries(self) -> list[Summary]:
