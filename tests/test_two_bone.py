@@ -328,15 +328,15 @@ class TestAsAMethod:
         [
             (
                 (0.5, 0.3, 0.22),
-                "the target of hand lies 12 cm off the plane in which it moves, whose normal is NORMAL; 12",
+                "the target of hand lies 12 cm off the plane in which hand moves, whose normal is NORMAL; 12",
             ),
             (
                 (0.5, 0.3, 0.05),
-                "the target of hand lies 5 cm off the plane in which it moves, whose normal is NORMAL; 5 ",
+                "the target of hand lies 5 cm off the plane in which hand moves, whose normal is NORMAL; 5 ",
             ),
             (
                 (3.0, 0.0, 0.2),
-                "beyond its chain's reach of 80 cm and 10 cm off the plane in which it moves, whose normal",
+                "beyond its chain's reach of 80 cm and 10 cm off the plane in which hand moves, whose normal",
             ),
         ],
     )
@@ -362,7 +362,7 @@ class TestAsAMethod:
     def test_the_plane_of_a_pair_inside_a_chain_is_told_in_the_axes_of_the_link_before(self, two_link):
         floating = two_link.with_root("free_flyer")
         s = floating.solve("tip", [0.5, 0.3, -0.02], relative_to="base", method="two_bone", q0=floating.random(1))
-        assert "lies 2 cm off the plane in which it moves, whose normal is the z axis of frame 'base'" in s.message
+        assert "lies 2 cm off the plane in which tip moves, whose normal is the z axis of frame 'base'" in s.message
 
     def test_what_is_within_the_tolerance_is_off_no_plane(self, two_link):
         s = two_link.solve("tip", [2.0, 0.0, 9e-5], method="two_bone")

@@ -66,7 +66,7 @@ def _out_of_reach(
     elif proof is not None:
         places.append(f"{_length(proof.distance)} beyond its chain's reach of {_length(proof.bound)}")
     if off_plane is not None and abs(off_plane.distance) > tolerance.position:
-        places.append(f"{_length(abs(off_plane.distance))} off the plane in which it moves, {_normal(off_plane)}")
+        places.append(f"{_length(abs(off_plane.distance))} off the plane in which {frame} moves, {_normal(off_plane)}")
     return [f"the target of {frame} lies {' and '.join(places)}"] if places else []
 
 

@@ -97,7 +97,7 @@ def test_a_ball_off_the_plane_is_unreachable_and_the_plane_is_named(two_link):
     verdict = shown.instances[1].verdict()
     assert verdict.status == "UNREACHABLE"
     assert verdict.position_error == pytest.approx(0.12, abs=1e-12)
-    assert "lies 12 cm off the plane in which it moves, whose normal is the z axis of the world" in verdict.message
+    assert "lies 12 cm off the plane in which tip moves, whose normal is the z axis of the world" in verdict.message
 
 
 def test_a_ball_that_only_limits_keep_away_is_unreachable_as_well():

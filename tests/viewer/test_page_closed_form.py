@@ -31,7 +31,9 @@ def test_it_is_chosen_like_the_others_and_takes_one_iteration(open_panel):
     desk.wait(lambda: desk.state["instances"][0]["angles"]["joint2"] < 0.0)
     desk.type("target-z", 0.1)
     desk.click("step")
-    desk.expect("message-0").to_contain_text("10 cm off the plane in which it moves, whose normal is the z axis of the")
+    desk.expect("message-0").to_contain_text(
+        "10 cm off the plane in which tip moves, whose normal is the z axis of the"
+    )
     assert "methods=two_bone,jt" in desk.address()
 
 
