@@ -267,6 +267,15 @@ class TestLimits:
         assert found.q[0] == pytest.approx([0.6 + math.tau, 1.2 - math.tau])
         assert plain_position(robot, "hand", found.q[0]) == pytest.approx(wanted, abs=1e-15)
 
+    def test_an_angle_at_the_end_of_its_range_is_inside_whatever_rounding_does_to_it(self):
+        robot = two_hinges(((-3.0, 3.0), (0.3, 2.5)))
+        bones = TwoBone.of(robot, "hand")
+        for first in np.linspace(-2.5, 2.5, 60):
+            found = bones.solve(plain_position(robot, "hand", np.array([first, 0.3])))
+            assert found.inside[0]
+            assert found.q[0, 1] >= 0.3
+            assert found.errors[0] < 1e-12
+
     def test_an_elbow_outside_is_told_as_it_is_and_comes_last(self):
         robot = two_hinges(((-3.0, 3.0), (0.0, 2.5)))
         up = np.array([0.6, -1.2])
@@ -405,6 +414,26 @@ class TestAsAMethod:
         assert steps.max() <= 0.1 + 1e-15
         assert states[-1].status is Status.CONVERGED
         assert states[-1].q == pytest.approx([1.0, 1.5], abs=1e-12)
+
+    @given(ranges, ranges, vectors, vectors, st.sampled_from([{"max_step": 0.05}, {"max_residual": 0.05}]))
+    def test_what_can_be_reached_is_not_called_unreachable_however_small_the_steps(self, first, second, at, q0, clamp):
+        robot = two_hinges((first, second))
+        middle, half = 0.5 * (robot.lower + robot.upper), 0.5 * (robot.upper - robot.lower)
+        wanted = plain_position(robot, "hand", middle + half * np.array(at[:2]))
+        start = middle + half * np.array(q0[:2])
+        s = robot.solve("hand", wanted, method="two_bone", q0=start, **clamp)
+        assert s.status is not Status.UNREACHABLE
+        if "max_step" in clamp:
+            assert robot.solve("hand", wanted, method="two_bone", q0=start, max_iterations=300, **clamp)
+
+    def test_a_clamp_on_the_step_leaves_the_base_where_it_is_to_the_last_bit(self, two_link):
+        floating = two_link.with_root("free_flyer")
+        target = Target("tip", [0.2, 0.6, 0.0], relative_to="base")
+        for seed in range(10):
+            q0 = floating.random(seed)
+            states = list(pinik.iterate(floating, target, "two_bone", q0, max_step=0.2))
+            assert states[-1].status is Status.CONVERGED
+            assert all((state.q[:7] == states[0].q[:7]).all() for state in states)
 
     def test_a_shortened_residual_moves_the_frame_by_that_much_a_sweep(self, two_link):
         target = Target("tip", [0.2, 0.6, 0.0])

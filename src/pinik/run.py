@@ -80,7 +80,7 @@ def run(
             milestone, since = at.residual, 0
         if reached:
             status = Status.CONVERGED
-        elif since >= patience.iterations or rests:
+        elif rests or (since >= patience.iterations and not solver.exact):
             status = Status.STALLED
         else:
             status = Status.MAX_ITERATIONS if iteration >= last else None

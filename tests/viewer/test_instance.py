@@ -310,11 +310,14 @@ def test_a_step_of_the_wrong_shape_is_a_failure_in_words(arm):
 
 
 def test_a_solver_that_refuses_a_question_waits_for_another(arm):
+    asked = []
+
     @dataclass(frozen=True, kw_only=True)
     class Picky(pinik.DampedLeastSquares):
         name = "picky"
 
         def check(self, kinematics):
+            asked.append(len(kinematics.targets))
             if len(kinematics.targets) > 1:
                 raise pinik.InputError("one at a time")
 
@@ -324,7 +327,9 @@ def test_a_solver_that_refuses_a_question_waits_for_another(arm):
     assert (one.status, one.counted, one.last) == ("REFUSED", False, None)
     assert one.verdict() == ("REFUSED", "waiting: one at a time", None, None, ())
     one.step([tip, bone])
+    one.step([tip, pinik.Target("bone2", [0.0, 0.1, 0.3])])
     assert (one.status, one.statistics.summary().steps) == ("REFUSED", 0)
+    assert asked == [2]  # the same kind of question is asked once: compiling it takes milliseconds
     one.step([tip])
     assert (one.status, one.statistics.summary().steps) == ("CONVERGED", 1)
     q = one.q

@@ -99,8 +99,6 @@ class Solver:
     """Fresh starts after the first attempt, unless `solve` is told otherwise."""
     patience: ClassVar[Patience] = Patience(5, 0.05)
     """When an attempt counts as stalled."""
-    exact: ClassVar[bool] = False
-    """Whether it comes to rest only as near to the targets as can be, to 1e-5 of the chain's length."""
 
     max_step: float = max_step_parameter(math.inf)
     max_residual: float = parameter(
@@ -158,6 +156,11 @@ class Solver:
     def off_plane(self, robot: Robot, targets: Sequence[Target]) -> OffPlane | None:
         """What the target lies beside a plane that its frame cannot leave, where the method knows of one."""
         return None
+
+    @property
+    def exact(self) -> bool:
+        """Whether it comes to rest only as near to the targets as can be, to 1e-5 of the chain's length."""
+        return False
 
     @property
     def held(self) -> tuple[str, ...]:

@@ -35,7 +35,6 @@ class TwoBoneSolver(SweepingSolver):
     title = "Two bones, closed form"
     about = "exact and at once; for one position of a frame that two parallel hinges move"
     restarts = 0
-    exact = True
 
     elbow: str = parameter(
         "nearest", "which of two answers inside the limits is taken", choices=("nearest", "up", "down")
@@ -50,9 +49,14 @@ class TwoBoneSolver(SweepingSolver):
         _bones(kinematics.robot, kinematics.targets)
 
     @property
+    def exact(self) -> bool:
+        """Yes, unless it looks at a part of the way alone, which limits may bar where there is a way around."""
+        return self.max_residual == math.inf
+
+    @property
     def lands_at_once(self) -> bool:
         """Whether the first sweep goes all the way."""
-        return self.max_step == math.inf and self.max_residual == math.inf
+        return self.exact and self.max_step == math.inf
 
     def answers(self, positions: Array, q: Array, kinematics: Kinematics, limits: Limits) -> Array:
         """The configurations (N, nq) inside the limits that come nearest to N positions (N, 3) [m], from `q` (N, nq).
