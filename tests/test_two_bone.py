@@ -426,6 +426,12 @@ class TestAsAMethod:
         if "max_step" in clamp:
             assert robot.solve("hand", wanted, method="two_bone", q0=start, max_iterations=300, **clamp)
 
+    def test_a_long_way_in_small_steps_that_first_leads_away_is_gone_to_its_end(self, two_link):
+        for seed in range(60):
+            wanted = plain_position(two_link, "tip", two_link.random(1000 + seed))
+            s = two_link.solve("tip", wanted, method="two_bone", q0=two_link.random(seed), max_step=0.05)
+            assert s.status is (Status.CONVERGED if s.iterations < 100 else Status.MAX_ITERATIONS)
+
     def test_a_clamp_on_the_step_leaves_the_base_where_it_is_to_the_last_bit(self, two_link):
         floating = two_link.with_root("free_flyer")
         target = Target("tip", [0.2, 0.6, 0.0], relative_to="base")
