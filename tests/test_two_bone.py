@@ -373,6 +373,13 @@ class TestAsAMethod:
         s = floating.solve("tip", [0.5, 0.3, -0.02], relative_to="base", method="two_bone", q0=floating.random(1))
         assert "lies 2 cm off the plane in which tip moves, whose normal is the z axis of frame 'base'" in s.message
 
+    def test_the_plane_is_named_as_well_where_the_iterations_ran_out_first(self, two_link):
+        s = two_link.solve("tip", [0.5, 0.3, 0.1], method="two_bone", max_iterations=1)
+        assert s.message == (
+            "out of iterations, 10 cm short; the target of tip lies 10 cm off the plane in which tip moves, "
+            "whose normal is the z axis of the world"
+        )
+
     def test_what_is_within_the_tolerance_is_off_no_plane(self, two_link):
         s = two_link.solve("tip", [2.0, 0.0, 9e-5], method="two_bone")
         assert "plane" not in s.message

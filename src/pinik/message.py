@@ -49,9 +49,9 @@ def explain(
         Status.TIME_LIMIT: "out of time,",
         Status.UNREACHABLE: "unreachable:",
     }[status]
-    if status is Status.UNREACHABLE:
-        missed = "; ".join([*_out_of_reach(targets, tolerance, proof, off_plane), missed])
-    return "; ".join([f"{begin} {missed}", *_limits(active)])
+    why = _out_of_reach(targets, tolerance, proof, off_plane)
+    first, *others = [*why, missed] if status is Status.UNREACHABLE else [missed, *why]
+    return "; ".join([f"{begin} {first}", *others, *_limits(active)])
 
 
 def _out_of_reach(
