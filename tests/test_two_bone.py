@@ -12,6 +12,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import pinik
+from hinges import two_hinges
 from pinik import Status, Target, TwoBone
 from robots import load_quietly
 
@@ -54,21 +55,6 @@ def configurations(robot: pinik.Robot, count: int, seed: int):
         for joint in robot.joints:
             joint.set_angle(q, rng.uniform(-3.1, 3.1))
         yield q
-
-
-def two_hinges(
-    limits=((-9.0, 9.0), (-9.0, 9.0)), *, axis="0 0 1", second_axis="0 0 1", second="revolute", extra=""
-) -> pinik.Robot:
-    """Bones of 0.5 m and 0.3 m along x in a plane 0.1 m above the base, with limits."""
-    bounds = [f'<limit lower="{low!r}" upper="{high!r}" effort="1" velocity="1"/>' for low, high in limits]
-    return pinik.load(f"""<robot name="hinges">
-      <link name="base"/><link name="upper"/><link name="lower"/><link name="hand"/>
-      <joint name="shoulder" type="revolute"><parent link="base"/><child link="upper"/><origin xyz="0 0 0.1"/>
-        <axis xyz="{axis}"/>{bounds[0]}</joint>
-      <joint name="elbow" type="{second}"><parent link="upper"/><child link="lower"/><origin xyz="0.5 0 0"/>
-        <axis xyz="{second_axis}"/>{bounds[1]}{extra}</joint>
-      <joint name="wrist" type="fixed"><parent link="lower"/><child link="hand"/><origin xyz="0.3 0 0"/></joint>
-    </robot>""")
 
 
 class TestRecognition:
@@ -281,6 +267,15 @@ class TestLimits:
         assert found.q[0] == pytest.approx([0.6 + math.tau, 1.2 - math.tau])
         assert plain_position(robot, "hand", found.q[0]) == pytest.approx(wanted, abs=1e-15)
 
+    def test_an_angle_at_the_end_of_its_range_is_inside_whatever_rounding_does_to_it(self):
+        robot = two_hinges(((-3.0, 3.0), (0.3, 2.5)))
+        bones = TwoBone.of(robot, "hand")
+        for first in np.linspace(-2.5, 2.5, 60):
+            found = bones.solve(plain_position(robot, "hand", np.array([first, 0.3])))
+            assert found.inside[0]
+            assert found.q[0, 1] >= 0.3
+            assert found.errors[0] < 1e-12
+
     def test_an_elbow_outside_is_told_as_it_is_and_comes_last(self):
         robot = two_hinges(((-3.0, 3.0), (0.0, 2.5)))
         up = np.array([0.6, -1.2])
@@ -337,6 +332,59 @@ class TestAsAMethod:
             assert "unreachable" in s.message
         assert s.iterations <= 2
 
+    @pytest.mark.parametrize(
+        ("asked", "words"),
+        [
+            (
+                (0.5, 0.3, 0.22),
+                "the target of hand lies 12 cm off the plane in which hand moves, whose normal is NORMAL; 12",
+            ),
+            (
+                (0.5, 0.3, 0.05),
+                "the target of hand lies 5 cm off the plane in which hand moves, whose normal is NORMAL; 5 ",
+            ),
+            (
+                (3.0, 0.0, 0.2),
+                "beyond its chain's reach of 80 cm and 10 cm off the plane in which hand moves, whose normal",
+            ),
+        ],
+    )
+    @pytest.mark.parametrize(
+        ("rpy", "normal"),
+        [
+            ((0.0, 0.0, 0.4), "the z axis of the world"),
+            ((math.pi, 0.0, 0.0), "the z axis of the world"),
+            ((math.pi / 2, 0.0, 0.0), "the y axis of the world"),
+            ((0.0, math.pi / 2, 0.0), "the x axis of the world"),
+            ((0.0, math.atan2(3.0, 4.0), 0.0), "(0.6, 0, 0.8) in the axes of the world"),
+        ],
+    )
+    def test_the_message_says_how_far_off_the_plane_and_which_plane_that_is(self, asked, words, rpy, normal):
+        turned = pinocchio.rpy.rpyToMatrix(np.array(rpy))
+        robot = two_hinges(rpy=rpy)
+        s = robot.solve("hand", turned @ asked, method="two_bone")
+        assert s.status is Status.UNREACHABLE
+        assert words.replace("NORMAL", normal) in s.message
+        flat = robot.solve("hand", turned @ [*asked[:2], 0.1], method="two_bone")
+        assert "plane" not in flat.message
+
+    def test_the_plane_of_a_pair_inside_a_chain_is_told_in_the_axes_of_the_link_before(self, two_link):
+        floating = two_link.with_root("free_flyer")
+        s = floating.solve("tip", [0.5, 0.3, -0.02], relative_to="base", method="two_bone", q0=floating.random(1))
+        assert "lies 2 cm off the plane in which tip moves, whose normal is the z axis of frame 'base'" in s.message
+
+    def test_the_plane_is_named_as_well_where_the_iterations_ran_out_first(self, two_link):
+        s = two_link.solve("tip", [0.5, 0.3, 0.1], method="two_bone", max_iterations=1)
+        assert s.message == (
+            "out of iterations, 10 cm short; the target of tip lies 10 cm off the plane in which tip moves, "
+            "whose normal is the z axis of the world"
+        )
+
+    def test_what_is_within_the_tolerance_is_off_no_plane(self, two_link):
+        s = two_link.solve("tip", [2.0, 0.0, 9e-5], method="two_bone")
+        assert "plane" not in s.message
+        assert "off the plane" in two_link.solve("tip", [2.0, 0.0, 1.1e-4], method="two_bone").message
+
     def test_the_message_says_how_far_and_which_limit(self):
         s = two_hinges(((-3.0, 3.0), (0.0, 0.5))).solve("hand", [0.5, 0.0, 0.1], method="two_bone")
         assert s.status is Status.UNREACHABLE
@@ -373,6 +421,32 @@ class TestAsAMethod:
         assert steps.max() <= 0.1 + 1e-15
         assert states[-1].status is Status.CONVERGED
         assert states[-1].q == pytest.approx([1.0, 1.5], abs=1e-12)
+
+    @given(ranges, ranges, vectors, vectors, st.sampled_from([{"max_step": 0.05}, {"max_residual": 0.05}]))
+    def test_what_can_be_reached_is_not_called_unreachable_however_small_the_steps(self, first, second, at, q0, clamp):
+        robot = two_hinges((first, second))
+        middle, half = 0.5 * (robot.lower + robot.upper), 0.5 * (robot.upper - robot.lower)
+        wanted = plain_position(robot, "hand", middle + half * np.array(at[:2]))
+        start = middle + half * np.array(q0[:2])
+        s = robot.solve("hand", wanted, method="two_bone", q0=start, **clamp)
+        assert s.status is not Status.UNREACHABLE
+        if "max_step" in clamp:
+            assert robot.solve("hand", wanted, method="two_bone", q0=start, max_iterations=300, **clamp)
+
+    def test_a_long_way_in_small_steps_that_first_leads_away_is_gone_to_its_end(self, two_link):
+        for seed in range(60):
+            wanted = plain_position(two_link, "tip", two_link.random(1000 + seed))
+            s = two_link.solve("tip", wanted, method="two_bone", q0=two_link.random(seed), max_step=0.05)
+            assert s.status is (Status.CONVERGED if s.iterations < 100 else Status.MAX_ITERATIONS)
+
+    def test_a_clamp_on_the_step_leaves_the_base_where_it_is_to_the_last_bit(self, two_link):
+        floating = two_link.with_root("free_flyer")
+        target = Target("tip", [0.2, 0.6, 0.0], relative_to="base")
+        for seed in range(10):
+            q0 = floating.random(seed)
+            states = list(pinik.iterate(floating, target, "two_bone", q0, max_step=0.2))
+            assert states[-1].status is Status.CONVERGED
+            assert all((state.q[:7] == states[0].q[:7]).all() for state in states)
 
     def test_a_shortened_residual_moves_the_frame_by_that_much_a_sweep(self, two_link):
         target = Target("tip", [0.2, 0.6, 0.0])

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import time
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -18,7 +19,7 @@ from .starts import Starts
 from .state import State, Status, measure_errors
 from .targets import Target, TargetError, Tolerance
 
-__all__ = ["Outcome", "Settings", "attempt_all"]
+__all__ = ["Outcome", "Settings", "attempt_all", "is_nearest"]
 
 Array = NDArray[np.float64]
 
@@ -95,6 +96,13 @@ def attempt_all(settings: Settings, began: float) -> Outcome:
     return _Attempts(settings, began).outcome()
 
 
+def is_nearest(solver: Solver, kinematics: Kinematics, errors: Sequence[TargetError], tolerance: Tolerance) -> bool:
+    """Whether a run that stalled came as near as can be: its method stops nowhere else, and it missed the targets by
+    more than that may be off by."""
+    least = tolerance.position + _EXACT * kinematics.size_of_chain
+    return solver.exact and any(error.position is not None and error.position > least for error in errors)
+
+
 class _Attempts:
     """Attempts under way.
 
@@ -118,9 +126,7 @@ class _Attempts:
     def outcome(self) -> Outcome:
         """Make them and judge the best."""
         asked = self.settings
-        proof = shortfall(asked.kinematics, asked.limits)
-        if proof is not None and proof.distance <= asked.tolerance.position:
-            proof = None
+        proof = shortfall(asked.kinematics, asked.limits, asked.tolerance.position)
         if not asked.kinematics.free.any():
             self._attempt(self._start(), TO_THE_END, 0)
             status = Status.STALLED
@@ -201,12 +207,6 @@ class _Attempts:
         if self.best is None or at.residual < self.best.residual:
             self.best = state._replace(q=at.q, errors=tuple(at.errors), residual=at.residual)
 
-    def _came_as_near_as_can_be(self, errors: tuple[TargetError, ...]) -> bool:
-        """Whether the method stops nowhere else, and what it missed is more than what it may be off by."""
-        asked = self.settings
-        least = asked.tolerance.position + _EXACT * asked.kinematics.size_of_chain
-        return asked.solver.exact and any(error.position is not None and error.position > least for error in errors)
-
     def _judged(self, status: Status, proof: Shortfall | None) -> Outcome:
         """The best state, measured by plain forward kinematics, which has the last word."""
         assert self.best is not None
@@ -214,7 +214,9 @@ class _Attempts:
         errors = measure_errors(asked.kinematics.robot, asked.kinematics.targets, q)
         if all(error.within(asked.tolerance) for error in errors):
             status = Status.CONVERGED
-        elif proof is not None or (status is Status.STALLED and self._came_as_near_as_can_be(errors)):
+        elif proof is not None or (
+            status is Status.STALLED and is_nearest(asked.solver, asked.kinematics, errors, asked.tolerance)
+        ):
             status = Status.UNREACHABLE
         elif status is Status.CONVERGED:
             status = Status.STALLED

@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 from .checks import as_finite_number, as_many
 from .errors import InputError
 
-__all__ = ["ELBOWS", "TwoBoneAnswers", "two_bone"]
+__all__ = ["ELBOWS", "TwoBoneAnswers", "elbow_angles", "two_bone"]
 
 Array = NDArray[np.float64]
 
@@ -139,14 +139,21 @@ def two_bone(l1: ArrayLike, l2: ArrayLike, targets: ArrayLike, pole: ArrayLike |
             direction = np.zeros(len(x))
             d = np.hypot(d, points[part, 2])
             plane[part] = _planes(points[part], d, poles[part])
-        alpha, bend, outside[part] = _triangle(first[part], second[part], d)
         distance[part] = d
-        angles[part, 0, 0] = _wrapped(direction + alpha)
-        angles[part, 1, 0] = _wrapped(direction - alpha)
-        angles[part, 0, 1] = -bend
-        angles[part, 1, 1] = bend
+        angles[part], outside[part] = elbow_angles(first[part], second[part], direction, d)
     reachable = outside <= _BORDER * (first + second)
     return TwoBoneAnswers(first, second, points, angles, distance, reachable, np.where(reachable, 0.0, outside), plane)
+
+
+def elbow_angles(l1: ArrayLike, l2: ArrayLike, direction: Array, distance: Array) -> tuple[Array, Array]:
+    """(`TwoBoneAnswers.angles` (N, 2, 2) [rad], how far each target lies outside the annulus, negative inside (N,) [m])
+    for targets in these directions [rad] at these distances [m]; nothing is checked.
+    """
+    alpha, bend, outside = _triangle(np.asarray(l1), np.asarray(l2), distance)
+    angles = np.empty((len(distance), 2, 2))
+    angles[:, 0, 0], angles[:, 1, 0] = _wrapped(direction + alpha), _wrapped(direction - alpha)
+    angles[:, 0, 1], angles[:, 1, 1] = -bend, bend
+    return angles, outside
 
 
 def _triangle(l1: Array, l2: Array, d: Array) -> tuple[Array, Array, Array]:

@@ -61,7 +61,7 @@ class Limits:
         return dataclasses.replace(self, lower=lower, upper=upper)
 
     def clip(self, q: Array) -> Array:
-        """The nearest configuration inside, entry by entry."""
+        """The nearest configurations (…, nq) inside, entry by entry."""
         return np.minimum(np.maximum(q, self.lower), self.upper)
 
     def contains(self, q: Array) -> bool:
@@ -69,11 +69,12 @@ class Limits:
         return bool(((q >= self.lower) & (q <= self.upper)).all())
 
     def wrap(self, q: Array) -> Array:
-        """`q` with the hinge angles that lie outside turned by whole turns, as near to their limits as they get."""
+        """`q` (…, nq), hinge angles that lie outside turned by whole turns, as near to their limits as they get."""
         outside = self.turning & ((q < self.lower) | (q > self.upper))
         if not outside.any():
             return q
-        middle = 0.5 * (self.lower[outside] + self.upper[outside])
+        entry = np.nonzero(outside)[-1]
+        middle = 0.5 * (self.lower[entry] + self.upper[entry])
         turn = 2.0 * math.pi
         wrapped = q.copy()
         wrapped[outside] -= turn * np.round((q[outside] - middle) / turn)

@@ -13,6 +13,7 @@ import pinocchio
 from numpy.typing import ArrayLike, NDArray
 
 from . import native
+from .at_once import attempt_at_once, lands_at_once
 from .attempts import Outcome, attempt_all
 from .checks import as_many, as_numbers, as_points, as_rotations, as_se3
 from .errors import InputError
@@ -74,6 +75,8 @@ def solve_many(
     starts = _starts(robot, None if nearest else q0, len(goals))
     if prepared.native is not None:
         answers = native.attempt_many(prepared.native, goals, starts, nearest, count)
+    elif lands_at_once(prepared.settings) and not nearest:
+        answers = attempt_at_once(prepared.settings, goals, starts)
     else:
         answers = _attempt_one_by_one(prepared, goals, starts, nearest)
     return Solutions(**vars(answers), total_time=time.perf_counter() - began, prepared=prepared, _goals=goals)
@@ -89,7 +92,7 @@ class Solutions(native.Answers):
         position_error: The largest of each question's targets [m]; NaN where none was asked for.
         orientation_error: The same [rad].
         iterations, joint_updates, restarts: Of each question, as in `Solution`.
-        time: Seconds that each one took.
+        time: Seconds that each one took; an equal share of them where all were answered at once.
         total_time: Seconds from call to answer.
         prepared: The kind of question.
     """
@@ -125,6 +128,7 @@ class Solutions(native.Answers):
             raise IndexError(f"there are {len(self)} solutions; got {index}")
         targets = native.targets_of(prepared.targets, self._goals[index])
         asked.kinematics.retarget(targets)
+        missed = self.status[index] is Status.UNREACHABLE
         outcome = Outcome(
             self.status[index],
             self.q[index].copy(),
@@ -132,7 +136,7 @@ class Solutions(native.Answers):
             int(self.iterations[index]),
             int(self.joint_updates[index]),
             int(self.restarts[index]),
-            shortfall(asked.kinematics, asked.limits) if self.status[index] is Status.UNREACHABLE else None,
+            shortfall(asked.kinematics, asked.limits, asked.tolerance.position) if missed else None,
             (),
             targets,
             float(self.time[index]),

@@ -8,6 +8,7 @@ from collections.abc import Mapping, Sequence
 from .reach import Shortfall
 from .state import Status
 from .targets import Target, TargetError, Tolerance, largest_of
+from .two_bone_robot import OffPlane
 
 __all__ = ["explain"]
 
@@ -19,6 +20,7 @@ def explain(
     tolerance: Tolerance,
     active: Mapping[str, str],
     proof: Shortfall | None,
+    off_plane: OffPlane | None,
     anything_moves: bool,
 ) -> str:
     """Why the solve ended, what is missing, and which joints sit at their limits.
@@ -30,6 +32,7 @@ def explain(
         tolerance: What counts as reached.
         active: Joint name → "lower", "upper" or "both".
         proof: Of a target out of reach.
+        off_plane: What the target lies beside a plane that its frame cannot leave.
         anything_moves: Whether any free joint moves any of the frames.
     """
     if status is Status.CONVERGED:
@@ -40,22 +43,41 @@ def explain(
     missed = _missed(targets, errors, tolerance)
     if not anything_moves:
         return f"no free joint moves {_frames(targets)}; {missed}"
-    if status is Status.UNREACHABLE and proof is not None:
-        frame = targets[proof.target].frame
-        if proof.inner:
-            side = f"inside the hole of {_length(proof.bound)} around its chain's first joint"
-        else:
-            side = f"beyond its chain's reach of {_length(proof.bound)}"
-        sentence = f"unreachable: the target of {frame} lies {_length(proof.distance)} {side}; {missed}"
-    else:
-        begin = {
-            Status.STALLED: "stalled",
-            Status.MAX_ITERATIONS: "out of iterations,",
-            Status.TIME_LIMIT: "out of time,",
-            Status.UNREACHABLE: "unreachable:",
-        }[status]
-        sentence = f"{begin} {missed}"
-    return "; ".join([sentence, *_limits(active)])
+    begin = {
+        Status.STALLED: "stalled",
+        Status.MAX_ITERATIONS: "out of iterations,",
+        Status.TIME_LIMIT: "out of time,",
+        Status.UNREACHABLE: "unreachable:",
+    }[status]
+    why = _out_of_reach(targets, tolerance, proof, off_plane)
+    first, *others = [*why, missed] if status is Status.UNREACHABLE else [missed, *why]
+    return "; ".join([f"{begin} {first}", *others, *_limits(active)])
+
+
+def _out_of_reach(
+    targets: Sequence[Target], tolerance: Tolerance, proof: Shortfall | None, off_plane: OffPlane | None
+) -> list[str]:
+    """Where a target lies that cannot be reached, as far as that is known."""
+    frame, places = targets[0 if proof is None else proof.target].frame, []
+    if proof is not None and proof.inner:
+        places.append(
+            f"{_length(proof.distance)} inside the hole of {_length(proof.bound)} around its chain's first joint"
+        )
+    elif proof is not None:
+        places.append(f"{_length(proof.distance)} beyond its chain's reach of {_length(proof.bound)}")
+    if off_plane is not None and abs(off_plane.distance) > tolerance.position:
+        places.append(f"{_length(abs(off_plane.distance))} off the plane in which {frame} moves, {_normal(off_plane)}")
+    return [f"the target of {frame} lies {' and '.join(places)}"] if places else []
+
+
+def _normal(plane: OffPlane) -> str:
+    """The plane's normal: by an axis' name where it is one, else by its three numbers."""
+    whose = "the world" if plane.relative_to is None else f"frame {plane.relative_to!r}"
+    numbers = [round(float(x), 3) + 0.0 for x in plane.normal]  # + 0.0: no −0
+    for name, number in zip("xyz", numbers, strict=True):
+        if abs(number) == 1.0:
+            return f"whose normal is the {name} axis of {whose}"
+    return f"whose normal is ({', '.join(f'{x:g}' for x in numbers)}) in the axes of {whose}"
 
 
 def _missed(targets: Sequence[Target], errors: Sequence[TargetError], tolerance: Tolerance) -> str:
@@ -97,7 +119,9 @@ def _length(metres: float) -> str:
         return f"{100.0 * metres:.3g} cm"
     if metres >= 1e-5:
         return f"{1000.0 * metres:.2g} mm"
-    return f"{1e6 * metres:.2g} µm" if metres >= 1e-7 else f"{1e6 * metres:.2f} µm"
+    if metres >= 1e-8:
+        return f"{1e6 * metres:.2g} µm"
+    return "less than 0.01 µm"
 
 
 def _angle(radians: float) -> str:

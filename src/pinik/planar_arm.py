@@ -1,28 +1,27 @@
-"""Two hinges in a plane, with ranges: both elbows, and the nearest that the ranges leave."""
+"""Two hinges in a plane, with ranges, for any number of points: both elbows, and the nearest that the ranges leave."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from .closed_form import ELBOWS, two_bone
+from .closed_form import ELBOWS, elbow_angles
 
-__all__ = ["ROUNDING", "Elbow", "PlanarArm", "Range", "Turn", "turn"]
+__all__ = ["ROUNDING", "PlanarArm", "Turns", "turn"]
 
 ROUNDING = 1e-12
 """Of the lengths that enter; and [rad] of an angle at the end of its range."""
 
-Range = tuple[float, float]
-Angles = tuple[float, float]
+Array = NDArray[np.float64]
+Truths = NDArray[np.bool_]
 
 
-class Turn(NamedTuple):
-    """An angle brought near to where a joint stands, and into its range.
+class Turns(NamedTuple):
+    """Angles brought near to where joints stand, and into their ranges.
 
     Attributes:
         angle: The equal angle nearest to where the joint stands [rad].
@@ -31,23 +30,9 @@ class Turn(NamedTuple):
         fits: Whether it is an equal one, but for rounding.
     """
 
-    angle: float
-    inside: float
-    fits: bool
-
-
-class Elbow(NamedTuple):
-    """One way to hold the arm.
-
-    Attributes:
-        name: "up" or "down".
-        values: The two joints' values [rad].
-        missed: How far the tip then is from the target [m].
-    """
-
-    name: str
-    values: Angles
-    missed: float
+    angle: Array
+    inside: Array
+    fits: Truths
 
 
 @dataclass(frozen=True)
@@ -66,79 +51,111 @@ class PlanarArm:
     bend: float = 0.0
     sense: float = 1.0
 
-    def joint_angles(self, angles: ArrayLike) -> NDArray[np.float64]:
+    def joint_angles(self, angles: ArrayLike) -> Array:
         """(q₁, q₂) for (θ₁, θ₂) [rad]: (…, 2) from (…, 2)."""
-        first, second = np.moveaxis(np.asarray(angles, dtype=np.float64), -1, 0)
-        return np.stack([first, self.sense * (second - self.bend)], axis=-1)
+        values = np.array(angles, dtype=np.float64)
+        values[..., 1] = self.sense * (values[..., 1] - self.bend)
+        return values
 
-    def elbows(self, point: Angles, now: Angles, slack: float) -> list[Elbow]:
-        """Both answers of `two_bone` for a point [m], up first, ranges aside.
+    def elbows(self, points: Array, now: Array, slack: Array) -> tuple[Array, Array]:
+        """Both answers of `two_bone`, up first, ranges aside.
 
-        A point within `slack` [m] of the base leaves the first joint free, and it stays where it is `now` [rad].
+        A point within `slack` (N,) [m] of the base leaves the first joint free, and it stays where it is.
+
+        Args:
+            points: Where the tips should be (N, 2) [m].
+            now: Where the joints stand (N, 2) [rad].
+            slack: (N,) [m].
+
+        Returns:
+            The joints' values (N, 2 elbows, 2) [rad], and what both tips then miss their point by (N,) [m].
         """
-        at_base = math.hypot(*point) <= slack
-        found = two_bone(self.l1, self.l2, [(0.0, 0.0) if at_base else point])
-        return [
-            Elbow(name, (now[0] if at_base else first, second), float(found.shortfall[0]))
-            for name, (first, second) in zip(ELBOWS, self.joint_angles(found.angles[0]).tolist(), strict=True)
-        ]
+        x, y = points.T
+        distance = np.hypot(x, y)
+        at_base = distance <= slack
+        distance[at_base] = 0.0
+        angles, outside = elbow_angles(self.l1, self.l2, np.arctan2(y, x), distance)
+        values = self.joint_angles(angles)
+        values[at_base, :, 0] = now[at_base, :1]
+        return values, np.maximum(outside, 0.0)
 
-    def nearest(self, point: Angles, now: Angles, ranges: Sequence[Range], slack: float, elbow: str = "") -> Angles:
-        """The joints' values inside their ranges [rad] that bring the tip nearest to a point [m].
+    def nearest(self, points: Array, now: Array, ranges: Array, slack: Array, elbow: str) -> Array:
+        """The joints' values (N, 2) inside their ranges [rad] that bring the tips nearest to their points.
 
         Where the minimum lies inside, it is one of the two elbows; else one joint is at an end of its range, and the
         other one turns as near to the point as it may. Of equally near ones `elbow` is taken, and of these the nearest
         to `now`.
+
+        Args:
+            points, now, slack: As for `elbows`.
+            ranges: The joints' lowest and highest values (N, 2 joints, 2) [rad], infinite where there are none.
+            elbow: "up", "down", or anything else for neither.
         """
-        inside = []
-        for way in self.elbows(point, now, slack):
-            turns = [turn(*each) for each in zip(way.values, ranges, now, strict=True)]
-            if all(each.fits for each in turns):
-                inside.append(way._replace(values=(turns[0].inside, turns[1].inside)))
-        if not inside:
-            at_ends = self._at_ends(point, now, ranges, slack)
-            least = min(way.missed for way in at_ends) + ROUNDING * (self.l1 + self.l2)
-            inside = [way for way in at_ends if way.missed <= least]
-        return min(inside, key=lambda way: (way.name != elbow, math.dist(way.values, now))).values
+        ways, _ = self.elbows(points, now, slack)
+        turns = turn(ways, ranges[:, np.newaxis], now[:, np.newaxis])
+        fit: Truths = np.all(turns.fits, axis=-1)
+        nearest = self._chosen(turns.inside, fit, now, elbow)
+        left = np.flatnonzero(~fit.any(axis=1))
+        if len(left):
+            ways, missed = self._at_ends(points[left], now[left], ranges[left], slack[left])
+            least = missed.min(axis=1, keepdims=True) + ROUNDING * (self.l1 + self.l2)
+            nearest[left] = self._chosen(ways, missed <= least, now[left], elbow)
+        return nearest
 
-    def _at_ends(self, point: Angles, now: Angles, ranges: Sequence[Range], slack: float) -> list[Elbow]:
-        x, y = point
-        found = []
-        for first in filter(math.isfinite, ranges[0]):
-            along, across = x - self.l1 * math.cos(first), y - self.l1 * math.sin(first)
-            wanted = self.sense * (math.atan2(across, along) - first - self.bend)
-            found.append((first, turn(wanted, ranges[1], now[1]).inside))
-        for second in filter(math.isfinite, ranges[1]):
-            tip_x, tip_y = self._tip(0.0, second)
-            wanted = now[0] if math.hypot(x, y) <= slack else math.atan2(y, x) - math.atan2(tip_y, tip_x)
-            found.append((turn(wanted, ranges[0], now[0]).inside, second))
-        return [
-            Elbow(
-                ELBOWS[math.sin(self.sense * values[1] + self.bend) >= 0.0],
-                values,
-                math.dist(point, self._tip(*values)),
-            )
-            for values in found
-        ]
+    def _chosen(self, ways: Array, allowed: Truths, now: Array, elbow: str) -> Array:
+        """Of the ways (N, k, 2) that are allowed (N, k): with that elbow, where one has it, the nearest to `now`."""
+        if elbow in ELBOWS:
+            down = np.sin(self.sense * ways[..., 1] + self.bend) >= 0.0
+            wanted = allowed & (down == (elbow == "down"))
+            allowed = np.where(wanted.any(axis=1, keepdims=True), wanted, allowed)
+        off = ways - now[:, np.newaxis]
+        best = np.where(allowed, np.hypot(off[..., 0], off[..., 1]), np.inf).argmin(axis=1)
+        return np.asarray(ways[np.arange(len(ways)), best])
 
-    def _tip(self, first: float, second: float) -> Angles:
-        both = first + self.sense * second + self.bend
-        return (
-            self.l1 * math.cos(first) + self.l2 * math.cos(both),
-            self.l1 * math.sin(first) + self.l2 * math.sin(both),
-        )
+    def _at_ends(self, points: Array, now: Array, ranges: Array, slack: Array) -> tuple[Array, Array]:
+        """With one joint at an end of its range, the other as near to the point as it may (N, 4, 2), and what that
+        misses (N, 4) [m], infinite where there is no such end."""
+        x, y = points[:, :1], points[:, 1:]
+        finite = np.isfinite(ranges)
+        first, second = np.moveaxis(np.where(finite, ranges, 0.0), 1, 0)  # (N, 2 ends) each
+        ways = np.empty((len(points), 4, 2))
+        direction = np.arctan2(y - self.l1 * np.sin(first), x - self.l1 * np.cos(first))
+        wanted = self.sense * (direction - first - self.bend)
+        ways[:, :2, 0], ways[:, :2, 1] = first, turn(wanted, ranges[:, 1:], now[:, 1:]).inside
+        straight = self._tip(np.stack([np.zeros_like(second), second], axis=-1))
+        wanted = np.arctan2(y, x) - np.arctan2(straight[..., 1], straight[..., 0])
+        wanted = np.where(np.hypot(x, y) <= slack[:, np.newaxis], now[:, :1], wanted)
+        ways[:, 2:, 0], ways[:, 2:, 1] = turn(wanted, ranges[:, :1], now[:, :1]).inside, second
+        off = self._tip(ways) - points[:, np.newaxis]
+        return ways, np.where(finite.reshape(-1, 4), np.hypot(off[..., 0], off[..., 1]), np.inf)
+
+    def _tip(self, values: Array) -> Array:
+        """Where the tip is (…, 2) [m] for the joints' values (…, 2) [rad]."""
+        first = values[..., 0]
+        both = first + self.sense * values[..., 1] + self.bend
+        x = self.l1 * np.cos(first) + self.l2 * np.cos(both)
+        return np.stack([x, self.l1 * np.sin(first) + self.l2 * np.sin(both)], axis=-1)
 
 
-def turn(wanted: float, room: Range, now: float) -> Turn:
-    """A hinge's angle turned by whole turns into its range, near to where it stands `now`; all in rad."""
-    low, high = room
-    angle = now + math.remainder(wanted - now, math.tau)
-    inside = angle
-    if angle > high:
-        inside = high - (high - angle) % math.tau
-    elif angle < low:
-        inside = low + (angle - low) % math.tau
-    if low <= inside <= high:
-        return Turn(angle, inside, True)
-    gap, end = min((abs(math.remainder(angle - end, math.tau)), end) for end in room if math.isfinite(end))
-    return Turn(angle, end, gap <= ROUNDING)
+def turn(wanted: Array, ranges: Array, now: Array) -> Turns:
+    """Hinges' angles turned by whole turns into their ranges (…, 2), near to where they stand `now`; all in rad."""
+    low, high = ranges[..., 0], ranges[..., 1]
+    angle = now + _within_half_a_turn(wanted - now)
+    is_inside: Truths = (low <= angle) & (angle <= high)
+    if is_inside.all():
+        return Turns(angle, angle, is_inside)
+    with np.errstate(invalid="ignore"):  # infinite ends have no multiples, and nothing lies beyond them
+        inside = np.where(angle > high, high - (high - angle) % math.tau, angle)
+        inside = np.where(angle < low, low + (angle - low) % math.tau, inside)
+        gaps = np.abs(_within_half_a_turn(angle[..., np.newaxis] - ranges))
+    gaps = np.where(np.isfinite(ranges), gaps, np.inf)
+    is_inside = (low <= inside) & (inside <= high)
+    end = np.where(gaps[..., 0] <= gaps[..., 1], low, high)
+    return Turns(angle, np.where(is_inside, inside, end), is_inside | (gaps.min(axis=-1) <= ROUNDING))
+
+
+def _within_half_a_turn(angle: Array) -> Array:
+    """The equal angle in [−π, π]; nothing is rounded that is there already."""
+    rest = np.fmod(angle, math.tau)
+    rest = np.where(rest > math.pi, rest - math.tau, rest)
+    return np.where(rest < -math.pi, rest + math.tau, rest)

@@ -56,8 +56,8 @@ class _Span(NamedTuple):
     distance: _Range
 
 
-def shortfall(kinematics: Kinematics, limits: Limits) -> Shortfall | None:
-    """The target that lies furthest outside its chain's reach, if one does.
+def shortfall(kinematics: Kinematics, limits: Limits, slack: float = 0.0) -> Shortfall | None:
+    """The target that lies furthest outside its chain's reach, if one does by more than `slack` [m].
 
     The bounds hold for any values of the joints. A chain is cut into spans: from one joint's origin to the next, or
     to the one after it as the joint between them turns through its limits. The longest these get add up to the
@@ -68,7 +68,7 @@ def shortfall(kinematics: Kinematics, limits: Limits) -> Shortfall | None:
         found = _term_shortfall(index, term, kinematics.model, limits)
         if found is not None and (worst is None or found.distance > worst.distance):
             worst = found
-    return worst
+    return None if worst is None or worst.distance <= slack else worst
 
 
 def _term_shortfall(index: int, term: TargetTerm, model: pinocchio.Model, limits: Limits) -> Shortfall | None:

@@ -16,14 +16,16 @@ from .state import State, Status
 from .stepping import advance
 from .targets import Target, Tolerance
 
-__all__ = ["TO_THE_END", "compiled_for", "run"]
+__all__ = ["AT_REST", "TO_THE_END", "compiled_for", "run"]
 
 Array = NDArray[np.float64]
 
 TO_THE_END = Patience(50, 1e-4)
 """How patiently a run is followed to its end when no other attempt waits."""
 
-_AT_REST = 1e-9  # what an exact method's rounding may still move
+AT_REST = 1e-9
+"""What an exact method's rounding may still move a joint by [rad or m]."""
+
 _OF_THE_DISTANCE = math.sqrt(0.1)  # what a bold run's damping goes by
 
 
@@ -78,7 +80,7 @@ def run(
             milestone, since = at.residual, 0
         if reached:
             status = Status.CONVERGED
-        elif since >= patience.iterations or rests:
+        elif rests or (since >= patience.iterations and not solver.exact):
             status = Status.STALLED
         else:
             status = Status.MAX_ITERATIONS if iteration >= last else None
@@ -92,7 +94,7 @@ def run(
             return
         seen = at._replace(distance=_OF_THE_DISTANCE * at.distance) if bold else at
         q, updated = advance(solver, kinematics, box, seen, tolerance, scale)
-        there, rests = kinematics.linearize(q), solver.exact and bool(np.abs(q - at.q).max() < _AT_REST)
+        there, rests = kinematics.linearize(q), solver.exact and bool(np.abs(q - at.q).max() < AT_REST)
         if not downhill or isinstance(solver, SweepingSolver):
             at = there
         elif there.residual < at.residual:

@@ -115,9 +115,15 @@ class Solution:
     def message(self) -> str:
         """The status in one sentence, with what is missing and which joints sit at their limits."""
         asked, outcome = self._asked, self._outcome
-        moves = bool(asked.kinematics.free.any())
         return explain(
-            outcome.status, self.targets, outcome.errors, asked.tolerance, self._sides_of_limits, outcome.proof, moves
+            outcome.status,
+            self.targets,
+            outcome.errors,
+            asked.tolerance,
+            self._sides_of_limits,
+            outcome.proof,
+            asked.solver.off_plane(self.robot, self.targets),
+            anything_moves=bool(asked.kinematics.free.any()),
         )
 
     @cached_property

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from .robot import Robot
 from .targets import NO_DIRECTION, Target, TargetError, largest_of
 
-__all__ = ["State", "Status", "measure_errors"]
+__all__ = ["State", "Status", "measure_errors", "measure_positions"]
 
 Array = NDArray[np.float64]
 
@@ -67,6 +67,20 @@ class State(NamedTuple):
 def measure_errors(robot: Robot, targets: Sequence[Target], q: Array) -> tuple[TargetError, ...]:
     """Each target's error at `q`, by plain forward kinematics and nothing that the solvers use."""
     return tuple(_measure(robot, target, q) for target in targets)
+
+
+def measure_positions(robot: Robot, target: Target, q: Array) -> Array:
+    """Where a target's frame, or the tool in it, is at many configurations (N, nq), by the same: (N, 3) [m]."""
+    model, data, frame = robot.model, robot.data, robot.frame_id(target.frame)
+    reference = None if target.relative_to is None else robot.frame_id(target.relative_to)
+    positions = np.empty((len(q), 3))
+    for position, configuration in zip(positions, q, strict=True):
+        pinocchio.forwardKinematics(model, data, configuration)
+        placement = pinocchio.updateFramePlacement(model, data, frame)
+        if reference is not None:
+            placement = pinocchio.updateFramePlacement(model, data, reference).actInv(placement)
+        position[:] = placement.translation if target.tool is None else placement.act(target.tool.translation)
+    return positions
 
 
 def _measure(robot: Robot, target: Target, q: Array) -> TargetError:

@@ -3,28 +3,44 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from typing import NamedTuple
 
 import numpy as np
 import pinocchio
 from numpy.typing import ArrayLike, NDArray
 
 from .checks import as_point, as_points
+from .closed_form import ELBOWS
 from .errors import InputError
 from .joint import Joint
 from .limits import Limits
-from .planar_arm import ROUNDING, PlanarArm, Range, turn
+from .planar_arm import ROUNDING, PlanarArm, turn
 from .robot import Robot
 from .targets import Target
 
-__all__ = ["TwoBone", "TwoBoneConfigurations"]
+__all__ = ["OffPlane", "TwoBone", "TwoBoneConfigurations"]
 
 Array = NDArray[np.float64]
 
 _LARGEST_TILT = 1e-5  # [rad]: what a URDF's 1.5708 or 3.14159 may turn an axis away by
 _NO_LENGTH = 1e-9  # of the longer bone
+_MOST_NAMED = 3  # joints in the way
+
+
+class OffPlane(NamedTuple):
+    """What a target lies beside the plane that its frame cannot leave.
+
+    Attributes:
+        distance: Along the normal, signed [m].
+        normal: The plane's (3,), of unit length.
+        relative_to: The frame in whose axes the normal is; None for the world.
+    """
+
+    distance: float
+    normal: Array
+    relative_to: str | None
 
 
 @dataclass(frozen=True, eq=False)
@@ -188,73 +204,83 @@ class TwoBone:
         """
         robot, point = self.robot, as_point(position, "position")
         start = robot.neutral() if q0 is None else robot.check_configuration(q0, "q0")
-        ranges, now, slack = self.ranges(Limits.of(robot, limits)), self._now(start), self._slack(point)
-        x, y, out_of_plane = self._seen(point)
-        told = []
-        for elbow in self._arm.elbows((x, y), now, slack):
-            turns = [turn(*each) for each in zip(elbow.values, ranges, now, strict=True)]
-            fits = all(each.fits for each in turns)
-            values = [each.inside if fits else each.angle for each in turns]
-            told.append((not fits, math.dist(values, now), elbow.name, self._configuration(values, start)))
-            shortfall = math.hypot(elbow.missed, out_of_plane)
-        told.sort(key=lambda each: each[:2])
-        q = np.array([each[3] for each in told])
-        nearest = self.nearest(point, start, ranges)
+        ranges, now = self.ranges(Limits.of(robot, limits)), self.angles_at(start)
+        (slack,), (flat, beside) = self._slack(point[np.newaxis]), self.in_plane(point[np.newaxis])
+        ways, missed = self._arm.elbows(flat, now[np.newaxis], slack)
+        turns = turn(ways[0], ranges, now)
+        inside: NDArray[np.bool_] = np.all(turns.fits, axis=-1)
+        values = np.where(inside[:, np.newaxis], turns.inside, turns.angle)
+        order = np.lexsort([np.hypot(*(values - now).T), ~inside])
+        q = self._configurations(values[order], np.tile(start, (2, 1)))
+        nearest = self.nearest(point[np.newaxis], start[np.newaxis], ranges[np.newaxis])[0]
+        shortfall = math.hypot(float(missed[0]), float(beside[0]))
         return TwoBoneConfigurations(
             q=q,
-            elbows=(told[0][2], told[1][2]),
-            inside=np.array([not outside for outside, *_ in told]),
+            elbows=(ELBOWS[order[0]], ELBOWS[order[1]]),
+            inside=inside[order],
             errors=np.array([self._error(each, point) for each in q]),
-            reachable=shortfall <= slack,
+            reachable=bool(shortfall <= slack),
             shortfall=shortfall,
-            out_of_plane=out_of_plane,
+            out_of_plane=float(beside[0]),
             nearest=nearest,
             nearest_error=self._error(nearest, point),
         )
 
-    def ranges(self, limits: Limits) -> tuple[Range, Range]:
-        """The two joints' (low, high) [rad], infinite where there are none."""
-        first, second = (
-            (float(limits.lower[joint.idx_q]), float(limits.upper[joint.idx_q])) if joint.nq == 1 else _EVERYWHERE
-            for joint in self.joints
+    def ranges(self, limits: Limits) -> Array:
+        """The two joints' lowest and highest angles (2 joints, 2) [rad], infinite where there are none."""
+        entries = [joint.idx_q for joint in self.joints]  # of a (cos, sin) pair neither has bounds
+        return np.stack([limits.lower[entries], limits.upper[entries]], axis=-1)
+
+    def angles_at(self, q: Array) -> Array:
+        """The two joints' angles (…, 2) [rad] at configurations (…, nq)."""
+        return np.stack(
+            [
+                np.arctan2(q[..., joint.idx_q + 1], q[..., joint.idx_q]) if joint.nq == 2 else q[..., joint.idx_q]
+                for joint in self.joints
+            ],
+            axis=-1,
         )
-        return first, second
 
-    def nearest(self, position: Array, q: Array, ranges: Sequence[Range], elbow: str = "nearest") -> Array:
-        """The configuration inside `ranges` (two, low and high) [rad] whose frame is nearest to a target.
+    def nearest(self, positions: Array, q: Array, ranges: Array, elbow: str = "nearest") -> Array:
+        """For each of N targets, the configuration inside `ranges` whose frame is nearest to it, for many at once.
 
-        Where several come as near, `elbow` says which: "up", "down", or "nearest" to `q` (nq,).
+        Args:
+            positions: (N, 3) [m], in the axes of `relative_to`.
+            q: (N, nq) what the other joints stand at.
+            ranges: The two joints' lowest and highest angles (N, 2 joints, 2) [rad].
+            elbow: Which is taken where several come as near: "up", "down", or "nearest" to `q`.
+
+        Returns:
+            (N, nq).
         """
-        x, y, _ = self._seen(position)
-        return self._configuration(self._arm.nearest((x, y), self._now(q), ranges, self._slack(position), elbow), q)
+        flat = (positions - self.origin) @ self.axes[:, :2]
+        values = self._arm.nearest(flat, self.angles_at(q), ranges, self._slack(positions), elbow)
+        return self._configurations(values, q.copy())
+
+    def off_plane(self, position: Array) -> OffPlane:
+        """What a position (3,) [m] lies beside the plane in which the frame moves."""
+        return OffPlane(float((position - self.origin) @ self.axes[:, 2]), self.axes[:, 2], self.relative_to)
 
     @cached_property
     def _arm(self) -> PlanarArm:
         return PlanarArm(self.l1, self.l2, self.bend, self.sense)
 
-    def _now(self, q: Array) -> tuple[float, float]:
-        return self.joints[0].angle(q), self.joints[1].angle(q)
+    def _slack(self, positions: Array) -> Array:
+        """What rounding, and axes not quite parallel, may move the frame by on its way to each (N, 3) [m]."""
+        lengths = self.l1 + self.l2 + np.linalg.norm(self.origin) + np.linalg.norm(positions, axis=-1)
+        return np.asarray(ROUNDING * lengths + self.tilt * self.l2)
 
-    def _seen(self, position: Array) -> tuple[float, float, float]:
-        x, y, z = ((position - self.origin) @ self.axes).tolist()
-        return x, y, z
-
-    def _slack(self, position: Array) -> float:
-        """What rounding, and axes not quite parallel, may move the frame by [m]."""
-        lengths = self.l1 + self.l2 + float(np.linalg.norm(self.origin)) + float(np.linalg.norm(position))
-        return ROUNDING * lengths + self.tilt * self.l2
-
-    def _configuration(self, values: Sequence[float], q: Array) -> Array:
-        there = q.copy()
-        for joint, value in zip(self.joints, values, strict=True):
-            joint.set_angle(there, value)
-        return there
+    def _configurations(self, values: Array, q: Array) -> Array:
+        """`q` (N, nq) with the two joints' angles (N, 2) [rad] written into it."""
+        for joint, angles in zip(self.joints, values.T, strict=True):
+            if joint.nq == 2:
+                q[:, joint.idx_q], q[:, joint.idx_q + 1] = np.cos(angles), np.sin(angles)
+            else:
+                q[:, joint.idx_q] = angles
+        return q
 
     def _error(self, q: Array, position: Array) -> float:
         return float(np.linalg.norm(self.position(q) - position))
-
-
-_EVERYWHERE: Range = (-math.inf, math.inf)
 
 
 def _two_hinges(robot: Robot, frame: str, relative_to: str | None) -> tuple[Joint, Joint]:
@@ -271,7 +297,9 @@ def _two_hinges(robot: Robot, frame: str, relative_to: str | None) -> tuple[Join
     if not still <= moving:
         raise _refusal(frame, f"{relative_to!r} has joints of its own that move it relative to {frame!r}")
     movers = [joint for joint in robot.joints if joint.id in moving - still]
-    names = ", ".join(f"{joint.name!r} ({joint.kind})" for joint in movers)
+    names = ", ".join(f"{joint.name!r} ({joint.kind})" for joint in movers[:_MOST_NAMED])
+    if len(movers) > _MOST_NAMED:
+        names += f" and {len(movers) - _MOST_NAMED} more"
     if len(movers) != 2:
         number = {0: "no joint moves", 1: "only one joint moves"}.get(len(movers), f"{len(movers)} joints move")
         raise _refusal(frame, f"{number} it{seen}" + (f": {names}" if movers else ""))

@@ -59,6 +59,12 @@ def test_the_address_is_on_stdout_and_ctrl_c_ends_it(environment):
         listening.bind(("127.0.0.1", port))
 
 
+def test_the_closed_form_is_one_of_the_methods_where_it_can_be(environment):
+    with running(environment, "two_link", "--methods", "two_bone,dls", "--port", "0") as (_, address):
+        shown = state(address)
+    assert [one["method"] for one in shown["instances"]] == ["two_bone", "dls"]
+
+
 def test_every_option_arrives(environment):
     options = ["--root", "planar", "--methods", "dls,pinv", "--view", "1", "--motion", "random", "--host", "localhost"]
     with running(environment, "two_link", *options, "--port", "0") as (_, address):
@@ -94,6 +100,11 @@ def test_a_method_of_ones_own_and_a_file(environment, tmp_path):
         (["--methods", "ccd,,dls"], 2, "no method ''"),
         (["--methods", "ccd,ccd,ccd,ccd,ccd"], 2, "one to four methods; got 5"),
         (["--methods", "nowhere:Solver"], 2, "nowhere"),
+        (
+            ["--methods", "two_bone,dls"],
+            2,
+            "two_bone cannot chase a ball here: frame 'tip' is not moved by two parallel",
+        ),
         (["--view", "3"], 2, "1, 2 or 4 instances; got 3"),
         (["--view", "two"], 2, "'two' is not a whole number; see 'pinik live --help'"),
         (["--port", "70000"], 2, "a port is a number from 0 to 65535; got 70000"),

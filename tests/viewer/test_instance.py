@@ -309,6 +309,38 @@ def test_a_step_of_the_wrong_shape_is_a_failure_in_words(arm):
     assert "(12,)" in one.verdict().message
 
 
+def test_a_solver_that_refuses_a_question_waits_for_another(arm):
+    asked = []
+
+    @dataclass(frozen=True, kw_only=True)
+    class Picky(pinik.DampedLeastSquares):
+        name = "picky"
+
+        def check(self, kinematics):
+            asked.append(len(kinematics.targets))
+            if len(kinematics.targets) > 1:
+                raise pinik.InputError("one at a time")
+
+    one = instance(arm, Picky)
+    tip, bone = pinik.Target("tip", REACHABLE), pinik.Target("bone2", [0.0, 0.0, 0.3])
+    one.step([tip, bone])
+    assert (one.status, one.counted, one.last) == ("REFUSED", False, None)
+    assert one.verdict() == ("REFUSED", "waiting: one at a time", None, None, ())
+    one.step([tip, bone])
+    one.step([tip, pinik.Target("bone2", [0.0, 0.1, 0.3])])
+    assert (one.status, one.statistics.summary().steps) == ("REFUSED", 0)
+    assert asked == [2]  # the same kind of question is asked once: compiling it takes milliseconds
+    one.step([tip])
+    assert (one.status, one.statistics.summary().steps) == ("CONVERGED", 1)
+    q = one.q
+    one.step([tip, bone])
+    assert (one.status, one.q is q) == ("REFUSED", True)
+    one.step([])
+    assert one.verdict().message == "nothing is asked for"
+    one.step([tip])
+    assert one.status == "CONVERGED"
+
+
 def test_a_jump_of_a_free_root_is_measured_in_its_tangent():
     lion = load_quietly("lion", root="free_flyer")
     one = instance(lion, "dls", until_reached=False, at_most=1)
@@ -319,4 +351,5 @@ def test_a_jump_of_a_free_root_is_measured_in_its_tangent():
 
 
 def test_every_status_a_solve_can_have_is_listed():
-    assert STATUSES == ("IDLE", "CONVERGED", "STALLED", "MAX_ITERATIONS", "TIME_LIMIT", "UNREACHABLE", "FAILED")
+    solved = ("CONVERGED", "STALLED", "MAX_ITERATIONS", "TIME_LIMIT", "UNREACHABLE")
+    assert ("IDLE", *solved, "FAILED", "REFUSED") == STATUSES

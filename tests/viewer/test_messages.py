@@ -196,6 +196,18 @@ def test_view_method_and_parameters(arm):
     assert [one.solver.name for one in shown.instances] == ["ccd", "jt", "pinv", "dls"]
 
 
+def test_the_closed_form_where_it_can_be_and_nowhere_else(arm, two_link):
+    shown = Session(two_link, clock=Clock())
+    apply(shown, {"type": "method", "instance": 2, "method": "two_bone"})
+    apply(shown, {"type": "parameter", "instance": 2, "name": "elbow", "value": "down"})
+    assert shown.instances[2].solver == pinik.TwoBoneSolver(elbow="down")
+    other = fresh(arm)
+    before = snapshot(other)
+    with pytest.raises(pinik.InputError, match="two_bone cannot chase a ball here: frame 'tip' is not moved by two"):
+        apply(other, {"type": "method", "instance": 2, "method": "two_bone"})
+    assert snapshot(other) == before
+
+
 def test_what_all_instances_share(arm):
     assert not after(arm, "limits", on=False).chase.limits
     chase = after(arm, "iterations", until_reached=False, at_most=7).chase

@@ -84,7 +84,7 @@ def test_one_to_four_methods(arm, methods):
 
 def test_methods_of_ones_own_and_their_joints_are_checked_at_once(arm):
     own = session(arm, [Broken, pinik.CCD(stiffness={arm.joint_names[0]: 0.5})])
-    assert list(own.methods) == ["ccd", "jt", "pinv", "dls", "broken"]
+    assert list(own.methods) == ["ccd", "jt", "pinv", "dls", "two_bone", "broken"]
     with pytest.raises(pinik.UnknownNameError, match="no joint 'nope'"):
         session(arm, [pinik.CCD(stiffness={"nope": 0.5})])
     with pytest.raises(pinik.UnknownNameError, match="no method 'nope'"):

@@ -414,6 +414,38 @@ def test_a_set_up_with_another_robot_waits_for_it(stage):
     assert "error" not in tab.kinds
 
 
+def test_tabs_are_told_why_a_method_makes_room_for_another(two_link):
+    stage = Stage(two_link, ["ccd", "two_bone"])
+    tab, other = stage.join(), stage.join()
+    stage.later.do_all()
+    stage.says(tab, "robot", name="arm", root="fixed")
+    stage.later.do_all()
+    stage.play(tab, ticks=1)
+    for each in (tab, other):
+        (error,) = each.of("error")
+        assert error["message"].startswith(
+            "instance 2 goes on with dls: two_bone cannot chase a ball here: frame 'tip'"
+        )
+    state = tab.last("state")
+    assert ([one["method"] for one in state["instances"]], "two_bone" in state["methods"]) == (["ccd", "dls"], False)
+
+
+def test_a_set_up_that_names_other_methods_is_no_news(two_link):
+    stage = Stage(two_link, ["ccd", "two_bone"])
+    tab = stage.join()
+    stage.says(tab, "setup", setup="robot=arm&methods=ccd,jt")
+    stage.later.do_all()
+    assert "error" not in tab.kinds
+    stage.says(tab, "setup", setup="robot=two_link&methods=two_bone,dls")
+    stage.later.do_all()
+    assert [one.solver.name for one in stage.show.session.seen] == ["two_bone", "dls"]
+    stage.says(tab, "setup", setup="robot=lion&methods=two_bone,dls")
+    stage.later.do_all()
+    stage.play(tab, ticks=1)
+    assert "two_bone cannot chase a ball here: frame 'left_fore_paw'" in tab.last("error")["message"]
+    assert tab.last("state")["robot"] == "lion"
+
+
 def test_a_faulty_set_up_of_another_robot_shows_the_robot_and_says_what_was_wrong(stage):
     tab = stage.join()
     stage.says(tab, "setup", setup="robot=arm&view=3")

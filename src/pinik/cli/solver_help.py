@@ -6,20 +6,19 @@ import dataclasses
 import textwrap
 from typing import Any
 
-from ..solvers import CLOSED_FORMS, SOLVERS
+from ..solvers import known_methods
 
 __all__ = ["method_names", "solvers_help"]
 
 
 def method_names() -> str:
     """Every method's short name, as an option's metavar."""
-    return "|".join(SOLVERS | CLOSED_FORMS)
+    return "|".join(known_methods())
 
 
 def solvers_help() -> str:
     """Every method's parameters with unit, range and default, as rich markup."""
-    solvers = SOLVERS | CLOSED_FORMS
-    lines = {name: [_line(field) for field in dataclasses.fields(solver)] for name, solver in solvers.items()}
+    lines = {name: [_line(field) for field in dataclasses.fields(solver)] for name, solver in known_methods().items()}
     shared = [line for line in lines["dls"] if all(line in others for others in lines.values())]
     blocks = ["Parameters for --param, by method:"]
     for name, own in lines.items():

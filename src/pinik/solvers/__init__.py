@@ -27,6 +27,7 @@ __all__ = [
     "Solver",
     "SweepingSolver",
     "TwoBoneSolver",
+    "known_methods",
     "make_solver",
     "parameter",
 ]
@@ -38,6 +39,11 @@ SOLVERS: dict[str, type[Solver]] = {
 
 CLOSED_FORMS: dict[str, type[Solver]] = {TwoBoneSolver.name: TwoBoneSolver}
 """The same for methods that can do only some robots, and refuse the others with a reason."""
+
+
+def known_methods() -> dict[str, type[Solver]]:
+    """Short name → class of every method: those for any robot, then the closed forms."""
+    return SOLVERS | {name: solver for name, solver in CLOSED_FORMS.items() if name not in SOLVERS}
 
 
 def make_solver(method: str | type[Solver] | Solver, **parameters: Any) -> Solver:
@@ -69,7 +75,7 @@ def _is_complete(method: object) -> TypeGuard[type[Solver]]:
 
 
 def _class_by_name(name: str) -> Any:
-    known = SOLVERS | {name: solver for name, solver in CLOSED_FORMS.items() if name not in SOLVERS}
+    known = known_methods()
     if name in known:
         return known[name]
     module, colon, attribute = name.partition(":")

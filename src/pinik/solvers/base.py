@@ -6,7 +6,7 @@ import contextlib
 import dataclasses
 import math
 from abc import ABC, abstractmethod
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, ClassVar
 
@@ -18,7 +18,9 @@ from ..errors import InputError, UnknownNameError
 if TYPE_CHECKING:
     from ..kinematics import Kinematics, Linearization
     from ..limits import Limits
-    from ..targets import Tolerance
+    from ..robot import Robot
+    from ..targets import Target, Tolerance
+    from ..two_bone_robot import OffPlane
 
 __all__ = [
     "JacobianSolver",
@@ -116,8 +118,6 @@ class Solver:
     """Fresh starts after the first attempt, unless `solve` is told otherwise."""
     patience: ClassVar[Patience] = Patience(5, 0.05)
     """When an attempt counts as stalled."""
-    exact: ClassVar[bool] = False
-    """Whether it comes to rest only as near to the targets as can be, to 1e-5 of the chain's length."""
 
     max_step: float = max_step_parameter(math.inf)
     max_residual: float = parameter(
@@ -171,6 +171,15 @@ class Solver:
         Raises:
             InputError: It cannot; the message says why.
         """
+
+    def off_plane(self, robot: Robot, targets: Sequence[Target]) -> OffPlane | None:
+        """What the target lies beside a plane that its frame cannot leave, where the method knows of one."""
+        return None
+
+    @property
+    def exact(self) -> bool:
+        """Whether it comes to rest only as near to the targets as can be, to 1e-5 of the chain's length."""
+        return False
 
     @property
     def held(self) -> tuple[str, ...]:

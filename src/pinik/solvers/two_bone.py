@@ -3,18 +3,21 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
+import pinocchio
 
 from ..errors import InputError
-from ..two_bone_robot import TwoBone
+from ..two_bone_robot import OffPlane, TwoBone
 from .base import Array, SweepingSolver, parameter
 
 if TYPE_CHECKING:
     from ..kinematics import Kinematics
     from ..limits import Limits
+    from ..robot import Robot
     from ..targets import Target, Tolerance
 
 __all__ = ["TwoBoneSolver"]
@@ -32,7 +35,6 @@ class TwoBoneSolver(SweepingSolver):
     title = "Two bones, closed form"
     about = "exact and at once; for one position of a frame that two parallel hinges move"
     restarts = 0
-    exact = True
 
     elbow: str = parameter(
         "nearest", "which of two answers inside the limits is taken", choices=("nearest", "up", "down")
@@ -44,41 +46,61 @@ class TwoBoneSolver(SweepingSolver):
         Raises:
             InputError: It is not so; the message says why.
         """
-        _bones(kinematics)
+        _bones(kinematics.robot, kinematics.targets)
+
+    @property
+    def exact(self) -> bool:
+        """Yes, unless it looks at a part of the way alone, which limits may bar where there is a way around."""
+        return self.max_residual == math.inf
+
+    @property
+    def lands_at_once(self) -> bool:
+        """Whether the first sweep goes all the way."""
+        return self.exact and self.max_step == math.inf
+
+    def answers(self, positions: Array, q: Array, kinematics: Kinematics, limits: Limits) -> Array:
+        """The configurations (N, nq) inside the limits that come nearest to N positions (N, 3) [m], from `q` (N, nq).
+
+        Locked joints stay, as if their limits were where they stand.
+        """
+        bones, _ = _bones(kinematics.robot, kinematics.targets)
+        ranges = np.tile(bones.ranges(limits), (len(q), 1, 1))
+        for k, joint in enumerate(bones.joints):
+            if joint in kinematics.locked:
+                ranges[:, k] = bones.angles_at(q)[:, k, np.newaxis]
+        return limits.clip(bones.nearest(positions, q, ranges, self.elbow))
 
     def sweep(self, q: Array, kinematics: Kinematics, limits: Limits, tolerance: Tolerance) -> tuple[Array, int]:
-        """Both joints at once; locked ones stay, as if their limits were where they stand."""
-        bones, wanted = _bones(kinematics)
+        """Both joints at once, which is a whole step and counts no joint by itself."""
+        bones, wanted = _bones(kinematics.robot, kinematics.targets)
         if self.max_residual < math.inf:
             here = bones.position(q)
             distance = float(np.linalg.norm(wanted - here))
             if distance > self.max_residual:
                 wanted = here + (self.max_residual / distance) * (wanted - here)
-        now = [joint.angle(q) for joint in bones.joints]
-        ranges = [
-            (angle, angle) if joint in kinematics.locked else room
-            for joint, angle, room in zip(bones.joints, now, bones.ranges(limits), strict=True)
-        ]
-        there = bones.nearest(wanted, q, ranges, self.elbow)
-        changes = [
-            math.remainder(joint.angle(there) - angle, math.tau) if joint.nq == 2 else joint.angle(there) - angle
-            for joint, angle in zip(bones.joints, now, strict=True)
-        ]
-        largest = max(map(abs, changes))
-        if largest > self.max_step:
-            for joint, angle, change in zip(bones.joints, now, changes, strict=True):
-                joint.set_angle(there, angle + (self.max_step / largest) * change)
-        return there, sum(change != 0.0 for change in changes)
+        there: Array = self.answers(wanted[np.newaxis], q[np.newaxis], kinematics, limits)[0]
+        if self.max_step < math.inf:
+            step = pinocchio.difference(kinematics.model, q, there)
+            largest = float(np.abs(step).max())
+            if largest > self.max_step:
+                there = pinocchio.integrate(kinematics.model, q, (self.max_step / largest) * step)
+                if kinematics.held_entries is not None:
+                    there[kinematics.held_entries] = q[kinematics.held_entries]
+        return there, 0
+
+    def off_plane(self, robot: Robot, targets: Sequence[Target]) -> OffPlane:
+        """What the target lies beside the plane in which the two bones move."""
+        bones, wanted = _bones(robot, targets)
+        return bones.off_plane(wanted)
 
 
-def _bones(kinematics: Kinematics) -> tuple[TwoBone, Array]:
+def _bones(robot: Robot, targets: Sequence[Target]) -> tuple[TwoBone, Array]:
     """The two bones that are asked for, and where their end should be (3,) [m]."""
-    target: Target = kinematics.targets[0]
-    if len(kinematics.targets) > 1:
-        raise InputError(f"two_bone takes one target; got {len(kinematics.targets)}")
+    target = targets[0]
+    if len(targets) > 1:
+        raise InputError(f"two_bone takes one target; got {len(targets)}")
     if target.position is None or target.asks_orientation:
         raise InputError(f"two_bone takes a position alone; target {target.frame!r} asks for an orientation")
-    robot = kinematics.robot
     if target.tool is not None:
         return TwoBone.of(robot, target.frame, tool=target.tool, relative_to=target.relative_to), target.position
     key = "two_bone", target.frame, target.relative_to

@@ -12,6 +12,8 @@ import numpy as np
 import pinocchio
 from numpy.typing import NDArray
 
+from ..attempts import is_nearest
+from ..errors import InputError
 from ..kinematics import Kinematics
 from ..limits import Limits
 from ..message import explain
@@ -27,8 +29,9 @@ __all__ = ["STATUSES", "Chase", "Instance", "Verdict"]
 
 Array = NDArray[np.float64]
 
-STATUSES = ("IDLE", *(status.name for status in Status), "FAILED")
-"""How a step may end: as a solve, or with nothing asked for, or with a solver of one's own that raised."""
+STATUSES = ("IDLE", *(status.name for status in Status), "FAILED", "REFUSED")
+"""How a step may end: as a solve, or with nothing asked for, with a solver of one's own that raised, or with a question
+that the method cannot answer."""
 
 
 @dataclass(frozen=True)
@@ -64,6 +67,10 @@ class Verdict(NamedTuple):
     position_error: float | None
     orientation_error: float | None
     active_limits: tuple[str, ...]
+
+
+class _RefusedError(Exception):
+    """The method cannot do what is asked; why, in words."""
 
 
 class Instance:
@@ -125,19 +132,24 @@ class Instance:
         self._state: State | None = None
         self._kinematics: Kinematics | None = None
         self._targets: tuple[Target, ...] = ()
-        self._failure = ""
+        self._trouble = ""
 
     def step(self, targets: Sequence[Target], seconds: float = math.inf) -> None:
         """Chase the targets for one simulation step, for about `seconds` at most.
 
-        A step that begins with every target reached, and none moved, has nothing to do and does not count.
+        A step that begins with every target reached, and none moved, has nothing to do and does not count; nor does
+        one whose question the method refuses.
         """
         asked = tuple(targets)
         if not asked:
             self._forget_run("nothing is asked for")
             return
         moved = len(asked) != len(self._targets) or any(a is not b for a, b in zip(asked, self._targets, strict=True))
+        if moved and [target.shape for target in asked] != [target.shape for target in self._targets]:
+            self._forget_run()  # another kind of question, which the method may refuse, or no longer
         self._targets = asked
+        if self.status == "REFUSED":
+            return
         self.counted = moved or self.status != Status.CONVERGED.name
         if not self.counted:
             self.last = self.last._replace(time=0.0, iterations=0, joint_updates=0, jump=0.0) if self.last else None
@@ -145,11 +157,14 @@ class Instance:
         began, before, former = self._clock(), self.q, self._state
         try:
             state = self._run(asked, began + seconds)
+        except _RefusedError as refusal:
+            self.status, self.counted, self._trouble = "REFUSED", False, f"waiting: {refusal}"
+            return
         except Exception as error:  # a solver of the user's own may raise whatever it likes
             self._fail(error, self._clock() - began)
             return
         spent = self._clock() - began
-        self._state, self.q, self._failure = state, state.q, ""
+        self._state, self.q = state, state.q
         self.status = (state.status or Status.TIME_LIMIT).name
         off = largest_of(state.errors)
         self.last = StepFigures(
@@ -174,7 +189,10 @@ class Instance:
 
     def _begin(self, targets: tuple[Target, ...]) -> Generator[State, Target | Sequence[Target] | None, None]:
         solver, chase = self._solver, self._chase
-        self._kinematics = compiled_for(solver, self.robot, targets)
+        try:
+            self._kinematics = compiled_for(solver, self.robot, targets)
+        except InputError as error:
+            raise _RefusedError(str(error)) from None
         limits = Limits.of(self.robot, chase.limits)
         start = limits.clip(limits.wrap(self.q))
         most = solver.max_iterations if chase.until_reached else chase.at_most
@@ -183,7 +201,7 @@ class Instance:
     def _fail(self, error: Exception, spent: float) -> None:
         """A step that the solver did not survive counts as one that missed."""
         self._forget_run()
-        self._failure = f"the solver failed: {type(error).__name__}: {error}"
+        self._trouble = f"the solver failed: {type(error).__name__}: {error}"
         self.last = StepFigures(spent, 0, 0, reached=False, error=None, jump=0.0)
         self.status, self.counted = "FAILED", True
         self.statistics.add(self.last)
@@ -199,8 +217,8 @@ class Instance:
 
     def verdict(self) -> Verdict:
         """Where it stands, with the errors recomputed by plain forward kinematics, and why a target is missed."""
-        if self._failure:
-            return Verdict("FAILED", self._failure, None, None, ())
+        if self._trouble:
+            return Verdict(self.status, self._trouble, None, None, ())
         if self._kinematics is None or not self._targets:
             return Verdict("IDLE", self._idle, None, None, ())
         kinematics, tolerance = self._kinematics, self._chase.tolerance
@@ -210,8 +228,9 @@ class Instance:
         if all(error.within(tolerance) for error in errors):
             status = Status.CONVERGED
         else:
-            proof = shortfall(kinematics, Limits.of(self.robot, self._chase.limits))
-            if proof is not None and proof.distance > tolerance.position:
+            proof = shortfall(kinematics, Limits.of(self.robot, self._chase.limits), tolerance.position)
+            stalled = status is Status.STALLED
+            if proof is not None or (stalled and is_nearest(self._solver, kinematics, errors, tolerance)):
                 status = Status.UNREACHABLE
             elif status is Status.CONVERGED:
                 status = Status.STALLED
@@ -219,6 +238,7 @@ class Instance:
         if self._chase.limits:
             sides = self.limit_sides()
             active = {name: side for name, side in sides.items() if kinematics.free[self.robot.joint(name).idx_v]}
+        off_plane = self._solver.off_plane(self.robot, self._targets)
         moves = bool(kinematics.free.any())
-        words = explain(status, self._targets, errors, tolerance, active, proof, moves)
+        words = explain(status, self._targets, errors, tolerance, active, proof, off_plane, moves)
         return Verdict(status.name, words, off.position, off.orientation, tuple(active))

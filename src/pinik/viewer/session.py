@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 import time
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable
 from typing import Any
 
 from numpy.typing import ArrayLike
@@ -14,11 +14,12 @@ from ..errors import InputError, UnknownNameError
 from ..home import home_configuration, lowest_point
 from ..prepared import check_joint_names
 from ..robot import Robot
-from ..solvers import SOLVERS, Solver, make_solver
+from ..solvers import Solver, known_methods, make_solver
 from ..targets import Tolerance
 from .balls import MODES, Ball, Mode
 from .effectors import principal_frames
 from .instance import Chase, Instance
+from .method_menu import check_balls, fitting, offered
 from .motion import MOTIONS, Motion
 from .statistics import Summary
 
@@ -44,12 +45,13 @@ class Session:
 
     Attributes:
         robot: The robot.
-        methods: Short name → class, of every method that an instance may have.
+        methods: Short name → class, of every method that there is.
         instances: All four.
         balls: The balls, each with the frame that chases it.
         motion: How balls move by themselves.
         running: Whether `tick` steps.
         steps: How many were made since the last reset.
+        notes: What another robot has changed besides, in words.
     """
 
     def __init__(
@@ -66,14 +68,14 @@ class Session:
         Args:
             robot: The robot.
             methods: One to four methods, by name, class or instance; a view of more instances than that takes the
-                others in the order of `pinik.SOLVERS`.
+                others in the order of `pinik.SOLVERS`, then of `pinik.CLOSED_FORMS`.
             view: How many instances are seen: 1, 2 or 4; enough for `methods` when None.
             seed: Of the random places.
             clock: Seconds that pass, for the statistics and for steps that would take too long.
 
         Raises:
             UnknownNameError: No such method, or a joint in its parameters that the robot does not have.
-            InputError: More than four methods, none, or another view.
+            InputError: More than four methods, none, one that cannot chase any ball of this robot, or another view.
         """
         if isinstance(methods, (str, type, Solver)):
             methods = methods.split(",") if isinstance(methods, str) else [methods]
@@ -82,18 +84,23 @@ class Session:
             raise InputError(f"a live view has one to four methods; got {len(solvers)}")
         if view is None:
             view = next(count for count in VIEWS if count >= len(solvers))
-        self.methods: dict[str, type[Solver]] = dict(SOLVERS)
+        self.methods: dict[str, type[Solver]] = known_methods()
         for made in solvers:
             known = self.methods.setdefault(made.name, type(made))
             if known is not type(made) or "," in made.name:
                 raise InputError(f"methods have names of their own, without a comma; {made.name!r} is none")
-        others = [name for name in self.methods if name not in {s.name for s in solvers}]
+        frames = principal_frames(robot)
+        for made in solvers:
+            check_balls(made, robot, frames)
+        others = [name for name in offered(self.methods, robot, frames) if name not in {s.name for s in solvers}]
         solvers += [make_solver(self.methods[name]) for name in others[: VIEWS[-1] - len(solvers)]]
         for solver in solvers:
             check_joint_names(robot, solver)
         self.robot = robot
         self.running = False
         self.steps = 0
+        self.notes: list[str] = []
+        self._offered: tuple[list[str], list[str]] = ([], [])  # for which frames, what
         self.chase = Chase()
         self.motion = Motion(robot, seed)
         self._seed = seed
@@ -101,17 +108,20 @@ class Session:
         self._home = home_configuration(robot)
         self.instances = [Instance(robot, s, self._home, self.chase, clock) for s in solvers]
         self.balls: list[Ball] = []
-        for frame in principal_frames(robot):
+        for frame in frames:
             self._place_ball(frame, "pinned" if self._is_planted(frame) else "off")
         self.balls[0].mode = "on"
         self.set_view(view)
         self._refresh_statistics()
 
     def with_robot(self, robot: Robot) -> Session:
-        """A session with another robot and the same settings; what names joints that it does not have is dropped."""
-        solvers = [_fitting(instance.solver, robot) for instance in self.instances]
+        """A session with another robot and the same settings, as far as they fit that robot."""
+        solvers, notes = fitting(
+            [instance.solver for instance in self.instances], self.methods, robot, principal_frames(robot)
+        )
         other = Session(robot, solvers, view=self.view, seed=self._seed, clock=self._clock)
         other.methods = self.methods
+        other.notes = notes
         other.running = self.running
         other.set_chase(self.chase)
         other.motion.kind, other.motion.curve = self.motion.kind, self.motion.curve
@@ -122,6 +132,13 @@ class Session:
     def seen(self) -> list[Instance]:
         """The instances that step and are seen."""
         return self.instances[: self.view]
+
+    @property
+    def offered(self) -> list[str]:
+        """Names of the methods that can chase one of the balls."""
+        if self._offered[0] != self._frames:  # compiling a question takes milliseconds, and a state tells this
+            self._offered = self._frames, offered(self.methods, self.robot, self._frames)
+        return self._offered[1]
 
     @property
     def summaries(self) -> list[Summary]:
@@ -166,7 +183,7 @@ class Session:
 
         Raises:
             UnknownNameError: No such method, or parameter of it.
-            InputError: A value out of its range, or no such instance.
+            InputError: A value out of its range, a method that cannot chase any of the balls, or no such instance.
         """
         if method not in self.methods:
             raise UnknownNameError("method", method, self.methods)
@@ -174,6 +191,7 @@ class Session:
             solver = make_solver(self.methods[method], **parameters)
         except TypeError as error:  # a class of the user's own, with a field that has no default
             raise InputError(f"method {method!r} cannot be made anew: {error}") from None
+        check_balls(solver, self.robot, self._frames)
         self._set_solver(index, solver)
 
     def set_parameter(self, index: int, name: str, value: Any) -> None:
@@ -244,7 +262,7 @@ class Session:
             InputError: It has a ball already, or there are too many.
         """
         self.robot.frame_id(frame)
-        if frame in [ball.frame for ball in self.balls]:
+        if frame in self._frames:
             raise InputError(f"frame {frame!r} has a ball already")
         if len(self.balls) >= MOST_BALLS:
             raise InputError(f"there are {MOST_BALLS} balls at most; remove one first")
@@ -261,6 +279,10 @@ class Session:
         if len(self.balls) == 1:
             raise InputError("the last ball stays; switch it off instead")
         self.balls.remove(ball)
+
+    @property
+    def _frames(self) -> list[str]:
+        return [ball.frame for ball in self.balls]
 
     def _is_planted(self, frame: str) -> bool:
         """Whether the robot stands on this frame: it does not hang in the world, and the frame is on the ground."""
@@ -292,13 +314,3 @@ class Session:
     def _refresh_statistics(self) -> None:
         self._summaries = [instance.statistics.summary() for instance in self.instances]
         self._refreshed = self._clock()
-
-
-def _fitting(solver: Solver, robot: Robot) -> Solver:
-    """The solver, without what its parameters say of joints that the robot does not have."""
-    kept = {
-        name: {joint: v for joint, v in value.items() if joint in robot.joint_names}
-        for name, value in solver.parameters.items()
-        if isinstance(value, Mapping)
-    }
-    return make_solver(solver, **kept)

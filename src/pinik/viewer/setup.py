@@ -104,6 +104,8 @@ def apply_setup(session: Session, setup: Setup) -> None:
 def _messages(session: Session, setup: Setup) -> Iterator[dict[str, Any]]:
     if "view" in setup:
         yield {"type": "view", "count": _whole("view", setup["view"])}
+    if "balls" in setup:  # first of all: which methods there are depends on them
+        yield from _ball_messages(session, _parsed("balls", setup["balls"], list))
     if "parameters" in setup and "methods" not in setup:
         raise InputError("set-up: parameters say nothing without the methods that have them")
     if "methods" in setup:
@@ -133,8 +135,6 @@ def _messages(session: Session, setup: Setup) -> Iterator[dict[str, Any]]:
     if "curve" in setup:
         yield {"type": "curve", "curve": setup["curve"]}
     yield {"type": "speed", "value": _numbers("speed", setup["speed"], 1)[0] if "speed" in setup else 1.0}
-    if "balls" in setup:
-        yield from _ball_messages(session, _parsed("balls", setup["balls"], list))
     if "motion" in setup:
         yield {"type": "motion", "motion": setup["motion"]}
     if "run" in setup:

@@ -144,7 +144,7 @@ class Show:
             else:
                 self.do(message)
         except PinikError as error:
-            tab.send(_error(error))
+            tab.send(_notice(str(error)))
 
     def _drawn(self, tab: Tab) -> None:
         seat = self._seats.get(tab)
@@ -281,8 +281,11 @@ class Show:
                     apply_setup(session, setup)
             finally:
                 self._change_session(session)
+            if "methods" not in setup:
+                for note in session.notes:
+                    self._broadcast(_notice(note))
         except PinikError as error:
-            self._broadcast(_error(error))
+            self._broadcast(_notice(str(error)))
 
     # What is told
 
@@ -326,8 +329,8 @@ class Show:
         return animation_page(self._hello, self._robot, shapes, self.state(), self.recording)
 
 
-def _error(error: PinikError) -> str:
-    words = str(error)
+def _notice(words: str) -> str:
+    """A message of the type that pages show to people for a while."""
     return json.dumps(
         {"type": "error", "message": words if len(words) <= _LONGEST_ERROR else f"{words[:_LONGEST_ERROR]} …"}
     )

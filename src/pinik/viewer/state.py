@@ -69,6 +69,7 @@ def session_state(session: Session) -> dict[str, Any]:
             for instance, summary in zip(session.seen, session.summaries, strict=True)
         ],
         "joint_names": list(session.robot.joint_names),
+        "methods": session.offered,
     }
 
 

@@ -28,10 +28,6 @@ export class Card {
             dataset: { testid: `method-${index}` },
             aria: { label: `Method of instance ${index + 1}` },
         });
-        offer(
-            this._method,
-            hello.methods.map(({ name }) => [name, name]),
-        );
         this._help = new Map(hello.methods.map(({ name, help }) => [name, help]));
         this._method.addEventListener("change", () =>
             connection.send({ type: "method", instance: index, method: this._method.value }),
@@ -67,8 +63,11 @@ export class Card {
         this._instance = instance;
         say(this._title, instance.title);
         this._title.title = this._help.get(instance.method) ?? "";
-        if (![...this._method.options].some(({ value }) => value === instance.method))
-            this._method.add(new Option(instance.method));
+        const names = new Set([...state.methods, instance.method]); // what it runs, also where it is not offered
+        offer(
+            this._method,
+            [...names].map((name) => [name, name]),
+        );
         write(this._method, instance.method);
         say(this._message, instance.message);
         this._message.title = instance.message;

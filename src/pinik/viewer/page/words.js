@@ -53,6 +53,7 @@ export function spaced(name) {
 /** Where an instance stands: "reached", "4.1 cm short", …; errors in m and rad, not finite where not asked for. */
 export function verdict(status, positionError, orientationError, tolerance) {
     if (status === "FAILED") return "solver failed";
+    if (status === "REFUSED") return "cannot do this";
     if (status === "IDLE") return "idle";
     if (status === "CONVERGED") return "reached";
     const away = Number.isFinite(positionError) && positionError > tolerance.position;
