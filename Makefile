@@ -11,12 +11,12 @@ unexport PYTHONPATH
 .PHONY: help run test lint bench notebooks clean
 
 help:
-	@echo "make run     install what is missing into $(VENV) and show a tour, then the live view"
-	@echo "make test    everything that is checked: style, types, tests"
-	@echo "make lint    style and types only"
-	@echo "make bench   how fast the solvers are"
-	@echo "make notebooks   run the notebooks and write them with their pictures"
-	@echo "make clean   remove $(VENV) and everything else that was made here"
+	@echo "make run       install what is missing into $(VENV) and show a tour, then the live view"
+	@echo "make test      everything that is checked: style, types, tests"
+	@echo "make lint      style and types only"
+	@echo "make bench     how fast the solvers are"
+	@echo "make notebooks run the notebooks and write them with their pictures"
+	@echo "make clean     remove $(VENV) and everything else that was made here"
 	@echo
 	@echo "make PYTHON=/path/to/python3 … takes that Python for $(VENV)."
 

@@ -26,12 +26,13 @@ ONLY_THERE = {
     "yourdfpy": {"second_opinion"},
     "trimesh": {"geometry"},
     "scipy": {"geometry"},
+    "PIL": {"picture"},
     "meshcat": set(),  # of meshcat the page takes the JavaScript; the Python package brings IPython and ZeroMQ
     "zmq": set(),
     "tornado": {"viewer.server", "viewer.live_view"},
     "umsgpack": {"viewer.scene", "viewer.shape_cache"},
 }
-HEAVY = {"yourdfpy", "trimesh", "scipy", "meshcat", "matplotlib", "typer", "rich", "tornado", "umsgpack"}
+HEAVY = {"yourdfpy", "trimesh", "scipy", "PIL", "meshcat", "matplotlib", "typer", "rich", "tornado", "umsgpack"}
 
 
 @dataclass(frozen=True)
