@@ -85,8 +85,8 @@ def _shaded(mesh: Mesh, sun: Sun, camera: Camera, size: tuple[int, int]) -> tupl
     back = camera.position - points
     back /= _lengths(back)
     # Files have faces that look inwards: what is seen of a surface is its outside.
-    a, b, c = (mesh.vertices[corners[:, k]] for k in range(3))
-    flat = np.cross(b - a, c - a)
+    a, b, c = (mesh.vertices[mesh.faces[raster.drawn, k]] for k in range(3))
+    flat = np.cross(b - a, c - a)[raster.number[rows, columns]]
     inward = np.einsum("kc,kc->k", flat, normals) * np.einsum("kc,kc->k", flat, back) < 0.0
     normals[inward] *= -1.0
     normals /= np.maximum(_lengths(normals), 1e-12)
