@@ -92,6 +92,18 @@ struct Chaser {
     }
   }
 
+  // How far a relative error of 1 in every coordinate moves what `correlation` holds across a joint's axis.
+  double blur(const Vec3& axis, const Vec3& origin) const {
+    const auto across = [&](const Vec3& vector) { return (vector - axis * axis.dot(vector)).norm(); };
+    double blur = 0.0;
+    for_each_pair(origin, [&](const Vec3& c, const Vec3& d, double w) {
+      blur += w * (c.norm() + d.norm() + origin.norm()) * (across(c - origin) + across(d - origin));
+    });
+    if (!has_at)
+      for (int column = 0; column < axes; ++column) blur += across(U.col(column)) + across(V.col(column));
+    return weight * blur;
+  }
+
   // Turn about `origin`, or shift, what the joint moves: effector, goal, or both.
   void carry(int joint, const Vec3& origin, const Mat3* R, const Vec3& shift) {
     auto moved = [&](const Vec3& point) -> Vec3 { return R ? Vec3(origin + *R * (point - origin)) : Vec3(point + shift); };

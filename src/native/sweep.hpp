@@ -42,8 +42,11 @@ class Sweep {
 
  private:
   static constexpr int halvings = 12;
-  // A turn that changes g by no more than the rounding of world coordinates is none.
-  static constexpr double indifferent = 1e-12;
+  // Of coordinates and unit axes behind a chain of joints; a joint that would follow it alone stays.
+  static constexpr double rounding = 1e-14;
+  // Across a joint's axis so much less than along it that rounding may be all there is.
+  static constexpr double suspect = 1e-6;
+  static constexpr double no_column = 1e-12;  // of a Jacobian [m or rad]
 
   const Solver& solver_;
   Kinematics<Rows>& kinematics_;
@@ -99,7 +102,8 @@ class Sweep {
       Mat3 M = Mat3::Zero();
       for (const Chaser& chaser : chasers_)
         if (chaser.moved_by(mover)) M += chaser.correlation(mover, origin);
-      change = best_turn(M, axis, low, high, scale < 1.0 || solver_.max_step < M_PI);
+      const Coefficients k = coefficients(M, axis);
+      change = is_rounding(k, mover, axis, origin) ? 0.0 : best_turn(k, low, high, scale < 1.0 || solver_.max_step < M_PI);
       // The long way round to a goal has none of its own to overshoot into.
       if (scale > 1.0 && std::abs(change) > M_PI) scale = 1.0;
     }
@@ -121,12 +125,29 @@ class Sweep {
     return weight > 0.0 ? pull / weight : 0.0;
   }
 
-  // The φ in [low, high] that maximises g (Welman's eq. 4.19) for M = Σ w c dᵀ.
-  static double best_turn(const Mat3& M, const Vec3& axis, double low, double high, bool shortest) {
-    const double k1 = axis.dot(M * axis), k2 = M.trace();
-    const double k3 = axis.dot(Vec3(M(1, 2) - M(2, 1), M(2, 0) - M(0, 2), M(0, 1) - M(1, 0)));
-    if (std::hypot(k3, k2 - k1) <= indifferent * (std::abs(k1) + std::abs(k2) + std::abs(k3))) return 0.0;
-    const double best = std::atan2(k3, k2 - k1);
+  // Of g (Welman's eq. 4.19) for M = Σ w c dᵀ.
+  struct Coefficients {
+    double k1, k2, k3;
+  };
+
+  static Coefficients coefficients(const Mat3& M, const Vec3& axis) {
+    return {axis.dot(M * axis), M.trace(),
+            axis.dot(Vec3(M(1, 2) - M(2, 1), M(2, 0) - M(0, 2), M(0, 1) - M(1, 0)))};
+  }
+
+  // Whether g changes with φ by no more than rounding makes of it, as where the effector lies on the joint's axis.
+  bool is_rounding(const Coefficients& k, int joint, const Vec3& axis, const Vec3& origin) const {
+    const double across = std::hypot(k.k3, k.k2 - k.k1);
+    if (across > suspect * (std::abs(k.k1) + std::abs(k.k2) + std::abs(k.k3))) return false;
+    double blur = 0.0;
+    for (const Chaser& chaser : chasers_)
+      if (chaser.moved_by(joint)) blur += chaser.blur(axis, origin);
+    return across <= rounding * blur;
+  }
+
+  // The φ in [low, high] that maximises g.
+  static double best_turn(const Coefficients& k, double low, double high, bool shortest) {
+    const double best = std::atan2(k.k3, k.k2 - k.k1);
     if (low <= best && best <= high) return best;
     if (shortest) return std::min(std::max(best, low), high);
     for (double other : {best - 2.0 * M_PI, best + 2.0 * M_PI})
@@ -159,7 +180,7 @@ class Sweep {
     kinematics_.linearize(at_);
     const auto column = at_.J.col(static_cast<Eigen::Index>(c));
     const double squared = column.squaredNorm();
-    const double least = indifferent * kinematics_.problem.lightest;
+    const double least = no_column * kinematics_.problem.lightest;
     if (squared <= least * least) return 0.0;  // its followers cancel it, but for rounding
     const auto [low, high] = room(coordinate, q, limits);
     const double wanted = part * column.dot(at_.e) / squared;

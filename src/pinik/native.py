@@ -5,7 +5,7 @@ from __future__ import annotations
 import functools
 import importlib.util
 import math
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 from weakref import WeakKeyDictionary
@@ -19,7 +19,7 @@ from .kinematics import Kinematics
 from .limits import Limits
 from .reach import Shortfall, reach_bounds
 from .robot import Robot
-from .solvers import CCD, DampedLeastSquares, JacobianTranspose, PseudoInverse, Solver
+from .solvers import CCD, DampedLeastSquares, JacobianSolver, JacobianTranspose, PseudoInverse, Solver
 from .state import State, Status
 from .targets import Target, TargetError
 
@@ -275,15 +275,18 @@ def _solver(solver: Solver, kinematics: Kinematics) -> Any:
     native = _load().Solver()
     native.method = _METHODS.index(type(solver))
     native.max_step, native.max_residual = solver.max_step, solver.max_residual
-    stiffness: Mapping[str, float] = solver.stiffness  # type: ignore[attr-defined]
-    if stiffness:
-        native.stiffness = [stiffness.get(c.joint.name, 1.0) for c in kinematics.coordinates]
     if isinstance(solver, CCD):
+        if solver.stiffness:
+            native.stiffness = [solver.stiffness.get(c.joint.name, 1.0) for c in kinematics.coordinates]
         native.relaxation = solver.relaxation_for(kinematics)
         native.position_weight = solver.position_weight
         native.printed_scaling = solver.scaling == "printed"
         return native
-    native.step_size, native.target_jacobian = solver.step_size, solver.target_jacobian  # type: ignore[attr-defined]
+    assert isinstance(solver, JacobianSolver)
+    roots = solver.roots(kinematics)
+    if roots is not None:
+        native.stiffness = [roots[c.joint.idx_v + c.index] ** 2 for c in kinematics.coordinates]
+    native.step_size, native.target_jacobian = solver.step_size, solver.target_jacobian
     if isinstance(solver, JacobianTranspose):
         native.alpha = solver.alpha or 0.0
     elif isinstance(solver, PseudoInverse):

@@ -73,7 +73,7 @@ def test_another_robot_and_frame(run):
         (("--steps", 0), "--steps is a whole number of at least 1"),
         (("--pieces", 0), "--pieces is a whole number of at least 1"),
         (("--engine", "fast"), "engine"),
-        (("--preset", "thesis", "--reading", "bones", "--engine", "native"), "the thesis's own program"),
+        (("--preset", "thesis", "--engine", "native"), "which is Python"),
         (("--preset", "thesis", "--reading", "bones", "--param", "jt.alpha=1"), "the thesis's own program"),
         (("--preset", "thesis", "--reading", "bones", "--robot", "panda"), "two hinges about one point"),
     ],

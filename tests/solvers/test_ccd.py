@@ -332,3 +332,35 @@ def test_a_leader_whose_followers_cancel_what_it_does_stays(engine):
     s = gripper.solve("tip", axis="x", direction=wanted, q0=start, **options)
     assert s.success
     assert s.angles["lead"] == 0.3
+
+
+@pytest.mark.parametrize("engine", ["python", pytest.param("native", marks=needs_native)])
+@pytest.mark.parametrize(("arm", "height"), [(1e-5, 1.0), (1e-6, 1.0), (1e-4, 1000.0), (1e-9, 0.1)])
+def test_a_hinge_turns_a_point_that_is_much_farther_along_its_axis_than_beside_it(engine, arm, height):
+    text = robot_text(
+        *(link(name) for name in ("base", "part", "tip")),
+        joint("turn", "base", "part", '<axis xyz="0 0 1"/>'),
+        joint("z_end", "part", "tip", f'<origin xyz="{arm!r} 0 {height!r}"/>', kind="fixed", limit=""),
+    )
+    options = {"method": "ccd", "restarts": 0, "tolerance": (arm / 1000.0, 1.0), "engine": engine}
+    s = load_quietly(text).solve("tip", position=[0.0, arm, height], **options)
+    assert s.success
+    assert s.angles["turn"] == pytest.approx(math.pi / 2, abs=1e-3)
+
+
+@pytest.mark.parametrize("engine", ["python", pytest.param("native", marks=needs_native)])
+def test_a_hinge_whose_axis_runs_through_the_effector_stays(engine):
+    """Far from the world's origin rounding puts the effector beside the axis, and would turn it anywhere."""
+    text = robot_text(
+        *(link(name) for name in ("base", "arm", "part", "tip")),
+        joint("lift", "base", "arm", '<origin xyz="3 -7 5" rpy="0.3 0.5 0.7"/><axis xyz="0 1 0"/>'),
+        joint("spin", "arm", "part", '<origin xyz="0.3 0.1 0.2" rpy="0.2 0.9 0.4"/><axis xyz="0 0 1"/>'),
+        joint("z_end", "part", "tip", '<origin xyz="0 0 0.08"/>', kind="fixed", limit=""),
+    )
+    robot = load_quietly(text)
+    rng = np.random.default_rng(0)
+    for _ in range(50):
+        start = robot.random(rng)
+        wanted = robot.placement("tip", robot.random(rng)).translation
+        s = robot.solve("tip", position=wanted, method="ccd", q0=start, restarts=0, max_iterations=3, engine=engine)
+        assert s.angles["spin"] == start[robot.joint_names.index("spin")]

@@ -255,3 +255,15 @@ def test_a_joint_of_stiffness_zero_stays_and_the_answer_is_still_found(arm, meth
     s = arm.solve("tip", position=wanted, method=method, q0=q0, stiffness={"bone2_z": 0.0}, engine=engine)
     assert s.success
     assert s.q[arm.joint_names.index("bone2_z")] == q0[arm.joint_names.index("bone2_z")]
+
+
+@pytest.mark.parametrize("engine", ["python", pytest.param("native", marks=needs_native)])
+@pytest.mark.parametrize("method", ["jt", "pinv", "dls"])
+def test_only_the_ratios_of_stiffness_weights_count(arm, method, engine):
+    wanted = arm.placement("tip", arm.random(5)).translation
+    asked = {"position": wanted, "method": method, "q0": arm.random(6), "restarts": 0, "engine": engine}
+    free = arm.solve("tip", **asked)
+    for weight in (0.3, 1e-4):
+        alike = arm.solve("tip", **asked, stiffness=dict.fromkeys(arm.joint_names, weight))
+        assert alike.iterations == free.iterations
+        assert np.allclose(alike.q, free.q, atol=1e-9)

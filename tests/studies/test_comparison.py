@@ -120,3 +120,14 @@ def test_a_ball_in_pieces_comes_from_where_it_was(arm):
     ways = [plain_placement(arm, "tip", home).translation, *places(arm, "tip", "random", 2, 0)]
     assert np.allclose(chase.places[0], (ways[0] + ways[1]) / 2)
     assert np.allclose(chase.places[2], (ways[1] + ways[2]) / 2)
+
+
+@pytest.mark.parametrize(
+    ("method", "engine", "counted"),
+    [("ccd", "python", (1.0 + 1.0 + 3.5) / 3), ("ccd", "program", (1.0 + 2.0 + 7.0) / 3), ("dls", "python", 3.0)],
+)
+def test_it_counts_bones_of_ccd_and_steps_of_the_others_and_one_at_least(arm, method, engine, counted):
+    chase = Scripted(*(Step(0.0, n, updates, True, 0.0, 0.0) for n, updates in ((0, 0), (2, 2), (6, 7))))
+    chase.engine = engine
+    (row,) = compare(arm, "tip", [method], lambda *_: chase, RULES, steps=3, comparisons=COMPARISONS[:1])
+    assert row.counted == pytest.approx(counted)

@@ -7,22 +7,21 @@ import math
 import numpy as np
 import pytest
 
-from pinik import native
-from pinik.errors import UnknownNameError
+from engines import needs_native
+from pinik.errors import InputError, UnknownNameError
 from pinik.studies.comparison import COMPARISONS, Row, compare
-from pinik.studies.thesis import METHODS, PRESETS, TABLE, contest, counted_iterations, mismatch, published
+from pinik.studies.thesis import METHODS, PRESETS, TABLE, contest, mismatch, published
 
 
-def row(method, comparison, efficiency, iterations, updates=0.0, engine="python"):
-    return Row(comparison, method, engine, 10, 0.001, iterations, updates, efficiency, 0.0, 0.0, 0.0, 0.0)
+def row(method, comparison, efficiency, counted):
+    return Row(comparison, method, "python", 10, 0.001, 0.0, 0.0, counted, efficiency, 0.0, 0.0, 0.0, 0.0)
 
 
 def as_published():
     for method in METHODS:
         for comparison in COMPARISONS[:4]:
             cell = TABLE[method][comparison.name]
-            updates = 2 * cell.iterations if method == "ccd" else 0.0
-            yield row(method, comparison, cell.efficiency, cell.iterations, updates)
+            yield row(method, comparison, cell.efficiency, cell.iterations)
 
 
 def test_the_table_is_the_printed_one():
@@ -41,16 +40,8 @@ def test_the_table_is_the_printed_one():
             )
 
 
-def test_the_ccd_line_fits_a_failed_step_of_six_or_seven_hundred_bones():
-    """With the pseudo-code's limit of 100 for each of six or seven bones the solved steps took some sweeps each."""
-    for cell in TABLE["ccd"].values():
-        for bones in (6, 7):
-            solved = cell.iterations_when_solved(100 * bones)
-            assert 1 <= solved <= 20 * bones
-
-
 def test_a_row_as_published_is_off_by_nothing():
-    off = mismatch(as_published(), 2.0)
+    off = mismatch(as_published())
     assert off.efficiency == pytest.approx(0.0, abs=1e-12)
     assert off.iterations == pytest.approx(1.0)
 
@@ -58,18 +49,17 @@ def test_a_row_as_published_is_off_by_nothing():
 def test_the_mismatch_is_the_mean_of_points_and_of_factors():
     one, two = COMPARISONS[0], COMPARISONS[1]
     rows = [row("jt", one, 0.68, 56.0), row("jt", two, 0.35, 46.0), row("jt", COMPARISONS[4], 0.9, 1.0)]
-    off = mismatch(rows, 2.0)
+    off = mismatch(rows)
     assert off.efficiency == pytest.approx(15.0)
     assert off.iterations == pytest.approx(2.0)
-    assert mismatch(rows, 2.0, box=True).efficiency == pytest.approx((10.0 + 75.0) / 2)
-    assert mismatch([], 2.0) is None
+    assert mismatch(rows, box=True).efficiency == pytest.approx((10.0 + 75.0) / 2)
+    assert mismatch([]) is None
 
 
-def test_two_hinges_count_as_one_bone_and_the_program_counts_bones_already():
-    one = COMPARISONS[0]
-    assert counted_iterations(row("ccd", one, 1.0, 3.0, 36.0), 2.0) == 18.0
-    assert counted_iterations(row("ccd", one, 1.0, 3.0, 18.0, "program"), 2.0) == 18.0
-    assert counted_iterations(row("dls", one, 1.0, 7.0), 2.0) == 7.0
+@pytest.mark.parametrize(("frame", "why"), [("base", "no chain"), ("bone1_x", "no chain")])
+def test_a_frame_that_no_chain_moves_is_refused(arm, frame, why):
+    with pytest.raises(InputError, match=why):
+        contest(arm, frame)
 
 
 def test_a_row_in_a_box_stands_beside_the_random_one():
@@ -117,11 +107,21 @@ def test_unknown_names_are_refused_with_the_known_ones(arm):
         contest(arm, "tip", "thesis", "litteral")
 
 
-@pytest.mark.skipif(native.why_not() is not None, reason="the compiled engine is not there")
+@needs_native
 def test_tuned_every_method_reaches_99_percent_of_the_reachable_places(arm):
     chosen = contest(arm, "tip", "tuned")
     reachable = [comparison for comparison in COMPARISONS if comparison.motion != "box"]
     for r in compare(arm, "tip", METHODS, chosen.begin, chosen.rules, steps=300, comparisons=reachable):
         assert r.engine == "native"
         assert r.efficiency >= 0.99, (r.method, r.comparison)
-        assert r.largest_error < 1e-4 or r.efficiency < 1.0
+        assert r.efficiency < 1.0 or r.largest_error < 1e-4
+
+
+def test_ccd_turns_its_joints_furthest_when_the_ball_jumps(arm):
+    """The thesis: "CCD jumps". From place to place, by the methods alone: restarts jump as well."""
+    chosen = contest(arm, "tip", "tuned", "no-restarts")
+    random = [comparison for comparison in COMPARISONS if comparison.name == "2"]
+    jumps = {
+        r.method: r.jump for r in compare(arm, "tip", METHODS, chosen.begin, chosen.rules, steps=60, comparisons=random)
+    }
+    assert jumps["ccd"] > 2.0 * max(jumps[method] for method in ("pinv", "dls"))

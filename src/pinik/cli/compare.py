@@ -10,12 +10,12 @@ from typing import Annotated, Any
 
 import typer
 
-from ..errors import EngineError, InputError
+from ..errors import EngineError, InputError, UnknownNameError
 from ..prepared import ENGINES, as_count
 from ..robot import Robot
 from ..studies.comparison import COMPARISONS, CURVE, Row
 from ..studies.comparison import compare as run_comparisons
-from ..studies.thesis import METHODS, PRESETS, Contest, Mismatch, contest, counted_iterations, mismatch, published
+from ..studies.thesis import METHODS, PRESETS, Contest, Mismatch, contest, mismatch, published
 from ..viewer.effectors import principal_frames
 from . import output
 from .assignments import MethodParameters, solvers_with
@@ -58,7 +58,7 @@ def compare(
     seed: Annotated[int, typer.Option(metavar="N", help="Of the random places.")] = 0,
     param: MethodParameters = None,
     engine: Annotated[
-        str, typer.Option(metavar="auto|python|native", help="Which engine computes; thesis: python, the bare loop.")
+        str, typer.Option(metavar="auto|python|native", help="Which engine computes; preset thesis is Python.")
     ] = "auto",
     plot: Annotated[
         Path | None, typer.Option(metavar="FILE", help="Draw grouped bars into this file (.png, .svg, .pdf).")
@@ -111,14 +111,13 @@ def compare(
 
 
 def _check_engine(engine: str, chosen: Contest) -> None:
-    if not chosen.solvers and engine == "native":
-        raise EngineError(f"the reading {chosen.reading!r} is the thesis's own program, which is Python")
-    if not chosen.solvers and engine not in ENGINES:
-        raise InputError(f"--engine is one of {', '.join(ENGINES)}; got {engine!r}")
+    if engine not in ENGINES:
+        raise UnknownNameError("engine", engine, ENGINES)
+    if chosen.rules.bare and engine == "native":
+        raise EngineError("preset thesis runs the thesis's own loop, which is Python; --preset tuned can be native")
 
 
 def _fields(robot: Robot, chosen: Contest, rows: Sequence[Row], steps: int, seed: int) -> dict[str, Any]:
-    per_bone = chosen.joints / chosen.bones if chosen.bones else 1.0
     return {
         "schema": 1,
         "robot": robot.name,
@@ -140,9 +139,9 @@ def _fields(robot: Robot, chosen: Contest, rows: Sequence[Row], steps: int, seed
         "max_iterations": chosen.rules.max_iterations,
         "restarts": chosen.rules.restarts,
         "parameters": {name: dict(solver.parameters) for name, solver in chosen.solvers.items()},
-        "rows": [_row_fields(row, per_bone) for row in rows],
-        "mismatch": _mismatch_fields(mismatch(rows, per_bone)),
-        "mismatch_in_box": _mismatch_fields(mismatch(rows, per_bone, box=True)),
+        "rows": [_row_fields(row) for row in rows],
+        "mismatch": _mismatch_fields(mismatch(rows)),
+        "mismatch_in_box": _mismatch_fields(mismatch(rows, box=True)),
     }
 
 
@@ -150,7 +149,7 @@ def _mismatch_fields(off: Mismatch | None) -> dict[str, float] | None:
     return None if off is None else {"efficiency_points": off.efficiency, "iterations_factor": off.iterations}
 
 
-def _row_fields(row: Row, joints_of_a_bone: float) -> dict[str, Any]:
+def _row_fields(row: Row) -> dict[str, Any]:
     cell = published(row)
     theirs = None
     if cell is not None:
@@ -164,7 +163,7 @@ def _row_fields(row: Row, joints_of_a_bone: float) -> dict[str, Any]:
         "time_s": row.time,
         "iterations": row.iterations,
         "joint_updates": row.joint_updates,
-        "counted_iterations": counted_iterations(row, joints_of_a_bone),
+        "counted_iterations": row.counted,
         "efficiency": row.efficiency,
         "error_m": row.error,
         "largest_error_m": row.largest_error,
@@ -176,7 +175,8 @@ def _row_fields(row: Row, joints_of_a_bone: float) -> dict[str, Any]:
 
 
 _NOTES = (
-    "Means over the steps. N counts as the thesis does: bones turned for ccd, whole steps for the others; steps are "
+    "Means over the steps. N counts as the thesis does: bones turned for ccd, whole steps for the others, 1 at "
+    "least; steps are "
     "sweeps for ccd, joints its single joints. jump: a step's largest change of one joint (rad, or m where it slides). "
     "time %: of the thesis's time, on another machine. b: places in a box, some out of reach; the thesis says neither "
     "that its places can be reached nor that they cannot."

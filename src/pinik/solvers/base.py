@@ -191,8 +191,9 @@ class Solver:
 class JacobianSolver(Solver, ABC):
     r"""A method whose step is a function of Jacobian and residual; subclasses write `direction` and are complete.
 
-    With stiffness weights, $W = \operatorname{diag}(w_i)$, the loop takes $\sqrt W\,\text{direction}(J\sqrt W, e)$: the
-    transpose becomes $\alpha W J^\top e$, and in the other two a joint's change counts by its square over $w_i$.
+    With stiffness weights, $W = \operatorname{diag}(w_i)$ and the largest made 1, the loop takes $\sqrt
+    W\,\text{direction}(J\sqrt W, e)$: the transpose becomes $\alpha W J^\top e$, and in the other two a joint's change
+    counts by its square over $w_i$.
     """
 
     name = ""
@@ -219,14 +220,14 @@ class JacobianSolver(Solver, ABC):
         return without_motion(self.stiffness)
 
     def roots(self, kinematics: Kinematics) -> Array | None:
-        """√w_i of every tangent coordinate (nv,); None where each is 1."""
+        """√w_i of every tangent coordinate (nv,), the most willing that moves a target made 1; None without weights."""
         if not self.stiffness:
             return None
-        roots = np.ones(kinematics.model.nv)
+        weights = np.ones(kinematics.model.nv)
         for name, part in self.stiffness.items():
             joint = kinematics.robot.settable_joint(name)
-            roots[joint.idx_v : joint.idx_v + joint.nv] = math.sqrt(part)
-        return roots
+            weights[joint.idx_v : joint.idx_v + joint.nv] = part
+        return np.asarray(np.sqrt(weights / weights.max(where=kinematics.free, initial=1e-300)))
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -22,7 +22,9 @@ if TYPE_CHECKING:
 
 __all__ = ["CCD"]
 
-_INDIFFERENT = 1e-12  # a joint whose turn changes g by no more than the rounding of world coordinates stays
+_ROUNDING = 1e-14  # of coordinates and unit axes behind a chain of joints; a joint that would follow it alone stays
+_SUSPECT = 1e-6  # across a joint's axis so much less than along it that rounding may be all there is
+_NO_COLUMN = 1e-12  # of a Jacobian [m or rad]
 _HALVINGS = 12
 _NOTHING = np.zeros((3, 3))
 _RELAXATION_OF_POSES = 1.7
@@ -139,7 +141,10 @@ class CCD(SweepingSolver):
             change = min(max(_best_slide(axis, origin, mover, chasers), low), high)
         else:
             M = sum([chaser.correlation(mover, origin) for chaser in chasers], _NOTHING)
-            change = _best_turn(M, axis, low, high, shortest=scale < 1.0 or self.max_step < math.pi)
+            k = _coefficients(M, axis)
+            change = 0.0
+            if not _is_rounding(k, axis, origin, chasers):
+                change = _best_turn(k, low, high, shortest=scale < 1.0 or self.max_step < math.pi)
         if scale > 1.0 and not coordinate.slides and abs(change) > math.pi:
             scale = 1.0  # the long way round to a goal has none of its own to overshoot into
         change = min(max(scale * change, low), high) / multiplier
@@ -157,7 +162,7 @@ class CCD(SweepingSolver):
         at = kinematics.linearize(q)
         J = at.J[:, column]
         squared = float(J.dot(J))
-        if squared <= (_INDIFFERENT * kinematics.lightest) ** 2:  # its followers cancel it, but for rounding
+        if squared <= (_NO_COLUMN * kinematics.lightest) ** 2:  # its followers cancel it, but for rounding
             return 0.0
         low, high = coordinate.room(q, limits)
         change = min(max(part * float(J.dot(at.e)) / squared, low, -self.max_step), high, self.max_step)
@@ -192,18 +197,30 @@ def _best_slide(axis: Array, origin: Array, mover: Joint, chasers: list[Chaser])
     return pull / weight if weight > 0.0 else 0.0
 
 
-def _best_turn(M: Array, axis: Array, low: float, high: float, *, shortest: bool) -> float:
-    """The φ in [low, high] that maximises g (eq. 4.19) for M = Σ w c dᵀ [rad].
-
-    Where a limit blocks the best φ, the other way round to it counts as well, unless `shortest`.
-    """
+def _coefficients(M: Array, axis: Array) -> tuple[float, float, float]:
+    """k₁, k₂ and k₃ of g (eq. 4.19) for M = Σ w c dᵀ."""
     x, y, z = axis.tolist()
     (xx, xy, xz), (yx, yy, yz), (zx, zy, zz) = M.tolist()
     k1 = x * (xx * x + xy * y + xz * z) + y * (yx * x + yy * y + yz * z) + z * (zx * x + zy * y + zz * z)
     k2 = xx + yy + zz
-    k3 = x * (yz - zy) + y * (zx - xz) + z * (xy - yx)
-    if math.hypot(k3, k2 - k1) <= _INDIFFERENT * (abs(k1) + abs(k2) + abs(k3)):
-        return 0.0
+    return k1, k2, x * (yz - zy) + y * (zx - xz) + z * (xy - yx)
+
+
+def _is_rounding(k: tuple[float, float, float], axis: Array, origin: Array, chasers: list[Chaser]) -> bool:
+    """Whether g changes with φ by no more than rounding makes of it, as where the effector lies on the joint's axis."""
+    k1, k2, k3 = k
+    across = math.hypot(k3, k2 - k1)
+    if across > _SUSPECT * (abs(k1) + abs(k2) + abs(k3)):
+        return False
+    return across <= _ROUNDING * sum(chaser.blur(axis, origin) for chaser in chasers)
+
+
+def _best_turn(k: tuple[float, float, float], low: float, high: float, *, shortest: bool) -> float:
+    """The φ in [low, high] that maximises g (eq. 4.19) [rad].
+
+    Where a limit blocks the best φ, the other way round to it counts as well, unless `shortest`.
+    """
+    k1, k2, k3 = k
     best = math.atan2(k3, k2 - k1)
     if low <= best <= high:
         return best

@@ -91,6 +91,20 @@ class Chaser:
             M *= self.weight
         return M if mover.id in self.term.frame_support else M.T
 
+    def blur(self, axis: Array, origin: Array) -> float:
+        """How far a relative error of 1 in every coordinate moves what `correlation` holds across a joint's axis."""
+
+        def across(vector: Array) -> float:
+            return float(np.linalg.norm(vector - axis * axis.dot(vector)))
+
+        blur = 0.0
+        for c, d, w in self.point_pairs(origin):
+            size = float(np.linalg.norm(c) + np.linalg.norm(d) + np.linalg.norm(origin))
+            blur += w * size * (across(c - origin) + across(d - origin))
+        if self.U is not None and self.V is not None:
+            blur += sum(across(u) + across(v) for u, v in zip(self.U.T, self.V.T, strict=True))
+        return self.weight * blur
+
     def carry(self, mover: Joint, origin: Array, R: Array | None, shift: Array) -> None:
         """Turn by R (3, 3) about `origin`, or else by `shift` (3,), what the mover moves: effector, goal, or both."""
 

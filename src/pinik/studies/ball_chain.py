@@ -12,13 +12,13 @@ from numpy.typing import NDArray
 
 from ..errors import InputError
 from ..robot import Robot
-from .steps import Step
+from ..solvers import SOLVERS
+from .steps import PROGRAM, Step
 
 __all__ = ["BallChain", "ProgramChase"]
 
 Array = NDArray[np.float64]
 
-METHODS = ("ccd", "jt", "pinv", "dls")
 
 _NO_AXIS = 1e-12
 
@@ -107,11 +107,12 @@ class ProgramChase:
     """One of the thesis's methods at work on a chain of balls: the loop of its §4, with two printed slips mended.
 
     The loop goes on while the ball is too far off *and* attempts are left, and acts then; printed are "or" and the
-    opposite comparison. A Jacobian's column is axis × (s − p) with the axis (s − p) × (t − p), and α scales every angle
-    after the clamp. All in the thesis's units, of which `unit` says how long they are [m].
+    opposite comparison. Where the ball is reached already nothing acts, and its counter still ends at one. A Jacobian's
+    column is axis × (s − p) with the axis (s − p) × (t − p), and α scales every angle after the clamp. All in the
+    thesis's units, of which `unit` says how long they are [m].
     """
 
-    engine = "program"
+    engine = PROGRAM
 
     def __init__(
         self,
@@ -128,8 +129,8 @@ class ProgramChase:
         clock: Callable[[], float] = time.perf_counter,
     ) -> None:
         """With `unit_axes` the axes have length one; printed is the bare cross product."""
-        if method not in METHODS:
-            raise InputError(f"the thesis has the methods {', '.join(METHODS)}; got {method!r}")
+        if method not in SOLVERS:
+            raise InputError(f"the thesis has the methods {', '.join(SOLVERS)}; got {method!r}")
         self._method, self._chain, self._unit = method, chain, unit
         self._tolerance, self._most = tolerance, max_iterations
         self._alpha, self._damping, self._max_angle = alpha, damping, max_angle

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from ..home import home_configuration
 from ..robot import Robot
 from ..tracks import lay_track, random_configuration
-from .steps import LAP, Chase, Rules, Step, in_pieces
+from .steps import LAP, PROGRAM, Chase, Rules, Step, in_pieces
 
 __all__ = ["COMPARISONS", "CURVE", "LAP", "Comparison", "Row", "bones", "chain_length", "compare", "places"]
 
@@ -59,6 +59,7 @@ class Row(NamedTuple):
         time: Seconds a step.
         iterations: Iterations a step; sweeps for CCD.
         joint_updates: Single joints updated a step, for CCD.
+        counted: Iterations a step as the thesis counts: bones tried by CCD, steps of the others, one a step at least.
         efficiency: Share of the steps that ended with the ball reached, from 0 to 1.
         error: Metres left at a step's end.
         largest_error: The largest of them.
@@ -73,6 +74,7 @@ class Row(NamedTuple):
     time: float
     iterations: float
     joint_updates: float
+    counted: float
     efficiency: float
     error: float
     largest_error: float
@@ -141,6 +143,7 @@ def compare(
     """
     home = home_configuration(robot)
     origin = robot.placement(frame, home).translation
+    joints_of_a_bone = _joints_of_a_bone(robot, frame)
     for comparison in comparisons:
         rest = 1 if comparison.motion == "curve" else rules.rest
         balls = np.repeat(places(robot, frame, comparison.motion, -(-steps // rest), seed, rules.lap), rest, axis=0)[
@@ -154,10 +157,17 @@ def compare(
                 done.append(in_pieces(chase, place, last, rules.pieces))
                 last = place
                 progress()
-            yield _row(comparison, method, chase.engine, done)
+            yield _row(comparison, method, chase.engine, done, joints_of_a_bone)
 
 
-def _row(comparison: Comparison, method: str, engine: str, steps: Sequence[Step]) -> Row:
+def _joints_of_a_bone(robot: Robot, frame: str) -> float:
+    count, joints = bones(robot, frame)
+    return joints / count if count else 1.0
+
+
+def _row(comparison: Comparison, method: str, engine: str, steps: Sequence[Step], joints_of_a_bone: float) -> Row:
+    updates_of_a_bone = 1.0 if engine == PROGRAM else joints_of_a_bone
+
     def mean(of: Callable[[Step], float]) -> float:
         return math.fsum(map(of, steps)) / len(steps)
 
@@ -169,6 +179,9 @@ def _row(comparison: Comparison, method: str, engine: str, steps: Sequence[Step]
         time=mean(lambda step: step.time),
         iterations=mean(lambda step: step.iterations),
         joint_updates=mean(lambda step: step.joint_updates),
+        counted=mean(
+            lambda step: max(1.0, step.joint_updates / updates_of_a_bone if method == "ccd" else step.iterations)
+        ),
         efficiency=mean(lambda step: step.reached),
         error=mean(lambda step: step.error),
         largest_error=max(step.error for step in steps),

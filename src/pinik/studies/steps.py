@@ -12,6 +12,7 @@ import numpy as np
 import pinocchio
 from numpy.typing import NDArray
 
+from ..errors import EngineError
 from ..limits import Limits
 from ..prepared import Prepared, prepare
 from ..robot import Robot
@@ -20,13 +21,15 @@ from ..solvers import Patience, Solver
 from ..state import State, Status
 from ..targets import Target, Tolerance
 
-__all__ = ["LAP", "BareChase", "Chase", "EngineChase", "Rules", "Step", "chase_with"]
+__all__ = ["LAP", "PROGRAM", "BareChase", "Chase", "EngineChase", "Rules", "Step", "chase_with"]
 
 Array = NDArray[np.float64]
 Clock = Callable[[], float]
 
 LAP = 480
 """Steps once round a curve: the live view's eight seconds at 60 frames a second."""
+PROGRAM = "program"
+"""The engine of a chase that is the thesis's own program, whose joints are bones."""
 NEVER_STALLED = Patience(10**9, 0.0)
 
 
@@ -121,7 +124,7 @@ class BareChase:
         """Begin at `start` (nq,)."""
         target = Target(frame, robot.placement(frame, start).translation)
         self._kinematics = compiled_for(solver, robot, target)
-        self._target, self._robot, self._clock = target, robot, clock
+        self._target, self._robot, self._tolerance, self._clock = target, robot, rules.tolerance, clock
         most = solver.max_iterations if rules.max_iterations is None else rules.max_iterations
         box = Limits.of(robot, limits)
         self._states: Generator[State, Target | Sequence[Target] | None, None] = run(
@@ -130,8 +133,11 @@ class BareChase:
         self._state = next(self._states)  # reached: the ball begins where the frame is
 
     def step(self, place: Array) -> Step:
-        """Iterate until the place is reached or the iterations run out; at least once, as the thesis's program does."""
+        """Iterate until the place is reached or the iterations run out; not at all where it is reached already."""
         before, began = self._state, self._clock()
+        away = float(np.linalg.norm(self._robot.placement(self._target.frame, before.q).translation - place))
+        if away <= self._tolerance.position:
+            return Step(self._clock() - began, 0, 0, True, away, 0.0)
         state = self._states.send(self._target.moved_to(place))
         while state.status is None:
             state = next(self._states)
@@ -165,13 +171,16 @@ def chase_with(
     engine: str = "auto",
     clock: Clock = time.perf_counter,
 ) -> Chase:
-    """A method at work under these rules; bare ones by Python unless `engine` is "native".
-
-    With that, and bare rules, a step stalls and ends at its best configuration after all, as the compiled engine does.
+    """A method at work under these rules; the bare loop is Python's.
 
     Raises:
-        UnknownNameError, InputError, EngineError: As `pinik.prepare`.
+        UnknownNameError, InputError: As `pinik.prepare`.
+        EngineError: As `pinik.prepare`; or the compiled engine is asked for the bare loop.
     """
+    if rules.bare:
+        if engine == "native":
+            raise EngineError("the bare loop, which knows no stalls and keeps no best, is Python's alone")
+        return BareChase(robot, frame, solver, limits, rules, start, clock)
     prepared = prepare(
         robot,
         Target(frame, np.zeros(3)),
@@ -182,8 +191,6 @@ def chase_with(
         tolerance=rules.tolerance,
         engine=engine,
     )
-    if rules.bare and engine != "native":
-        return BareChase(robot, frame, solver, limits, rules, start, clock)
     return EngineChase(prepared, start)
 
 

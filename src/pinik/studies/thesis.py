@@ -11,9 +11,9 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ..errors import UnknownNameError
+from ..errors import InputError, UnknownNameError
 from ..robot import Robot
-from ..solvers import CCD, DampedLeastSquares, JacobianTranspose, PseudoInverse, Solver
+from ..solvers import CCD, SOLVERS, DampedLeastSquares, JacobianTranspose, PseudoInverse, Solver
 from ..targets import Tolerance
 from .ball_chain import BallChain, ProgramChase
 from .comparison import Comparison, Row, bones, chain_length
@@ -27,14 +27,13 @@ __all__ = [
     "Mismatch",
     "Published",
     "contest",
-    "counted_iterations",
     "mismatch",
     "published",
 ]
 
 Array = NDArray[np.float64]
 
-METHODS = ("ccd", "jt", "pinv", "dls")
+METHODS = tuple(SOLVERS)
 
 ITERATIONS = 100
 TOLERANCE = 0.05  # in its units, as all lengths below
@@ -57,12 +56,6 @@ class Published(NamedTuple):
     time: float
     iterations: float
     efficiency: float
-
-    def iterations_when_solved(self, most: float) -> float | None:
-        """Mean iterations of the solved steps alone, if every other one took `most`; None where none was solved."""
-        if self.efficiency == 0.0:
-            return None
-        return (self.iterations - (1.0 - self.efficiency) * most) / self.efficiency
 
 
 def _cells(*figures: tuple[float, float, float]) -> dict[str, Published]:
@@ -201,6 +194,7 @@ def contest(robot: Robot, frame: str, preset: str = "thesis", reading: str | Non
 
     Raises:
         UnknownNameError: No such preset, reading or frame.
+        InputError: No chain that has a length moves the frame.
     """
     if preset not in PRESETS:
         raise UnknownNameError("preset", preset, PRESETS)
@@ -209,6 +203,11 @@ def contest(robot: Robot, frame: str, preset: str = "thesis", reading: str | Non
     if chosen not in readings:
         raise UnknownNameError(f"reading of preset {preset!r}", chosen, readings)
     length = chain_length(robot, frame)
+    if length == 0.0:
+        raise InputError(
+            f"{frame} of {robot.name} is moved by no chain of joints that has a length, so nothing can chase a ball; "
+            "name another frame"
+        )
     units = _THESIS[chosen].units if preset == "thesis" else SEGMENTS
     unit = 1.0 if units is None else length / units
     if preset == "thesis":
@@ -242,18 +241,11 @@ def _tuned(reading: str, unit: float) -> tuple[Rules, dict[str, Solver]]:
         tolerance=_reached_at(unit) if reading == "thesis-tolerance" else Tolerance(),
         restarts=0 if reading == "no-restarts" else None,
     )
-    return rules, {"ccd": CCD(), "jt": JacobianTranspose(), "pinv": PseudoInverse(), "dls": DampedLeastSquares()}
+    return rules, {name: solver() for name, solver in SOLVERS.items()}
 
 
 def _reached_at(unit: float) -> Tolerance:
     return Tolerance(TOLERANCE * unit, Tolerance().orientation)
-
-
-def counted_iterations(row: Row, joints_of_a_bone: float) -> float:
-    """Iterations as the thesis counts them: bones turned for CCD, whole steps for the others."""
-    if row.method != "ccd":
-        return row.iterations
-    return row.joint_updates if row.engine == "program" else row.joint_updates / joints_of_a_bone
 
 
 class Mismatch(NamedTuple):
@@ -268,15 +260,14 @@ class Mismatch(NamedTuple):
     iterations: float
 
 
-def mismatch(rows: Iterable[Row], joints_of_a_bone: float, *, box: bool = False) -> Mismatch | None:
+def mismatch(rows: Iterable[Row], *, box: bool = False) -> Mismatch | None:
     """How far comparisons 1 to 4 lie from the table, or 1, 2b, 3, 4b with `box`; None without such rows."""
     points, logs = [], []
     for row in rows:
         cell = published(row)
         if cell is not None and row.comparison.motion != ("random" if box else "box"):
             points.append(100.0 * abs(row.efficiency - cell.efficiency))
-            ours = max(counted_iterations(row, joints_of_a_bone), 1.0)  # its do-loop counts one at least
-            logs.append(abs(math.log(ours / cell.iterations)))
+            logs.append(abs(math.log(row.counted / cell.iterations)))
     if not points:
         return None
     return Mismatch(sum(points) / len(points), math.exp(sum(logs) / len(logs)))
