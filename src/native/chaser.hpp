@@ -92,16 +92,26 @@ struct Chaser {
     }
   }
 
-  // How far a relative error of 1 in every coordinate moves what `correlation` holds across a joint's axis.
-  double blur(const Vec3& axis, const Vec3& origin) const {
-    const auto across = [&](const Vec3& vector) { return (vector - axis * axis.dot(vector)).norm(); };
-    double blur = 0.0;
+  // What `correlation` holds across a joint's axis: Σ w c·d, Σ w a·(c × d), and what a relative error of 1 in every
+  // coordinate would make of them.
+  struct Across {
+    double cosine = 0.0, sine = 0.0, blur = 0.0;
+  };
+
+  Across across(int joint, const Vec3& axis, const Vec3& origin) const {
+    Across sum;
+    const auto part = [&](const Vec3& vector) -> Vec3 { return vector - axis * axis.dot(vector); };
+    const auto add = [&](const Vec3& c, const Vec3& d, double w, double size) {
+      sum.cosine += w * c.dot(d);
+      sum.sine += w * axis.dot(c.cross(d));
+      sum.blur += w * size * (c.norm() + d.norm());
+    };
     for_each_pair(origin, [&](const Vec3& c, const Vec3& d, double w) {
-      blur += w * (c.norm() + d.norm() + origin.norm()) * (across(c - origin) + across(d - origin));
+      add(part(c - origin), part(d - origin), w, c.norm() + d.norm() + origin.norm());
     });
     if (!has_at)
-      for (int column = 0; column < axes; ++column) blur += across(U.col(column)) + across(V.col(column));
-    return weight * blur;
+      for (int column = 0; column < axes; ++column) add(part(U.col(column)), part(V.col(column)), 1.0, 1.0);
+    return {weight * sum.cosine, moves_frame(joint) ? weight * sum.sine : -weight * sum.sine, weight * sum.blur};
   }
 
   // Turn about `origin`, or shift, what the joint moves: effector, goal, or both.

@@ -102,8 +102,9 @@ class Sweep {
       Mat3 M = Mat3::Zero();
       for (const Chaser& chaser : chasers_)
         if (chaser.moved_by(mover)) M += chaser.correlation(mover, origin);
-      const Coefficients k = coefficients(M, axis);
-      change = is_rounding(k, mover, axis, origin) ? 0.0 : best_turn(k, low, high, scale < 1.0 || solver_.max_step < M_PI);
+      Turning g = turning(M, axis);
+      if (std::hypot(g.cosine, g.sine) <= suspect * g.along) g = measured_across(mover, axis, origin);
+      change = best_turn(g, low, high, scale < 1.0 || solver_.max_step < M_PI);
       // The long way round to a goal has none of its own to overshoot into.
       if (scale > 1.0 && std::abs(change) > M_PI) scale = 1.0;
     }
@@ -125,29 +126,37 @@ class Sweep {
     return weight > 0.0 ? pull / weight : 0.0;
   }
 
-  // Of g (Welman's eq. 4.19) for M = Σ w c dᵀ.
-  struct Coefficients {
-    double k1, k2, k3;
+  // k₂ − k₁ and k₃ of g (Welman's eq. 4.19), and the size of what they are the differences of.
+  struct Turning {
+    double cosine, sine, along;
   };
 
-  static Coefficients coefficients(const Mat3& M, const Vec3& axis) {
-    return {axis.dot(M * axis), M.trace(),
-            axis.dot(Vec3(M(1, 2) - M(2, 1), M(2, 0) - M(0, 2), M(0, 1) - M(1, 0)))};
+  // For M = Σ w c dᵀ.
+  static Turning turning(const Mat3& M, const Vec3& axis) {
+    const double k1 = axis.dot(M * axis), k2 = M.trace();
+    const double k3 = axis.dot(Vec3(M(1, 2) - M(2, 1), M(2, 0) - M(0, 2), M(0, 1) - M(1, 0)));
+    return {k2 - k1, k3, std::abs(k1) + std::abs(k2)};
   }
 
-  // Whether g changes with φ by no more than rounding makes of it, as where the effector lies on the joint's axis.
-  bool is_rounding(const Coefficients& k, int joint, const Vec3& axis, const Vec3& origin) const {
-    const double across = std::hypot(k.k3, k.k2 - k.k1);
-    if (across > suspect * (std::abs(k.k1) + std::abs(k.k2) + std::abs(k.k3))) return false;
-    double blur = 0.0;
-    for (const Chaser& chaser : chasers_)
-      if (chaser.moved_by(joint)) blur += chaser.blur(axis, origin);
-    return across <= rounding * blur;
+  // The same without a difference of large numbers; nothing where rounding alone may make as much of them. So it is
+  // where the effector lies on the joint's axis, or the axis that it should turn is the joint's own.
+  Turning measured_across(int joint, const Vec3& axis, const Vec3& origin) const {
+    Chaser::Across sum;
+    for (const Chaser& chaser : chasers_) {
+      if (!chaser.moved_by(joint)) continue;
+      const Chaser::Across own = chaser.across(joint, axis, origin);
+      sum.cosine += own.cosine;
+      sum.sine += own.sine;
+      sum.blur += own.blur;
+    }
+    if (std::hypot(sum.cosine, sum.sine) <= rounding * sum.blur) return {0.0, 0.0, 0.0};
+    return {sum.cosine, sum.sine, 0.0};
   }
 
-  // The φ in [low, high] that maximises g.
-  static double best_turn(const Coefficients& k, double low, double high, bool shortest) {
-    const double best = std::atan2(k.k3, k.k2 - k.k1);
+  // The φ in [low, high] that maximises g, which is as cosine · cos φ + sine · sin φ.
+  static double best_turn(const Turning& g, double low, double high, bool shortest) {
+    if (g.cosine == 0.0 && g.sine == 0.0) return 0.0;
+    const double best = std::atan2(g.sine, g.cosine);
     if (low <= best && best <= high) return best;
     if (shortest) return std::min(std::max(best, low), high);
     for (double other : {best - 2.0 * M_PI, best + 2.0 * M_PI})

@@ -141,10 +141,10 @@ class CCD(SweepingSolver):
             change = min(max(_best_slide(axis, origin, mover, chasers), low), high)
         else:
             M = sum([chaser.correlation(mover, origin) for chaser in chasers], _NOTHING)
-            k = _coefficients(M, axis)
-            change = 0.0
-            if not _is_rounding(k, axis, origin, chasers):
-                change = _best_turn(k, low, high, shortest=scale < 1.0 or self.max_step < math.pi)
+            cosine, sine, along = _coefficients(M, axis)
+            if math.hypot(cosine, sine) <= _SUSPECT * along:
+                cosine, sine = _measured_across(axis, origin, mover, chasers)
+            change = _best_turn(cosine, sine, low, high, shortest=scale < 1.0 or self.max_step < math.pi)
         if scale > 1.0 and not coordinate.slides and abs(change) > math.pi:
             scale = 1.0  # the long way round to a goal has none of its own to overshoot into
         change = min(max(scale * change, low), high) / multiplier
@@ -198,30 +198,31 @@ def _best_slide(axis: Array, origin: Array, mover: Joint, chasers: list[Chaser])
 
 
 def _coefficients(M: Array, axis: Array) -> tuple[float, float, float]:
-    """k₁, k₂ and k₃ of g (eq. 4.19) for M = Σ w c dᵀ."""
+    """k₂ − k₁ and k₃ of g (eq. 4.19) for M = Σ w c dᵀ, and the size of what they are the differences of."""
     x, y, z = axis.tolist()
     (xx, xy, xz), (yx, yy, yz), (zx, zy, zz) = M.tolist()
     k1 = x * (xx * x + xy * y + xz * z) + y * (yx * x + yy * y + yz * z) + z * (zx * x + zy * y + zz * z)
     k2 = xx + yy + zz
-    return k1, k2, x * (yz - zy) + y * (zx - xz) + z * (xy - yx)
+    return k2 - k1, x * (yz - zy) + y * (zx - xz) + z * (xy - yx), abs(k1) + abs(k2)
 
 
-def _is_rounding(k: tuple[float, float, float], axis: Array, origin: Array, chasers: list[Chaser]) -> bool:
-    """Whether g changes with φ by no more than rounding makes of it, as where the effector lies on the joint's axis."""
-    k1, k2, k3 = k
-    across = math.hypot(k3, k2 - k1)
-    if across > _SUSPECT * (abs(k1) + abs(k2) + abs(k3)):
-        return False
-    return across <= _ROUNDING * sum(chaser.blur(axis, origin) for chaser in chasers)
+def _measured_across(axis: Array, origin: Array, mover: Joint, chasers: list[Chaser]) -> tuple[float, float]:
+    """k₂ − k₁ and k₃ without a difference of large numbers; nothing where rounding alone may make as much of them.
+
+    So it is where the effector lies on the joint's axis, or the axis that it should turn is the joint's own.
+    """
+    cosine, sine, blur = (sum(parts) for parts in zip(*(c.across(axis, origin, mover) for c in chasers), strict=True))
+    return (cosine, sine) if math.hypot(cosine, sine) > _ROUNDING * blur else (0.0, 0.0)
 
 
-def _best_turn(k: tuple[float, float, float], low: float, high: float, *, shortest: bool) -> float:
-    """The φ in [low, high] that maximises g (eq. 4.19) [rad].
+def _best_turn(cosine: float, sine: float, low: float, high: float, *, shortest: bool) -> float:
+    """The φ in [low, high] that maximises g [rad], which is as cosine · cos φ + sine · sin φ.
 
     Where a limit blocks the best φ, the other way round to it counts as well, unless `shortest`.
     """
-    k1, k2, k3 = k
-    best = math.atan2(k3, k2 - k1)
+    if cosine == 0.0 == sine:
+        return 0.0
+    best = math.atan2(sine, cosine)
     if low <= best <= high:
         return best
     if shortest:

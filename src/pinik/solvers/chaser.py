@@ -91,19 +91,33 @@ class Chaser:
             M *= self.weight
         return M if mover.id in self.term.frame_support else M.T
 
-    def blur(self, axis: Array, origin: Array) -> float:
-        """How far a relative error of 1 in every coordinate moves what `correlation` holds across a joint's axis."""
+    def across(self, axis: Array, origin: Array, mover: Joint) -> tuple[float, float, float]:
+        """What `correlation` holds across a joint's axis: Σ w c·d, Σ w a·(c × d), and how exact they are.
 
-        def across(vector: Array) -> float:
-            return float(np.linalg.norm(vector - axis * axis.dot(vector)))
+        The last is what a relative error of 1 in every coordinate would make of the other two.
+        """
 
-        blur = 0.0
-        for c, d, w in self.point_pairs(origin):
-            size = float(np.linalg.norm(c) + np.linalg.norm(d) + np.linalg.norm(origin))
-            blur += w * size * (across(c - origin) + across(d - origin))
+        def part(vector: Array) -> Array:
+            return np.asarray(vector - axis * axis.dot(vector))
+
+        parts = [
+            (
+                part(c - origin),
+                part(d - origin),
+                w,
+                float(np.linalg.norm(c) + np.linalg.norm(d) + np.linalg.norm(origin)),
+            )
+            for c, d, w in self.point_pairs(origin)
+        ]
         if self.U is not None and self.V is not None:
-            blur += sum(across(u) + across(v) for u, v in zip(self.U.T, self.V.T, strict=True))
-        return self.weight * blur
+            parts += [(part(u), part(v), 1.0, 1.0) for u, v in zip(self.U.T, self.V.T, strict=True)]
+        cosine = sine = blur = 0.0
+        for c, d, w, size in parts:
+            cosine += w * float(c.dot(d))
+            sine += w * float(axis.dot(np.cross(c, d)))
+            blur += w * size * float(np.linalg.norm(c) + np.linalg.norm(d))
+        sign = 1.0 if mover.id in self.term.frame_support else -1.0
+        return self.weight * cosine, self.weight * sign * sine, self.weight * blur
 
     def carry(self, mover: Joint, origin: Array, R: Array | None, shift: Array) -> None:
         """Turn by R (3, 3) about `origin`, or else by `shift` (3,), what the mover moves: effector, goal, or both."""
