@@ -147,3 +147,10 @@ def test_starts_near_the_targets_are_taken(two_link):
 def test_a_place_that_is_none_is_named(two_link):
     with pytest.raises(pinik.InputError, match=r"places\[1\]"):
         pinik.solve_many(two_link, "tip", [[0.5, 0.3, 0.0], [math.nan, 0.0, 0.0]], "two_bone")
+
+
+def test_a_time_limit_is_each_question_s_own(two_link):
+    places = np.array([[0.6, 0.2, 0.0], [0.0, 2.0, 0.0]])
+    many = pinik.solve_many(two_link, "tip", places, "two_bone", time_limit=1e-9)
+    for k, place in enumerate(places):
+        assert many[k].status is two_link.solve("tip", position=place, method="two_bone", time_limit=1e-9).status

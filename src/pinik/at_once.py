@@ -24,9 +24,10 @@ _BLOCK = 8192  # questions worked on at once: their numbers stay in the processo
 
 
 def lands_at_once(settings: Settings) -> bool:
-    """Whether one step of the method is its answer, and it may take another one to find that it rests."""
+    """Whether one step of the method is its answer, and it has the time to take another one and find that it rests."""
     solver = settings.solver
-    return isinstance(solver, TwoBoneSolver) and solver.lands_at_once and settings.max_iterations > 1
+    unhurried = settings.max_iterations > 1 and settings.time_limit == math.inf
+    return isinstance(solver, TwoBoneSolver) and solver.lands_at_once and unhurried
 
 
 def attempt_at_once(settings: Settings, goals: Array, starts: Array) -> native.Answers:

@@ -7,6 +7,7 @@ import sys
 
 import pytest
 
+from pinik.cli.comparison_plot import draw_comparison
 from pinik.studies.thesis import TABLE
 
 QUICK = ("compare", "--steps", 3)
@@ -70,6 +71,7 @@ def test_another_robot_and_frame(run):
         (("--preset", "thesi"), "near: 'thesis'"),
         (("--preset", "tuned", "--reading", "literal"), "reading of preset 'tuned'"),
         (("--frame", "tipp"), "near: 'tip'"),
+        (("--frame", "base"), "moved by no chain of joints"),
         (("--steps", 0), "--steps is a whole number of at least 1"),
         (("--pieces", 0), "--pieces is a whole number of at least 1"),
         (("--engine", "fast"), "engine"),
@@ -100,8 +102,23 @@ class TestPlot:
         assert run(*QUICK, "--plot", tmp_path / "bars.png").status == 0
         assert (tmp_path / "bars.png").read_bytes().startswith(b"\x89PNG")
         assert run(*QUICK, "--plot", tmp_path / "bars.svg").status == 0
-        text = (tmp_path / "bars.svg").read_text()
-        assert "<svg" in text
+        assert "<svg" in (tmp_path / "bars.svg").read_text()
+
+    def test_a_bar_is_a_row_and_the_outline_beside_it_the_thesis_s(self, run):
+        answer = run(*QUICK, "--json").json
+        iterations, efficiency = draw_comparison(answer).axes[1:3]
+        for panel, ours, theirs, factor in (
+            (iterations, "counted_iterations", "iterations", 1.0),
+            (efficiency, "efficiency", "efficiency", 100.0),
+        ):
+            filled, outlined = panel.containers[::2], panel.containers[1::2]
+            for method, bars, outlines in zip(TABLE, filled, outlined, strict=True):
+                rows = [row for row in answer["rows"] if row["method"] == method]
+                assert bars.get_label() == method
+                assert [bar.get_height() for bar in bars] == pytest.approx([factor * row[ours] for row in rows])
+                assert [bar.get_height() for bar in outlines] == pytest.approx(
+                    [factor * row["thesis"][theirs] for row in rows]
+                )
 
     def test_a_plot_that_cannot_be_written_is_refused_before_anything_runs(self, run, tmp_path):
         assert "there is no such folder" in run(*QUICK, "--plot", tmp_path / "none" / "bars.png").err

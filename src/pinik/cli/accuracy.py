@@ -24,7 +24,7 @@ from .accuracy_plots import draw_accuracy, draw_spread, draw_straight_arm
 from .assignments import MethodParameters, solvers_with
 from .exits import ExitStatus
 from .options import AsJson
-from .plots import check_plot
+from .plots import check_plot, save_plot
 from .progress import progress
 from .tables import emit_table
 
@@ -83,9 +83,15 @@ def accuracy(
         ("--plot-straight", plot_straight, draw_straight_arm),
         ("--plot-spread", plot_spread, draw_spread),
     )
+    asked_for = [path.resolve() for _, path, _ in drawings if path is not None]
+    if len(set(asked_for)) < len(asked_for):
+        raise InputError("two pictures cannot be written to one file")
     for option, path, _ in drawings:
         if path is not None:
             check_plot(path, option)
+    for name, solver in solvers.items():
+        if solver.parameters["stiffness"]:
+            raise InputError(f"--param {name}.stiffness: here the weights are what is compared; the command sets them")
     chain = planar_chain(joints)
     asked = {case: problems(chain, case, count, edge=edge, seed=seed) for case in CASES}
     with progress(f"{chain.name}, {digits} digits", len(CASES) * len(solvers) * digits) as tick:
@@ -110,13 +116,13 @@ def accuracy(
             for solver in solvers.values()
         ],
     }
-    for option, path, draw in drawings:
-        if path is not None:
-            draw(answer, path, option)
     if as_json:
         output.emit_json(answer)
     else:
         _emit(answer)
+    for option, path, draw in drawings:
+        if path is not None:
+            save_plot(draw(answer), path, option)
     return ExitStatus.ANSWERED
 
 
@@ -177,7 +183,7 @@ def _spread_fields(own: Spread) -> dict[str, Any]:
         "method": own.method,
         "stiffness": own.stiffness,
         "solved": own.solved,
-        "shares": own.shares.tolist(),
+        "shares": None if own.shares is None else own.shares.tolist(),
         "moving_joints": own.moving_joints,
         "turned_rad": own.turned,
     }
@@ -216,9 +222,9 @@ def _emit(answer: Mapping[str, Any]) -> None:
     )
     names = tuple(f"joint{number}" for number in range(1, answer["joints"] + 1))
     emit_table(
-        ("method", "stiffness", *names, "moving joints", "turned rad"),
-        [_spread_texts(own) for own in answer["spread"]],
-        numeric={*names, "moving joints", "turned rad"},
+        ("method", "stiffness", "solved", *names, "moving joints", "turned rad"),
+        [_spread_texts(own, answer["joints"]) for own in answer["spread"]],
+        numeric={"solved", *names, "moving joints", "turned rad"},
     )
     _emit_paragraph(
         f"Each joint's share of the motion in %, base first, when the tip is dragged a fifth of the chain's length "
@@ -257,7 +263,9 @@ def _pull_texts(pull: Mapping[str, Any]) -> Sequence[str]:
     )
 
 
-def _spread_texts(own: Mapping[str, Any]) -> Sequence[str]:
+def _spread_texts(own: Mapping[str, Any], joints: int) -> Sequence[str]:
+    start = (own["method"], "weighted" if own["stiffness"] else "none", f"{100.0 * own['solved']:.0f} %")
+    if own["shares"] is None:
+        return (*start, *["-"] * (joints + 2))
     shares = [f"{100.0 * share:.0f}" for share in own["shares"]]
-    weighted = "weighted" if own["stiffness"] else "none"
-    return (own["method"], weighted, *shares, f"{own['moving_joints']:.1f}", f"{own['turned_rad']:.2f}")
+    return (*start, *shares, f"{own['moving_joints']:.1f}", f"{own['turned_rad']:.2f}")

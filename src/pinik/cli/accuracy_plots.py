@@ -3,30 +3,26 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from .plots import METHOD_COLORS, save_plot
+from .plots import METHOD_COLORS
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
 
 __all__ = ["draw_accuracy", "draw_spread", "draw_straight_arm"]
 
-Figures = Mapping[str, Any]
+Answer = Mapping[str, Any]
 
 _INK, _FAINT, _BALL = "#1b2129", "#b4bdc8", "#d81f2f"
 _TITLES = {"near": "well within reach", "edge": "at the edge of reach"}
 
 
-def draw_accuracy(answer: Figures, path: Path, option: str) -> None:
-    """Figs. 4.4 and 4.5: the arms, iterations and time against digits of accuracy; a row for each target.
-
-    Raises:
-        CommandError: The file cannot be written.
-    """
+def draw_accuracy(answer: Answer) -> Figure:
+    """Figs. 4.4 and 4.5: the arms, iterations and time against digits of accuracy; a row for each target."""
     from matplotlib.figure import Figure
 
     figure = Figure(figsize=(12.0, 7.6), layout="constrained")
@@ -63,15 +59,11 @@ def draw_accuracy(answer: Figures, path: Path, option: str) -> None:
         f"{answer['robot']}: what a digit costs; medians of {answer['problems']} problems, "
         f"{answer['rows'][0]['engine']} engine (Welman, figs. 4.4 and 4.5)"
     )
-    save_plot(figure, path, option)
+    return figure
 
 
-def draw_straight_arm(answer: Figures, path: Path, option: str) -> None:
-    """Fig. 4.2: what each method alone makes of a straight arm pulled inwards, and `pinik.solve` beside it.
-
-    Raises:
-        CommandError: The file cannot be written.
-    """
+def draw_straight_arm(answer: Answer) -> Figure:
+    """Fig. 4.2: what each method alone makes of a straight arm pulled inwards, and `pinik.solve` beside it."""
     from matplotlib.figure import Figure
 
     places = list(dict.fromkeys(pull["place"] for pull in answer["straight"]))
@@ -90,51 +82,49 @@ def draw_straight_arm(answer: Figures, path: Path, option: str) -> None:
             _draw_arm(panel, alone["outline"], METHOD_COLORS[pull["method"]])
             _draw_ball(panel, (place * length, 0.0))
             _frame_arms(panel, shown)
-            panel.set_title(f"{pull['method']}: {_outcome(alone)}", fontsize=10)
+            panel.set_title(f"{pull['method']}: {_outcome(pull['method'], alone)}", fontsize=10)
     figure.suptitle(
         "A straight arm (grey) pulled inwards along its own line (Welman, fig. 4.2): each method alone (solid), "
         "pinik.solve (dashed)"
     )
-    save_plot(figure, path, option)
+    return figure
 
 
-def _outcome(alone: Figures) -> str:
+def _outcome(method: str, alone: Answer) -> str:
     if alone["status"] == "CONVERGED":
-        return f"there in {alone['iterations']} iterations"
-    return f"stuck {alone['position_error_m']:.2g} m short"
+        return f"there in {alone['iterations']} {'sweeps' if method == 'ccd' else 'steps'}"
+    return f"stuck {alone['position_error_m']:.2g} m off"
 
 
-def draw_spread(answer: Figures, path: Path, option: str) -> None:
-    """Each joint's share of the motion, freely and with stiffness weights.
-
-    Raises:
-        CommandError: The file cannot be written.
-    """
+def draw_spread(answer: Answer) -> Figure:
+    """Each joint's share of the motion, freely and with stiffness weights."""
     from matplotlib.figure import Figure
 
     figure = Figure(figsize=(12.0, 3.6), layout="constrained")
     panels = figure.subplots(1, len(METHOD_COLORS), sharey=True)
     numbers = np.arange(1, answer["joints"] + 1)
+    nothing = [0.0] * len(numbers)
     for panel, (method, color) in zip(panels, METHOD_COLORS.items(), strict=True):
         free, weighted = sorted(
             (own for own in answer["spread"] if own["method"] == method), key=lambda own: bool(own["stiffness"])
         )
-        panel.bar(numbers - 0.2, 100.0 * np.array(free["shares"]), 0.4, color=color, label="all alike")
-        panel.bar(
-            numbers + 0.2, 100.0 * np.array(weighted["shares"]), 0.4, edgecolor=color, fill=False, hatch="////",
-            label="firmer towards the tip",
-        )  # fmt: skip
+        title = f"{_worth(free)} → {_worth(weighted)} joints' worth"
+        panel.bar(numbers - 0.2, 100.0 * np.array(free["shares"] or nothing), 0.4, color=color, label="all alike")
+        shares = 100.0 * np.array(weighted["shares"] or nothing)
+        panel.bar(numbers + 0.2, shares, 0.4, edgecolor=color, fill=False, hatch="////", label="firmer towards the tip")
         panel.axhline(100.0 / len(numbers), color=_INK, linewidth=0.7, linestyle=":")
-        panel.set_title(
-            f"{method}: {free['moving_joints']:.1f} → {weighted['moving_joints']:.1f} joints' worth", fontsize=10
-        )
+        panel.set_title(f"{method}: {title}", fontsize=10)
         panel.set_xlabel("joint, base first")
         panel.set_xticks(numbers)
         _without_box(panel)
     panels[0].set_ylabel("share of the motion [%]")
     figure.legend(*panels[0].get_legend_handles_labels(), loc="outside lower center", ncols=2, frameon=False)
     figure.suptitle(f"{answer['robot']}: who moves when the tip is dragged a fifth of the length aside (Welman, §4.3)")
-    save_plot(figure, path, option)
+    return figure
+
+
+def _worth(own: Answer) -> str:
+    return "none solved" if own["moving_joints"] is None else f"{own['moving_joints']:.1f}"
 
 
 def _draw_arm(

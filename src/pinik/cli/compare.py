@@ -23,7 +23,7 @@ from .comparison_plot import draw_comparison
 from .exits import ExitStatus
 from .loading import load_robot
 from .options import AsJson, PackageDirs
-from .plots import check_plot
+from .plots import check_plot, save_plot
 from .progress import progress
 from .tables import emit_table
 
@@ -101,12 +101,12 @@ def compare(
             )
         )
     answer = _fields(machine, chosen, rows, count, seed)
-    if plot is not None:
-        draw_comparison(answer, plot)
     if as_json:
         output.emit_json(answer)
     else:
         _emit(answer)
+    if plot is not None:
+        save_plot(draw_comparison(answer), plot)
     return ExitStatus.ANSWERED
 
 

@@ -3,31 +3,29 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-from .plots import METHOD_COLORS, save_plot
+from .plots import METHOD_COLORS
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 __all__ = ["draw_comparison"]
 
-Figures = Mapping[str, Any]
+Row = Mapping[str, Any]
 
-_PANELS: tuple[tuple[str, str, Callable[[Figures], float]], ...] = (
+_PANELS: tuple[tuple[str, str, Callable[[Row], float]], ...] = (
     ("time", "time a step [ms]", lambda row: 1000.0 * row["time_s"]),
     ("iterations", "iterations a step", lambda row: row["counted_iterations"]),
     ("efficiency", "efficiency [%]", lambda row: 100.0 * row["efficiency"]),
 )
 
 
-def draw_comparison(answer: Mapping[str, Any], path: Path) -> None:
-    """Write a picture of what `pinik compare --json` prints; the thesis's own figures are the outlined bars.
-
-    Raises:
-        CommandError: The file cannot be written.
-    """
+def draw_comparison(answer: Mapping[str, Any]) -> Figure:
+    """A picture of what `pinik compare --json` prints; the thesis's own figures are the outlined bars."""
     from matplotlib.figure import Figure
 
-    rows: Sequence[Figures] = answer["rows"]
+    rows: Sequence[Row] = answer["rows"]
     names = list(dict.fromkeys(row["comparison"] for row in rows))
     methods = list(dict.fromkeys(row["method"] for row in rows))
     width = 0.8 / len(methods)
@@ -43,18 +41,18 @@ def draw_comparison(answer: Mapping[str, Any], path: Path) -> None:
         panel.set_title(title)
         panel.set_xticks(range(len(names)), [_label(rows, name) for name in names], fontsize=8)
         if key != "efficiency":
-            panel.set_yscale("symlog", linthresh=0.001 if key == "time" else 1.0)
-            panel.set_ylim(bottom=0.0)
+            panel.set_yscale("symlog", linthresh=0.001 if key == "time" else 1.0, linscale=0.2)
+            panel.set_ylim(0.0, 1.4 * panel.get_ylim()[1])
     bars, labels = axes[0].get_legend_handles_labels()
     figure.legend(bars, labels, loc="outside lower center", ncols=len(methods), fontsize=8, frameon=False)
     figure.suptitle(
         f"{answer['robot']}, {answer['frame']}: preset {answer['preset']}, reading {answer['reading']}, "
         f"{answer['steps']} steps; outlined: the thesis's Table 4.1"
     )
-    save_plot(figure, path)
+    return figure
 
 
-def _published(row: Figures, key: str) -> float:
+def _published(row: Row, key: str) -> float:
     cell = row["thesis"]
     if cell is None:
         return 0.0
@@ -63,6 +61,6 @@ def _published(row: Figures, key: str) -> float:
     return float(cell["iterations"] if key == "iterations" else 100.0 * cell["efficiency"])
 
 
-def _label(rows: Sequence[Figures], name: str) -> str:
+def _label(rows: Sequence[Row], name: str) -> str:
     row = next(row for row in rows if row["comparison"] == name)
     return f"{name}\n{row['motion']}\n{'limits' if row['limits'] else 'free'}"

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -21,7 +22,7 @@ def check_plot(path: Path, option: str = "--plot") -> None:
     """See that a picture can be drawn, before minutes are spent on what it should show.
 
     Raises:
-        CommandError: matplotlib is not installed, it does not write such files, or there is no such folder.
+        CommandError: matplotlib is not installed, it does not write such files, or not in this place.
     """
     try:
         from matplotlib.figure import Figure
@@ -32,6 +33,10 @@ def check_plot(path: Path, option: str = "--plot") -> None:
         raise CommandError(f"{option} {path}: the name's end is one of {', '.join(sorted(kinds))}")
     if not path.parent.is_dir():
         raise CommandError(f"{option} {path}: there is no such folder")
+    if path.is_dir():
+        raise CommandError(f"{option} {path}: it is a folder")
+    if not os.access(path if path.exists() else path.parent, os.W_OK):
+        raise CommandError(f"{option} {path}: it may not be written")
 
 
 def save_plot(figure: Figure, path: Path, option: str = "--plot") -> None:

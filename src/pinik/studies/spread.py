@@ -20,6 +20,7 @@ Array = NDArray[np.float64]
 FIRMEST = 0.1
 """The weight of the last joint; the first has 1."""
 
+_MOST_ITERATIONS = 10_000
 _DRAG = 0.2  # of the chain's length
 _WELL_WITHIN = 0.9
 
@@ -27,7 +28,7 @@ _WELL_WITHIN = 0.9
 class Spread(NamedTuple):
     """Where a method puts the motion.
 
-    Means are over the problems that were solved.
+    Means are over the problems that were solved; None where there are none.
 
     Attributes:
         method: The solver's short name.
@@ -41,9 +42,9 @@ class Spread(NamedTuple):
     method: str
     stiffness: dict[str, float]
     solved: float
-    shares: Array
-    moving_joints: float
-    turned: float
+    shares: Array | None
+    moving_joints: float | None
+    turned: float | None
 
 
 def firmer_towards_the_tip(chain: Robot) -> dict[str, float]:
@@ -83,13 +84,16 @@ def spread(
         stiffness: Joint → w_i.
         engine: As for `pinik.solve`.
     """
-    solve = asked_of(chain, make_solver(solver, stiffness=stiffness), engine=engine)
+    weighted = make_solver(solver, stiffness=stiffness)
+    solve = asked_of(chain, weighted, max_iterations=_MOST_ITERATIONS, engine=engine)
     turns = []
     for problem in asked:
         solution = solve(problem.place, problem.start)
         if solution.success:
             turns.append(np.abs(solution.q - problem.start))
-    each = np.array(turns).reshape(len(turns), chain.model.nv)
+    if not turns:
+        return Spread(solver.name, stiffness, 0.0, None, None, None)
+    each = np.array(turns)
     shares = each / each.sum(axis=1, keepdims=True)
     return Spread(
         solver.name,
