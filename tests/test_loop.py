@@ -10,6 +10,7 @@ import pytest
 
 import pinik
 from by_hand import axis, limit, origin
+from engines import needs_native
 from pinik import Status, Target
 from robots import load_quietly
 from urdf_texts import joint, link
@@ -99,6 +100,31 @@ def test_stretched_out_the_pseudo_inverse_swings_and_dls_comes_to_rest(name, fra
     assert still_error == pytest.approx(ccd_error, abs=1e-6)  # at rest where CCD is: stretched to the full
     if reach is not None:
         assert still_error == pytest.approx(math.hypot(*position) - reach, abs=1e-6)
+
+
+@pytest.mark.parametrize("rule", ["residual", "sugihara"])
+@pytest.mark.parametrize(
+    ("name", "base", "reach"), [("arm", (0.0, 0.0, 0.12), 1.2), ("two_link", (0.0, 0.0, 0.0), 0.9)]
+)
+@pytest.mark.parametrize("beyond", [0.02, 0.1, 0.28, 0.6, 2.0])
+def test_dls_rests_at_full_stretch_however_little_is_missing(name, base, reach, beyond, rule):
+    """A thesis's wish: full stretch towards the target, without jitter."""
+    robot = load_quietly(name)
+    direction = np.array([0.6, 0.3, 0.6]) / 0.9 if name == "arm" else np.array([0.8, 0.6, 0.0])
+    solver = pinik.DampedLeastSquares(rule=rule, damping=math.sqrt(0.5) if rule == "residual" else 1e-3)
+    position = base + (reach + beyond) * direction
+    change, error = largest_change_after_settling(robot, "tip", position, solver)
+    assert change < 1e-9
+    assert error == pytest.approx(beyond, abs=1e-9)
+
+
+@pytest.mark.parametrize("engine", ["python", pytest.param("native", marks=needs_native)])
+def test_a_bare_dls_ends_at_full_stretch_in_both_engines(arm, engine):
+    position = np.array([0.0, 0.0, 0.12]) + 1.3 * np.array([0.6, 0.3, 0.6]) / 0.9
+    s = arm.solve(
+        "tip", position=position, q0=arm.poses["relaxed"], limits=False, restarts=0, max_iterations=300, engine=engine
+    )
+    assert s.position_error == pytest.approx(0.1, abs=1e-6)
 
 
 @pytest.mark.parametrize("alpha", [1.0, None])

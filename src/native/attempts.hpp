@@ -151,7 +151,8 @@ class Attempts {
   }
 
   Status attempt(const Vector& start, Patience patience, long max_iterations, bool bold, bool downhill) {
-    RunSettings run{max_iterations, settings_.tolerance, patience, bold, downhill, outcome_.restarts};
+    RunSettings run{max_iterations, settings_.tolerance, patience, bold, downhill, outcome_.proof.has_value(),
+                    outcome_.restarts};
     Status ended = Status::running;
     long iterations = 0, updates = 0;
     run_(start, limits_, loose_, run, [&](const Linearization<Rows>& at, long iteration, long updated, Status status) {

@@ -21,7 +21,7 @@ struct RunSettings {
   long max_iterations = 100;
   Tolerance tolerance;
   Patience patience;
-  bool bold = false, downhill = false;
+  bool bold = false, downhill = false, beyond = false;
   int attempt = 0;
 };
 
@@ -39,7 +39,7 @@ class Run {
   template <class See>
   void operator()(const Vector& start, const Limits& limits, const Limits& loose, const RunSettings& settings, See see) {
     const bool bold = settings.bold && !solver_.sweeps();
-    stepping_.damp_by(bold ? of_the_distance : 1.0);
+    stepping_.damp_by(bold ? of_the_distance : 1.0, settings.beyond);
     const Limits* box = bold && limits.enabled ? &loose : &limits;
     at_.q = start;
     kinematics_.linearize(at_);

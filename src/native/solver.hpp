@@ -36,6 +36,9 @@ struct Solver {
   bool sweeps() const { return method == Method::ccd; }
 };
 
+// A miss that stays is damped as if it were this part of the chain's length, in the geometric mean.
+constexpr double of_the_chain = 0.5;
+
 // λ² keeps JJᵀ + λ²I positive definite where rows depend on each other and the damping has faded.
 constexpr double smallest_damping_squared = 1e-15;
 
@@ -141,6 +144,7 @@ class Directions {
   Directions(const Solver& solver, const Problem& problem) : solver_(solver), problem_(problem) {}
 
   double share_of_distance = 1.0;  // that damping goes by
+  bool beyond = false;             // whether a target is proved out of reach, where damping goes by more
 
   // dq of the free coordinates, those held left out; `at.e` is what is pulled by, `at.distance` what damps.
   void step(const Linearization<Rows>& at, const std::vector<char>& held, Vector& dq) {
@@ -196,7 +200,8 @@ class Directions {
   }
 
   double damping_squared(const Linearization<Rows>& at) {
-    const double distance = share_of_distance * at.distance;
+    const double distance = beyond ? std::sqrt(at.distance * std::max(at.distance, of_the_chain * problem_.size_of_chain))
+                                   : share_of_distance * at.distance;
     double squared = solver_.damping * solver_.damping;
     if (solver_.rule == DampingRule::residual) {
       squared *= distance * distance;

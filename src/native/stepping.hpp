@@ -11,8 +11,11 @@ class Stepping {
   Stepping(const Solver& solver, Kinematics<Rows>& kinematics)
       : solver_(solver), kinematics_(kinematics), directions_(solver, kinematics.problem), sweep_(solver, kinematics) {}
 
-  // What damping goes by from now on, of the distance.
-  void damp_by(double share) { directions_.share_of_distance = share; }
+  // What damping goes by from now on, of the distance; by more where a target is proved out of reach.
+  void damp_by(double share, bool beyond) {
+    directions_.share_of_distance = share;
+    directions_.beyond = beyond;
+  }
 
   // The configuration after the next step from `at` into `q`; how many joints were updated one by one.
   int advance(const Linearization<Rows>& from, const Limits& limits, const Tolerance& tolerance, double scale, Vector& q) {

@@ -15,7 +15,7 @@ from .kinematics import Kinematics
 from .limits import Limits
 from .target_term import TargetTerm
 
-__all__ = ["Bounds", "Shortfall", "reach_bounds", "shortfall"]
+__all__ = ["Bounds", "Shortfall", "bounds_of", "reach_bounds", "shortfall"]
 
 Vector = Sequence[float]  # three plain numbers: every solve asks, and numpy is slow with so few
 
@@ -56,23 +56,28 @@ class _Span(NamedTuple):
     distance: _Range
 
 
-def shortfall(kinematics: Kinematics, limits: Limits, slack: float = 0.0) -> Shortfall | None:
+def shortfall(
+    kinematics: Kinematics, limits: Limits, slack: float = 0.0, bounds: Sequence[Bounds | None] | None = None
+) -> Shortfall | None:
     """The target that lies furthest outside its chain's reach, if one does by more than `slack` [m].
 
     The bounds hold for any values of the joints. A chain is cut into spans: from one joint's origin to the next, or
     to the one after it as the joint between them turns through its limits. The longest these get add up to the
-    reach at most; what is left of the shortest that one of them gets, when all others fold back, is the least.
+    reach at most; what is left of the shortest that one of them gets, when all others fold back, is the least. Who
+    asks often hands over what `bounds_of` gave.
     """
     worst = None
-    for index, term in enumerate(kinematics.terms):
-        found = _term_shortfall(index, term, kinematics.model, limits)
+    for index, (term, own) in enumerate(
+        zip(kinematics.terms, bounds_of(kinematics, limits) if bounds is None else bounds, strict=True)
+    ):
+        found = _term_shortfall(index, term, own)
         if found is not None and (worst is None or found.distance > worst.distance):
             worst = found
     return None if worst is None or worst.distance <= slack else worst
 
 
-def _term_shortfall(index: int, term: TargetTerm, model: pinocchio.Model, limits: Limits) -> Shortfall | None:
-    position, bounds = term.target.position, reach_bounds(term, model, limits)
+def _term_shortfall(index: int, term: TargetTerm, bounds: Bounds | None) -> Shortfall | None:
+    position = term.target.position
     if position is None or bounds is None:
         return None
     base, reach, hole = bounds
@@ -97,6 +102,11 @@ class Bounds(NamedTuple):
     base: NDArray[np.float64]
     reach: float
     hole: float
+
+
+def bounds_of(kinematics: Kinematics, limits: Limits) -> list[Bounds | None]:
+    """The bounds of every target's chain, wherever the targets are."""
+    return [reach_bounds(term, kinematics.model, limits) for term in kinematics.terms]
 
 
 def reach_bounds(term: TargetTerm, model: pinocchio.Model, limits: Limits) -> Bounds | None:

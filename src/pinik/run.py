@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from .kinematics import Kinematics, Linearization
 from .limits import Limits
+from .reach import bounds_of, shortfall
 from .robot import Robot
 from .solvers import JacobianSolver, Patience, Solver, SweepingSolver
 from .state import State, Status
@@ -27,6 +28,7 @@ AT_REST = 1e-9
 """What an exact method's rounding may still move a joint by [rad or m]."""
 
 _OF_THE_DISTANCE = math.sqrt(0.1)  # what a bold run's damping goes by
+_OF_THE_CHAIN = 0.5  # a miss that stays is damped as if it were this part of the chain's length, in the geometric mean
 
 
 def compiled_for(
@@ -62,8 +64,13 @@ def run(
     third of it, and limits hold only in the end. What lies outside them once the targets are reached is turned by whole
     turns, and where that is not enough put inside and led on inside. With `downhill` a
     Jacobian method's step is cut until the residual falls, so that it comes to rest where it would swing about.
+
+    Where a target is proved out of reach, damping that follows the distance d goes by √(d · max(d, L/2)) with the
+    chain's length L: a stretched-out arm swings from side to side where λ² is small beside d · L.
     """
     bold = bold and isinstance(solver, JacobianSolver)
+    bounds = [None] * len(kinematics.terms) if bold else bounds_of(kinematics, limits)  # a bold run is within reach
+    compiled, beyond = kinematics.terms, shortfall(kinematics, limits, tolerance.position, bounds) is not None
     box = limits.loosened() if bold and limits.enabled else limits
     at = kinematics.linearize(start)
     milestone, since = at.residual, 0
@@ -88,11 +95,19 @@ def run(
         moved = yield State(at.q, iteration, updates, tuple(at.errors), at.residual, attempt, status)
         if moved is not None:
             kinematics.retarget(moved)
+            if kinematics.terms is not compiled:
+                compiled, bounds = kinematics.terms, bounds_of(kinematics, limits)
+            beyond = shortfall(kinematics, limits, tolerance.position, bounds) is not None
             at = kinematics.linearize(at.q)
             milestone, since, last = math.inf, 0, iteration + max_iterations
         elif status is not None:
             return
-        seen = at._replace(distance=_OF_THE_DISTANCE * at.distance) if bold else at
+        seen = at
+        if bold:
+            seen = at._replace(distance=_OF_THE_DISTANCE * at.distance)
+        elif beyond:
+            least = _OF_THE_CHAIN * kinematics.size_of_chain
+            seen = at._replace(distance=math.sqrt(at.distance * max(at.distance, least)))
         q, updated = advance(solver, kinematics, box, seen, tolerance, scale)
         there, rests = kinematics.linearize(q), solver.exact and bool(np.abs(q - at.q).max() < AT_REST)
         if not downhill or isinstance(solver, SweepingSolver):

@@ -28,8 +28,7 @@ class DampedLeastSquares(JacobianSolver):
     Minimises $\|J\Delta q - e\|^2 + \lambda^2\|\Delta q\|^2$. With λ the `damping`, the rules are:
 
     * "constant": λ² = damping².
-    * "residual" (Chan and Lawrence 1988): λ² = damping² ‖e‖²: bold near the target, careful far from it. With
-      damping² = ½ it outweighs the curvature of a stretched-out chain, which then rests instead of swinging.
+    * "residual" (Chan and Lawrence 1988): λ² = damping² ‖e‖²: bold near the target, careful far from it.
     * "sugihara" (Sugihara 2011): λ² = ½‖e‖² + damping².
     * "manipulability" (Nakamura and Hanafusa 1986): λ² = damping² (1 − w/w₀)² where w = √det JJᵀ is below w₀; that
       is everywhere where rows of J always depend on each other, as those of a planar chain do.
