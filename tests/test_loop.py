@@ -113,7 +113,7 @@ def test_dls_rests_at_full_stretch_however_little_is_missing(name, base, reach, 
     direction = np.array([0.6, 0.3, 0.6]) / 0.9 if name == "arm" else np.array([0.8, 0.6, 0.0])
     solver = pinik.DampedLeastSquares(rule=rule, damping=math.sqrt(0.5) if rule == "residual" else 1e-3)
     position = base + (reach + beyond) * direction
-    change, error = largest_change_after_settling(robot, "tip", position, solver)
+    change, error = largest_change_after_settling(robot, "tip", position, solver, steps=900)
     assert change < 1e-9
     assert error == pytest.approx(beyond, abs=1e-9)
 
@@ -211,7 +211,7 @@ def test_joints_at_their_limits_leave_their_part_to_the_others(method):
     robot = straight_chain(3, -0.5, 0.5)
     q0 = robot.configuration({"j1": 0.5, "j2": 0.1, "j3": -0.1})
     target = Target("tip", robot.placement("tip", q0).translation + np.array([-0.02, 0.05, 0.0]))
-    solver = pinik.SOLVERS[method]()
+    solver = pinik.DampedLeastSquares(rule="constant", damping=0.1) if method == "dls" else pinik.SOLVERS[method]()
     *_, state = pinik.iterate(robot, target, solver, q0, max_iterations=1)
     J = robot.jacobian("tip", q0)[:3]
     assert (J.T @ (target.position - robot.placement("tip", q0).translation))[0] > 0  # it is pushed outwards
