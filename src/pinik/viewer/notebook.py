@@ -30,12 +30,12 @@ _GAP = 0.06  # between neighbours, of their width
 _FILLED = 0.9  # of the picture
 _LENS = 0.23  # for a single one; many are seen from so far away that all are seen from the same side
 
-# Only a page of this machine asks whether the server is there: one from elsewhere, such as a published notebook, must
-# not knock at its reader's ports. An image is asked for, as the answer of another server would not be one.
+# Only a page that may frame the server's asks whether it is there: one from elsewhere, such as a published notebook,
+# must not knock at its reader's ports. An image is asked for, as the answer of another server would not be one.
 _SCRIPT = """(() => {
     const place = document.getElementById(%(place)s);
-    const local = ["localhost", "127.0.0.1", "[::1]", ""].includes(location.hostname);
-    if (!place || (location.protocol.startsWith("http") && !local)) return;
+    const local = ["localhost", "127.0.0.1"].includes(location.hostname);
+    if (!place || !(local || location.protocol === "vscode-webview:")) return;
     const alive = new Image();
     alive.onload = () => {
         const frame = document.createElement("iframe");
