@@ -5,6 +5,8 @@ from __future__ import annotations
 import colorsys
 import io
 import itertools
+import sys
+import tracemalloc
 
 import numpy as np
 import pytest
@@ -148,6 +150,54 @@ def test_a_ghost_lets_through_what_is_behind_it():
     behind = pinik.draw(black, opacity=0.25, balls=[[-2, 0, 0]], ball_radius=0.2, **options).pixels[50, 50].astype(int)
     before = pinik.draw(black, opacity=0.25, balls=[[2, 0, 0]], ball_radius=0.2, **options).pixels[50, 50].astype(int)
     assert behind[:3] == pytest.approx(0.75 * before[:3] + 0.25 * solid[:3], abs=6)
+
+
+def test_of_ghosts_one_behind_the_other_each_lets_through_its_share():
+    """Seen one by one, and put over each other by hand; whatever their order."""
+    box = cube("0.1 1 1")
+    options = {"view": from_far_away((1, 0.2, 0.3)), "size": (100, 100), "ground": False, "background": None}
+    places = np.array([[-0.9, 0.1, 0.0], [0.9, -0.2, 0.1], [0.3, 0.0, -0.1], [-0.3, 0.2, 0.2]])
+    shares, colors = np.array([0.5, 0.4, 0.7, 0.3]), np.array(["#d97a00", "#0c9a72", "#1f6fc4", "#d81f2f"])
+    row, column = 50, 50
+    total, left = np.zeros(3), 1.0
+    for k in np.argsort(-places[:, 0]):
+        alone = pinik.draw(box, offset=places[k : k + 1], color=str(colors[k]), **options).pixels[row, column]
+        assert alone[3] == 255
+        total, left = total + left * shares[k] * alone[:3], left * (1.0 - shares[k])
+    for order in ([0, 1, 2, 3], [3, 1, 0, 2]):
+        picture = pinik.draw(
+            box,
+            np.zeros((4, 0)),
+            offset=places[order],
+            opacity=shares[order],
+            color=[str(color) for color in colors[order]],
+            **options,
+        )
+        pixel = picture.pixels[row, column].astype(float)
+        assert pixel[3] == pytest.approx(255 * (1.0 - left), abs=1)
+        assert pixel[:3] * pixel[3] / 255 == pytest.approx(total, abs=2)
+
+
+def test_a_ghost_costs_what_it_covers_and_not_what_the_picture_has(two_link):
+    def peak(count):
+        q = np.linspace([0.0, 0.1], [1.5, 1.0], count)
+        tracemalloc.start()
+        pinik.draw(two_link, q, opacity=0.3, size=(400, 250))
+        most = tracemalloc.get_traced_memory()[1]
+        tracemalloc.stop()
+        return most
+
+    peak(1)
+    assert (peak(22) - peak(2)) / 20 < 6e6  # the colours of all samples would take 10 MB, and their depths 3
+
+
+@pytest.mark.parametrize("background", ["#ffffff", None])
+def test_it_does_not_matter_how_many_rows_are_drawn_at_once(arm, monkeypatch, background):
+    options = {"q": [np.zeros(12), np.full(12, 0.3)], "opacity": [1.0, 0.4], "balls": [0.3, 0.3, 0.3]}
+    options |= {"size": (160, 101), "background": background}
+    at_once = pinik.draw(arm, **options).pixels.astype(int)
+    monkeypatch.setattr(sys.modules["pinik.picture.render"], "_AT_ONCE", 1000)
+    assert np.abs(pinik.draw(arm, **options).pixels - at_once).max() <= 1
 
 
 def test_a_material_that_is_half_transparent_is_a_ghost_too():
@@ -376,6 +426,7 @@ def test_a_file_of_no_format_is_refused(arm, tmp_path, name):
         ({"size": (800, 5000)}, "size is a width and a height"),
         ({"size": (800.0, 500)}, "size is a width and a height"),
         ({"size": 800}, "size is a width and a height"),
+        ({"size": (4000, 2501)}, "at most 10 million pixels, width times height; got (4000, 2501)"),
         ({"ground": "low"}, "ground is a finite number; got 'low'"),
         ({"ground": None}, "ground is a finite number; got None"),
         ({"background": "white"}, "background is a colour such as '#1f6fc4'; got 'white'"),

@@ -34,7 +34,7 @@ BALL = "#d81f2f"
 _TINT = 0.75
 _LENS = float(np.tan(np.deg2rad(26.0) / 2))
 _FILLED = 0.86
-_SMALLEST, _LARGEST = 16, 4000  # pixels
+_SMALLEST, _LARGEST, _MOST = 16, 4000, 10_000_000  # pixels of a side, and of a picture
 
 
 @dataclass(frozen=True, eq=False)
@@ -137,7 +137,7 @@ def draw(
         offset: (3,) [m] by which each configuration stands beside the one before, or one for each (n, 3).
         view: "angle", "front", "side" or "top"; the azimuth and elevation [rad] of the camera as seen from the robot;
             or another picture's `camera`.
-        size: Width and height [pixels].
+        size: Width and height [pixels], 16 to 4000 each and 10 million in all.
         ground: Whether it stands on a ground, which lies under the lowest point of the robot, or at this height [m].
         background: "#rrggbb", or None for a transparent one.
 
@@ -221,6 +221,8 @@ def checked_size(size: tuple[int, int]) -> tuple[int, int]:
         fits = False
     if not fits:
         raise InputError(f"size is a width and a height of {_SMALLEST} to {_LARGEST} pixels; got {size!r}")
+    if width * height > _MOST:
+        raise InputError(f"a picture has at most {_MOST // 1_000_000} million pixels, width times height; got {size!r}")
     return width, height
 
 

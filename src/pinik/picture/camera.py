@@ -32,7 +32,8 @@ class Camera:
         width, height = size
         focal = height / (2.0 * self.lens)
         to_pixels = np.array([[focal, 0.0, width / 2.0], [0.0, focal, height / 2.0], [0.0, 0.0, 1.0]])
-        return np.asarray((points - self.position) @ (to_pixels @ self.axes).T)
+        # Several times as fast as BLAS, whose threads get in each other's way here.
+        return np.asarray(np.einsum("...c,rc->...r", points - self.position, to_pixels @ self.axes))
 
     def rays(self, columns: NDArray[Any], rows: NDArray[Any], size: tuple[int, int]) -> Array:
         """Ways (…, 3) in the world through pixels, one metre ahead long."""
