@@ -381,12 +381,56 @@ def test_it_is_saved_as_its_name_says(arm, tmp_path, end):
                 assert min(saved.convert("RGB").getpixel((1, 1))) > 245  # white, where it was transparent
 
 
-@pytest.mark.parametrize("name", ["a", "a.urdf", "a."])
+@pytest.mark.parametrize("end", [".bmp", ".gif", ".jpe", ".jfif", ".mpo", ".eps", ".pcx", ".ppm", ".pdf"])
+def test_where_a_format_knows_no_opacity_it_stands_on_white(arm, tmp_path, end):
+    picture = pinik.draw(arm, size=(64, 40), ground=False, background=None)
+    picture.save(tmp_path / f"a{end}")
+    assert (tmp_path / f"a{end}").stat().st_size > 0
+    if end not in (".eps", ".pdf"):  # which Pillow alone does not read
+        with Image.open(tmp_path / f"a{end}") as saved:
+            assert min(saved.convert("RGB").getpixel((1, 1))) > 245
+
+
+@pytest.mark.parametrize("end", [".png", ".tif", ".webp", ".tga"])
+def test_where_a_format_knows_opacity_it_is_kept(arm, tmp_path, end):
+    picture = pinik.draw(arm, size=(64, 40), ground=False, background=None)
+    picture.save(tmp_path / f"a{end}")
+    with Image.open(tmp_path / f"a{end}") as saved:
+        assert (np.asarray(saved.convert("RGBA"))[..., 3] == picture.pixels[..., 3]).all()
+
+
+@pytest.mark.filterwarnings("ignore:.*image format is deprecated")
+def test_every_name_that_pillow_knows_is_written_or_refused_in_words(two_link, tmp_path):
+    picture = pinik.draw(two_link, size=(32, 32), background=None)
+    ends = Image.registered_extensions()
+    refused = set()
+    for end in ends:
+        try:
+            picture.save(tmp_path / f"a{end}")
+        except pinik.InputError:
+            refused.add(end)
+        assert (tmp_path / f"a{end}").exists() == (end not in refused)
+    assert {".psd", ".fits", ".h5", ".xbm"} <= refused
+    assert len(refused) < len(ends) / 2
+
+
+@pytest.mark.parametrize("name", ["a", "a.urdf", "a.", "a.psd", "a.fits", "a.h5", "a.xbm"])
 def test_a_file_of_no_format_is_refused(arm, tmp_path, name):
     picture = pinik.draw(arm, size=(32, 32))
     with pytest.raises(pinik.InputError, match=r"ends in \.png, \.jpg"):
         picture.save(tmp_path / name)
     assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize("path", [None, 5, b"a.png", ["a.png"]])
+def test_what_is_no_name_of_a_file_is_refused(two_link, path):
+    with pytest.raises(pinik.InputError, match="path is a file's name"):
+        pinik.draw(two_link, size=(32, 32)).save(path)
+
+
+def test_a_folder_that_is_not_there_is_the_system_s_to_tell(two_link, tmp_path):
+    with pytest.raises(FileNotFoundError):
+        pinik.draw(two_link, size=(32, 32)).save(tmp_path / "none" / "a.png")
 
 
 @pytest.mark.parametrize(

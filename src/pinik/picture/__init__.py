@@ -9,7 +9,7 @@ import re
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -23,6 +23,9 @@ from .camera import Camera, look_from
 from .render import render
 from .solids import ball
 
+if TYPE_CHECKING:
+    from PIL.Image import Image
+
 __all__ = ["BALL", "Picture", "ball_radius", "checked_size", "draw", "view_direction"]
 
 Array = NDArray[np.float64]
@@ -35,6 +38,7 @@ _TINT = 0.75
 _LENS = float(np.tan(np.deg2rad(26.0) / 2))
 _FILLED = 0.86
 _SMALLEST, _LARGEST, _MOST = 16, 4000, 10_000_000  # pixels of a side, and of a picture
+_WITH_OPACITY = ("AVIF", "DDS", "ICNS", "ICO", "JPEG2000", "PNG", "QOI", "SGI", "TGA", "TIFF", "WEBP")
 
 
 @dataclass(frozen=True, eq=False)
@@ -72,16 +76,26 @@ class Picture:
         return np.asarray(found[0] if single else found)
 
     def save(self, path: str | os.PathLike[str]) -> None:
-        """Write it to a file, in the format of its name's end, such as .png or .jpg."""
+        """Write it to a file, in the format of its name's end, such as .png or .jpg.
+
+        In a format that knows no opacity it stands on white.
+
+        Raises:
+            InputError: The name ends in nothing that Pillow can write.
+            OSError: There the file cannot be written.
+        """
         from PIL import Image
 
+        if not isinstance(path, (str, os.PathLike)) or not isinstance(os.fspath(path), str):
+            raise InputError(f"path is a file's name, such as 'robot.png'; got {path!r}")
+        kind = Image.registered_extensions().get(Path(path).suffix.lower(), "")
         image = Image.fromarray(self.pixels)
-        end = Path(path).suffix.lower()
-        if end not in Image.registered_extensions():
-            raise InputError(f"a picture's file ends in .png, .jpg or another format's name; got {os.fspath(path)!r}")
-        if end in (".jpg", ".jpeg", ".bmp", ".gif"):  # these know no opacity
-            white = Image.new("RGBA", image.size, "white")
-            image = Image.alpha_composite(white, image).convert("RGB")
+        if kind not in _WITH_OPACITY:
+            image = Image.alpha_composite(Image.new("RGBA", image.size, "white"), image).convert("RGB")
+        if not _is_written(image, kind):
+            raise InputError(
+                f"a picture's file ends in .png, .jpg or another format that Pillow writes; got {os.fspath(path)!r}"
+            )
         image.save(path)
 
     def png(self, colors: int | None = None) -> bytes:
@@ -198,6 +212,15 @@ def view_direction(view: str | tuple[float, float]) -> Array:
 def ball_radius(robot: Robot) -> float:
     """Of the balls that are drawn beside a robot [m], as in the live view."""
     return 0.025 * robot_size(robot)
+
+
+def _is_written(image: Image, kind: str) -> bool:
+    """Whether Pillow writes this format, found out by a corner of the picture."""
+    try:
+        image.crop((0, 0, _SMALLEST, _SMALLEST)).save(io.BytesIO(), kind)
+    except (KeyError, OSError, ValueError):
+        return False
+    return True
 
 
 def _radius(robot: Robot, given: float | None) -> float:
