@@ -226,7 +226,13 @@ def test_a_robot_without_shapes_is_drawn_as_its_skeleton():
     assert 0.005 < (picture.pixels[..., 3] > 0).mean() < 0.2
 
 
-def test_a_shape_that_cannot_be_read_is_named_and_left_out(tmp_path):
+@pytest.mark.parametrize("scale", [1e-6, 1e-3, 1e6])
+def test_a_picture_is_the_same_whatever_the_size_of_the_robot(scale):
+    pictures = [pinik.draw(pinik.load(two_hinges(1.0 * k, 0.5 * k)), size=(100, 60)) for k in (1.0, scale)]
+    assert np.abs(pictures[0].pixels.astype(int) - pictures[1].pixels).max() <= 1
+
+
+def test_a_shape_that_cannot_be_read_is_named_and_left_out():
     text = CUBE.format(size="1 1 1", color="0.5 0.5 0.5 1")
     lost = '<visual><geometry><mesh filename="nowhere.stl"/></geometry></visual></link>'
     with pytest.warns(pinik.UrdfWarning, match="1 mesh was not found"):
@@ -245,9 +251,11 @@ def test_a_roof_darkens_what_it_keeps_the_sun_from():
     low = pinik.draw(plates, [0.02], view=view, size=(200, 200), ground=False)
     high = pinik.draw(plates, [0.5], view=low.camera, size=(200, 200), ground=False)
     on_the_plate = np.array([[0.4 * np.cos(a), 0.4 * np.sin(a), 0.01] for a in np.linspace(0, 6, 40)])
-    at = low.project(on_the_plate).round().astype(int)
-    hidden = reds(high)  # none: only so that the pixels below are of the plate
-    assert not hidden.any()
+    eye = low.camera.position
+    past_the_roof = eye + (on_the_plate - eye) * ((0.5 - eye[2]) / (0.01 - eye[2]))  # where looks at them are so high
+    seen = np.abs(past_the_roof[:, :2]).max(axis=1) > 0.22
+    assert seen.sum() > 20
+    at = low.project(on_the_plate[seen]).round().astype(int)
     lit, cast = darkness(low)[at[:, 1], at[:, 0]], darkness(high)[at[:, 1], at[:, 0]]
     assert np.ptp(lit) < 12
     assert (cast - lit).max() > 25
@@ -306,6 +314,12 @@ def test_light_differs_from_face_to_face_of_a_box():
     shades = [darkness(picture)[round(y), round(x)] for x, y in picture.project(middles)]
     assert np.ptp(shades) > 20
     assert np.diff(sorted(shades)).min() > 5
+
+
+@pytest.mark.parametrize("on", [True, False])
+def test_a_truth_value_of_numpy_is_one(on):
+    told = [pinik.draw(cube(), ground=ground, size=(64, 40)) for ground in (on, np.bool_(on))]
+    assert (told[0].pixels == told[1].pixels).all()
 
 
 def test_a_mesh_that_is_inside_out_looks_as_if_it_were_not(tmp_path):
@@ -454,6 +468,7 @@ def test_a_folder_that_is_not_there_is_the_system_s_to_tell(two_link, tmp_path):
         ),
         ({"ball_radius": 0.0}, "ball_radius is greater than zero"),
         ({"ball_radius": "big"}, "ball_radius is a finite number"),
+        ({"ball_radius": 1e300}, "ball_radius is in metres, at most 1e+09; got 1e+300"),
         ({"opacity": 1.5}, "opacity is between 0 and 1; got 1.5"),
         ({"opacity": [0.5, 0.5]}, "opacity takes 1 finite numbers (one for each q)"),
         ({"opacity": "half"}, "opacity is a finite number"),
@@ -462,10 +477,13 @@ def test_a_folder_that_is_not_there_is_the_system_s_to_tell(two_link, tmp_path):
         ({"color": 5}, "color is one colour, or one for each of 1 configurations; got 5"),
         ({"color": ["#000000", "#000000"]}, "color is one colour, or one for each of 1 configurations"),
         ({"offset": [1.0, 2.0]}, "offset takes 3 finite numbers"),
+        ({"offset": [1e300, 0.0, 0.0]}, "offset is a point in metres, at most 1e+09 away"),
         ({"offset": np.zeros((2, 3))}, "offset takes 1×3 finite numbers (one for each q)"),
         ({"view": "back"}, "no view 'back'; there are: 'angle', 'front', 'side', 'top'"),
         ({"view": 1.0}, "view takes 2 finite numbers (the camera's azimuth and elevation in radians)"),
         ({"view": None}, "view takes 2 finite numbers"),
+        ({"view": (0.0, 2.0)}, "view: the camera's elevation is between -π/2 and π/2 [rad]; got 2"),
+        ({"view": (0.0, -90.0)}, "view: the camera's elevation is between -π/2 and π/2 [rad]; got -90"),
         ({"size": (800,)}, "size is a width and a height of 16 to 4000 pixels; got (800,)"),
         ({"size": (800, 5000)}, "size is a width and a height"),
         ({"size": (800.0, 500)}, "size is a width and a height"),
@@ -473,6 +491,7 @@ def test_a_folder_that_is_not_there_is_the_system_s_to_tell(two_link, tmp_path):
         ({"size": (4000, 2501)}, "at most 10 million pixels, width times height; got (4000, 2501)"),
         ({"ground": "low"}, "ground is a finite number; got 'low'"),
         ({"ground": None}, "ground is a finite number; got None"),
+        ({"ground": -1e300}, "ground is in metres, at most 1e+09; got -1e+300"),
         ({"background": "white"}, "background is a colour such as '#1f6fc4'; got 'white'"),
         ({"background": 5}, "background is a colour such as"),
     ],

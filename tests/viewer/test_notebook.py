@@ -134,6 +134,14 @@ def test_the_picture_shows_where_the_robots_are_now(two_link):
         assert (view.picture().pixels != before.pixels).any()
 
 
+def test_the_picture_is_seen_from_another_one_s_camera_as_well(two_link):
+    with pinik.live(two_link, ["dls", "ccd"], port=0, running=False, motion="hand") as view:
+        first = view.picture((0.5, 0.3))
+        again = view.picture(first.camera)
+    assert again.camera is first.camera
+    assert (again.pixels == first.pixels).all()
+
+
 def test_a_view_or_a_size_that_is_none_is_said_in_words(two_link):
     with pinik.live(two_link, port=0, running=False) as view:
         with pytest.raises(pinik.UnknownNameError, match="no view 'back'"):

@@ -7,14 +7,14 @@ import operator
 import os
 import re
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..checks import as_array, as_finite_number, as_points, as_vector
+from ..checks import as_array, as_finite_number, as_length, as_point, as_points, as_vector
 from ..errors import InputError, UnknownNameError
 from ..home import home_configuration, robot_size
 from ..robot import Robot
@@ -187,9 +187,10 @@ def draw(
         raise InputError("there is nothing to draw: no configuration with an opacity over zero, and no ball")
     everything = np.vstack([body.solid.vertices for layer in layers.values() for body in layer])
     camera = _camera(view, everything, size)
-    floor = float(np.vstack(robots or [everything])[:, 2].min()) if ground is True else None
-    if not isinstance(ground, bool):
-        floor = as_finite_number(ground, "ground")
+    if isinstance(ground, (bool, np.bool_)):
+        floor = float(np.vstack(robots or [everything])[:, 2].min()) if ground else None
+    else:
+        floor = as_length(ground, "ground")
     return Picture(render(list(layers.values()), camera, size, floor, paper), camera)
 
 
@@ -198,13 +199,15 @@ def view_direction(view: str | tuple[float, float]) -> Array:
 
     Raises:
         UnknownNameError: No such view.
-        InputError: Not two angles.
+        InputError: Not two angles, or an elevation past straight above or below.
     """
     if isinstance(view, str):
         if view not in VIEWS:
             raise UnknownNameError("view", view, VIEWS)
         view = VIEWS[view]
     azimuth, elevation = as_vector(view, 2, "view", "the camera's azimuth and elevation in radians")
+    if abs(elevation) > np.pi / 2:
+        raise InputError(f"view: the camera's elevation is between -π/2 and π/2 [rad]; got {elevation:g}")
     flat = np.cos(elevation) * np.array([np.cos(azimuth), np.sin(azimuth)])
     return np.array([*flat, np.sin(elevation)])
 
@@ -224,7 +227,7 @@ def _is_written(image: Image, kind: str) -> bool:
 
 
 def _radius(robot: Robot, given: float | None) -> float:
-    radius = ball_radius(robot) if given is None else as_finite_number(given, "ball_radius")
+    radius = ball_radius(robot) if given is None else as_length(given, "ball_radius")
     if not radius > 0.0:
         raise InputError(f"ball_radius is greater than zero [m]; got {given!r}")
     return radius
@@ -232,7 +235,8 @@ def _radius(robot: Robot, given: float | None) -> float:
 
 def _placed(body: Body, offset: Array, opacity: float, tint: Array | None) -> Body:
     color = body.color if tint is None else (1.0 - _TINT) * body.color + _TINT * tint
-    return Body(body.solid.moved(np.eye(3), offset), color, body.opacity * opacity, body.gloss)
+    solid = body.solid.moved(np.eye(3), offset)
+    return replace(body, solid=solid, color=color, opacity=body.opacity * opacity)
 
 
 def checked_size(size: tuple[int, int]) -> tuple[int, int]:
@@ -286,8 +290,8 @@ def _each(color: str | Sequence[str], count: int, what: str, of: str) -> list[Ar
 
 def _offsets(offset: ArrayLike, count: int) -> Array:
     if _depth(offset) == 1:
-        return np.arange(count)[:, None] * as_vector(offset, 3, "offset")
-    return as_array(offset, (count, 3), "offset", "one for each q")
+        return np.arange(count)[:, None] * as_point(offset, "offset")
+    return as_points(as_array(offset, (count, 3), "offset", "one for each q"), "offset")
 
 
 def _points(points: ArrayLike, what: str) -> Array:

@@ -69,7 +69,7 @@ class Ground:
         """The floor's strength and its darkness by shadows, in 0..1, at each pixel (h, w) of some rows of a picture."""
         rows, columns = np.mgrid[slice(*band), : size[0]]
         rays = camera.rays(columns + 0.5, rows + 0.5, size)
-        hit = rays[..., 2] * (self._height - camera.position[2]) > 1e-9
+        hit = rays[..., 2] * np.sign(self._height - camera.position[2]) > 1e-9
         ahead = (self._height - camera.position[2]) / rays[hit][:, 2]
         points = camera.position + rays[hit] * ahead[:, None]
         away = np.linalg.norm(points[:, :2] - self._middle, axis=1) / self._radius
