@@ -1,4 +1,7 @@
-"""Run notebooks from top to bottom and write them with what they showed, the same on every machine.
+"""Run notebooks from top to bottom and write them with what they showed.
+
+What the file says of the kernel and the hour is left out; what cells show stays as it was, with its times, ports and
+ids, and with the last digits of this machine.
 
 python tools/run_notebooks.py             # all of notebooks/
 python tools/run_notebooks.py 05 06       # those whose names begin so
@@ -8,6 +11,7 @@ from __future__ import annotations
 
 import argparse
 import time
+from collections.abc import Sequence
 from pathlib import Path
 
 import nbformat
@@ -38,7 +42,7 @@ def run(path: Path) -> nbformat.NotebookNode:
 
 
 def tidy(notebook: nbformat.NotebookNode) -> nbformat.NotebookNode:
-    """Without what depends on the machine, its Python or the hour."""
+    """Without what the file says of the machine's Python and of the hour; the outputs themselves stay as they are."""
     notebook.metadata = nbformat.from_dict(
         {
             "kernelspec": {"display_name": "Python 3", "language": "python", "name": "python3"},
@@ -54,12 +58,18 @@ def tidy(notebook: nbformat.NotebookNode) -> nbformat.NotebookNode:
     return notebook
 
 
-def main() -> None:
+def main(arguments: Sequence[str] | None = None) -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("names", nargs="*", default=[""], help="how the names of the wanted ones begin; all when none")
-    wanted = tuple(parser.parse_args().names)
-    for path in sorted(FOLDER.glob("*.ipynb")):
-        if path.name.startswith(wanted):
+    names = parser.parse_args(arguments).names
+    paths = sorted(FOLDER.glob("*.ipynb"))
+    for name in names:
+        if not any(path.name.startswith(name) for path in paths):
+            parser.error(
+                f"no notebook's name begins with {name!r}; there are: {', '.join(path.stem for path in paths)}"
+            )
+    for path in paths:
+        if path.name.startswith(tuple(names)):
             began = time.perf_counter()
             nbformat.write(run(path), path)
             print(f"{path.name}: {time.perf_counter() - began:.1f} s, {path.stat().st_size / 1000:.0f} kB")

@@ -15,6 +15,7 @@ from .errors import InputError
 __all__ = [
     "as_array",
     "as_finite_number",
+    "as_length",
     "as_many",
     "as_names",
     "as_numbers",
@@ -46,6 +47,14 @@ def as_finite_number(value: object, what: str) -> float:
     if isinstance(value, _NO_NUMBERS) or not math.isfinite(number):
         raise InputError(f"{what} is a finite number; got {value!r}")
     return number
+
+
+def as_length(value: object, what: str) -> float:
+    """`value` as a length [m]; InputError also for one over a million kilometres."""
+    length = as_finite_number(value, what)
+    if abs(length) > _FARTHEST:
+        raise InputError(f"{what} is in metres, at most {_FARTHEST:g}; got {length:g}")
+    return length
 
 
 def as_array(value: ArrayLike, shape: tuple[int, ...], what: str, of: str = "") -> Array:

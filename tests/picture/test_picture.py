@@ -5,6 +5,8 @@ from __future__ import annotations
 import colorsys
 import io
 import itertools
+import sys
+import tracemalloc
 
 import numpy as np
 import pytest
@@ -150,6 +152,54 @@ def test_a_ghost_lets_through_what_is_behind_it():
     assert behind[:3] == pytest.approx(0.75 * before[:3] + 0.25 * solid[:3], abs=6)
 
 
+def test_of_ghosts_one_behind_the_other_each_lets_through_its_share():
+    """Seen one by one, and put over each other by hand; whatever their order."""
+    box = cube("0.1 1 1")
+    options = {"view": from_far_away((1, 0.2, 0.3)), "size": (100, 100), "ground": False, "background": None}
+    places = np.array([[-0.9, 0.1, 0.0], [0.9, -0.2, 0.1], [0.3, 0.0, -0.1], [-0.3, 0.2, 0.2]])
+    shares, colors = np.array([0.5, 0.4, 0.7, 0.3]), np.array(["#d97a00", "#0c9a72", "#1f6fc4", "#d81f2f"])
+    row, column = 50, 50
+    total, left = np.zeros(3), 1.0
+    for k in np.argsort(-places[:, 0]):
+        alone = pinik.draw(box, offset=places[k : k + 1], color=str(colors[k]), **options).pixels[row, column]
+        assert alone[3] == 255
+        total, left = total + left * shares[k] * alone[:3], left * (1.0 - shares[k])
+    for order in ([0, 1, 2, 3], [3, 1, 0, 2]):
+        picture = pinik.draw(
+            box,
+            np.zeros((4, 0)),
+            offset=places[order],
+            opacity=shares[order],
+            color=[str(color) for color in colors[order]],
+            **options,
+        )
+        pixel = picture.pixels[row, column].astype(float)
+        assert pixel[3] == pytest.approx(255 * (1.0 - left), abs=1)
+        assert pixel[:3] * pixel[3] / 255 == pytest.approx(total, abs=2)
+
+
+def test_a_ghost_costs_what_it_covers_and_not_what_the_picture_has(two_link):
+    def peak(count):
+        q = np.linspace([0.0, 0.1], [1.5, 1.0], count)
+        tracemalloc.start()
+        pinik.draw(two_link, q, opacity=0.3, size=(400, 250))
+        most = tracemalloc.get_traced_memory()[1]
+        tracemalloc.stop()
+        return most
+
+    peak(1)
+    assert (peak(22) - peak(2)) / 20 < 6e6  # the colours of all samples would take 10 MB, and their depths 3
+
+
+@pytest.mark.parametrize("background", ["#ffffff", None])
+def test_it_does_not_matter_how_many_rows_are_drawn_at_once(arm, monkeypatch, background):
+    options = {"q": [np.zeros(12), np.full(12, 0.3)], "opacity": [1.0, 0.4], "balls": [0.3, 0.3, 0.3]}
+    options |= {"size": (160, 101), "background": background}
+    at_once = pinik.draw(arm, **options).pixels.astype(int)
+    monkeypatch.setattr(sys.modules["pinik.picture.render"], "_AT_ONCE", 1000)
+    assert np.abs(pinik.draw(arm, **options).pixels - at_once).max() <= 1
+
+
 def test_a_material_that_is_half_transparent_is_a_ghost_too():
     options = {"view": from_far_away((1, 0, 0)), "size": (100, 100), "ground": False, "background": None}
     assert pinik.draw(cube(color="0 0 0 0.5"), **options).pixels[50, 50, 3] == pytest.approx(128, abs=1)
@@ -176,7 +226,13 @@ def test_a_robot_without_shapes_is_drawn_as_its_skeleton():
     assert 0.005 < (picture.pixels[..., 3] > 0).mean() < 0.2
 
 
-def test_a_shape_that_cannot_be_read_is_named_and_left_out(tmp_path):
+@pytest.mark.parametrize("scale", [1e-6, 1e-3, 1e6])
+def test_a_picture_is_the_same_whatever_the_size_of_the_robot(scale):
+    pictures = [pinik.draw(pinik.load(two_hinges(1.0 * k, 0.5 * k)), size=(100, 60)) for k in (1.0, scale)]
+    assert np.abs(pictures[0].pixels.astype(int) - pictures[1].pixels).max() <= 1
+
+
+def test_a_shape_that_cannot_be_read_is_named_and_left_out():
     text = CUBE.format(size="1 1 1", color="0.5 0.5 0.5 1")
     lost = '<visual><geometry><mesh filename="nowhere.stl"/></geometry></visual></link>'
     with pytest.warns(pinik.UrdfWarning, match="1 mesh was not found"):
@@ -195,9 +251,11 @@ def test_a_roof_darkens_what_it_keeps_the_sun_from():
     low = pinik.draw(plates, [0.02], view=view, size=(200, 200), ground=False)
     high = pinik.draw(plates, [0.5], view=low.camera, size=(200, 200), ground=False)
     on_the_plate = np.array([[0.4 * np.cos(a), 0.4 * np.sin(a), 0.01] for a in np.linspace(0, 6, 40)])
-    at = low.project(on_the_plate).round().astype(int)
-    hidden = reds(high)  # none: only so that the pixels below are of the plate
-    assert not hidden.any()
+    eye = low.camera.position
+    past_the_roof = eye + (on_the_plate - eye) * ((0.5 - eye[2]) / (0.01 - eye[2]))  # where looks at them are so high
+    seen = np.abs(past_the_roof[:, :2]).max(axis=1) > 0.22
+    assert seen.sum() > 20
+    at = low.project(on_the_plate[seen]).round().astype(int)
     lit, cast = darkness(low)[at[:, 1], at[:, 0]], darkness(high)[at[:, 1], at[:, 0]]
     assert np.ptp(lit) < 12
     assert (cast - lit).max() > 25
@@ -256,6 +314,12 @@ def test_light_differs_from_face_to_face_of_a_box():
     shades = [darkness(picture)[round(y), round(x)] for x, y in picture.project(middles)]
     assert np.ptp(shades) > 20
     assert np.diff(sorted(shades)).min() > 5
+
+
+@pytest.mark.parametrize("on", [True, False])
+def test_a_truth_value_of_numpy_is_one(on):
+    told = [pinik.draw(cube(), ground=ground, size=(64, 40)) for ground in (on, np.bool_(on))]
+    assert (told[0].pixels == told[1].pixels).all()
 
 
 def test_a_mesh_that_is_inside_out_looks_as_if_it_were_not(tmp_path):
@@ -331,12 +395,56 @@ def test_it_is_saved_as_its_name_says(arm, tmp_path, end):
                 assert min(saved.convert("RGB").getpixel((1, 1))) > 245  # white, where it was transparent
 
 
-@pytest.mark.parametrize("name", ["a", "a.urdf", "a."])
+@pytest.mark.parametrize("end", [".bmp", ".gif", ".jpe", ".jfif", ".mpo", ".eps", ".pcx", ".ppm", ".pdf"])
+def test_where_a_format_knows_no_opacity_it_stands_on_white(arm, tmp_path, end):
+    picture = pinik.draw(arm, size=(64, 40), ground=False, background=None)
+    picture.save(tmp_path / f"a{end}")
+    assert (tmp_path / f"a{end}").stat().st_size > 0
+    if end not in (".eps", ".pdf"):  # which Pillow alone does not read
+        with Image.open(tmp_path / f"a{end}") as saved:
+            assert min(saved.convert("RGB").getpixel((1, 1))) > 245
+
+
+@pytest.mark.parametrize("end", [".png", ".tif", ".webp", ".tga"])
+def test_where_a_format_knows_opacity_it_is_kept(arm, tmp_path, end):
+    picture = pinik.draw(arm, size=(64, 40), ground=False, background=None)
+    picture.save(tmp_path / f"a{end}")
+    with Image.open(tmp_path / f"a{end}") as saved:
+        assert (np.asarray(saved.convert("RGBA"))[..., 3] == picture.pixels[..., 3]).all()
+
+
+@pytest.mark.filterwarnings("ignore:.*image format is deprecated")
+def test_every_name_that_pillow_knows_is_written_or_refused_in_words(two_link, tmp_path):
+    picture = pinik.draw(two_link, size=(32, 32), background=None)
+    ends = Image.registered_extensions()
+    refused = set()
+    for end in ends:
+        try:
+            picture.save(tmp_path / f"a{end}")
+        except pinik.InputError:
+            refused.add(end)
+        assert (tmp_path / f"a{end}").exists() == (end not in refused)
+    assert {".psd", ".fits", ".h5", ".xbm"} <= refused
+    assert len(refused) < len(ends) / 2
+
+
+@pytest.mark.parametrize("name", ["a", "a.urdf", "a.", "a.psd", "a.fits", "a.h5", "a.xbm"])
 def test_a_file_of_no_format_is_refused(arm, tmp_path, name):
     picture = pinik.draw(arm, size=(32, 32))
     with pytest.raises(pinik.InputError, match=r"ends in \.png, \.jpg"):
         picture.save(tmp_path / name)
     assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize("path", [None, 5, b"a.png", ["a.png"]])
+def test_what_is_no_name_of_a_file_is_refused(two_link, path):
+    with pytest.raises(pinik.InputError, match="path is a file's name"):
+        pinik.draw(two_link, size=(32, 32)).save(path)
+
+
+def test_a_folder_that_is_not_there_is_the_system_s_to_tell(two_link, tmp_path):
+    with pytest.raises(FileNotFoundError):
+        pinik.draw(two_link, size=(32, 32)).save(tmp_path / "none" / "a.png")
 
 
 @pytest.mark.parametrize(
@@ -360,6 +468,7 @@ def test_a_file_of_no_format_is_refused(arm, tmp_path, name):
         ),
         ({"ball_radius": 0.0}, "ball_radius is greater than zero"),
         ({"ball_radius": "big"}, "ball_radius is a finite number"),
+        ({"ball_radius": 1e300}, "ball_radius is in metres, at most 1e+09; got 1e+300"),
         ({"opacity": 1.5}, "opacity is between 0 and 1; got 1.5"),
         ({"opacity": [0.5, 0.5]}, "opacity takes 1 finite numbers (one for each q)"),
         ({"opacity": "half"}, "opacity is a finite number"),
@@ -368,16 +477,21 @@ def test_a_file_of_no_format_is_refused(arm, tmp_path, name):
         ({"color": 5}, "color is one colour, or one for each of 1 configurations; got 5"),
         ({"color": ["#000000", "#000000"]}, "color is one colour, or one for each of 1 configurations"),
         ({"offset": [1.0, 2.0]}, "offset takes 3 finite numbers"),
+        ({"offset": [1e300, 0.0, 0.0]}, "offset is a point in metres, at most 1e+09 away"),
         ({"offset": np.zeros((2, 3))}, "offset takes 1×3 finite numbers (one for each q)"),
         ({"view": "back"}, "no view 'back'; there are: 'angle', 'front', 'side', 'top'"),
         ({"view": 1.0}, "view takes 2 finite numbers (the camera's azimuth and elevation in radians)"),
         ({"view": None}, "view takes 2 finite numbers"),
+        ({"view": (0.0, 2.0)}, "view: the camera's elevation is between -π/2 and π/2 [rad]; got 2"),
+        ({"view": (0.0, -90.0)}, "view: the camera's elevation is between -π/2 and π/2 [rad]; got -90"),
         ({"size": (800,)}, "size is a width and a height of 16 to 4000 pixels; got (800,)"),
         ({"size": (800, 5000)}, "size is a width and a height"),
         ({"size": (800.0, 500)}, "size is a width and a height"),
         ({"size": 800}, "size is a width and a height"),
+        ({"size": (4000, 2501)}, "at most 10 million pixels, width times height; got (4000, 2501)"),
         ({"ground": "low"}, "ground is a finite number; got 'low'"),
         ({"ground": None}, "ground is a finite number; got None"),
+        ({"ground": -1e300}, "ground is in metres, at most 1e+09; got -1e+300"),
         ({"background": "white"}, "background is a colour such as '#1f6fc4'; got 'white'"),
         ({"background": 5}, "background is a colour such as"),
     ],

@@ -33,22 +33,15 @@ def missed(of, instance, ball=0):
     return float(np.linalg.norm(at - of.balls[ball].position))
 
 
-@pytest.mark.parametrize(
-    "name", ["two_link", "asr_twodof", "double_pendulum", "double_pendulum_simple", "double_pendulum_continuous"]
-)
+# The first ball's frame lies away from the second of two parallel hinges, or in that hinge itself: see their URDFs.
+OFFERED = ("two_link", "asr_twodof", "double_pendulum_simple")
+NOT_OFFERED = ("double_pendulum", "double_pendulum_continuous", "arm", "lion", "panda")
+
+
+@pytest.mark.parametrize("name", [*OFFERED, *NOT_OFFERED])
 def test_it_is_offered_where_two_parallel_hinges_carry_a_ball(name):
-    robot = load_quietly(name)
-    shown = Session(robot)
-    fits = []
-    for ball in shown.balls:
-        try:
-            pinik.TwoBone.of(robot, ball.frame)
-            fits.append(ball.frame)
-        except pinik.InputError:
-            pass
-    offers = session_state(shown)["methods"]
-    assert offers == ([*EVERY_ROBOTS, "two_bone"] if fits else EVERY_ROBOTS)
-    assert bool(fits) or name in ("double_pendulum", "double_pendulum_continuous")  # their last link ends at its hinge
+    offers = session_state(Session(load_quietly(name)))["methods"]
+    assert offers == ([*EVERY_ROBOTS, "two_bone"] if name in OFFERED else EVERY_ROBOTS)
 
 
 @pytest.mark.parametrize("name", ["arm", "lion", "panda"])

@@ -3,8 +3,11 @@
 from __future__ import annotations
 
 import base64
+import contextlib
+import http.server
 import io
 import re
+import threading
 from html.parser import HTMLParser
 
 import numpy as np
@@ -44,18 +47,45 @@ def image_of(text):
     return Image.open(io.BytesIO(base64.b64decode(data)))
 
 
+@contextlib.contextmanager
+def served(texts):
+    """The port of a server of this machine whose page shows the last of these texts."""
+
+    class Handler(http.server.BaseHTTPRequestHandler):
+        def do_GET(self):
+            body = f"<!doctype html><meta charset=utf-8><body>{texts[-1]}</body>".encode()
+            self.send_response(200)
+            self.send_header("Content-Type", "text/html; charset=utf-8")
+            self.send_header("Content-Length", str(len(body)))
+            self.end_headers()
+            self.wfile.write(body)
+
+        def log_message(self, format, *arguments):
+            pass
+
+    with http.server.ThreadingHTTPServer(("127.0.0.1", 0), Handler) as server:
+        thread = threading.Thread(target=server.serve_forever)
+        thread.start()
+        yield server.server_port
+        server.shutdown()
+        thread.join()
+
+
 @pytest.fixture
 def notebook(browser):
-    """Shows outputs as a notebook's page does: with their scripts."""
+    """Shows outputs as a notebook's page does: with their scripts, from a server of the same machine."""
     context = new_context(browser)
     page = context.new_page()
+    texts = [""]
+    with served(texts) as port:
 
-    def show(text):
-        page.set_content(f"<body>{text}</body>")
-        return page
+        def show(text, host="127.0.0.1"):
+            texts.append(text)
+            page.goto(f"http://{host}:{port}/")
+            return page
 
-    yield show
-    context.close()
+        yield show
+        context.close()
 
 
 def balls_in(picture):
@@ -104,6 +134,14 @@ def test_the_picture_shows_where_the_robots_are_now(two_link):
         assert (view.picture().pixels != before.pixels).any()
 
 
+def test_the_picture_is_seen_from_another_one_s_camera_as_well(two_link):
+    with pinik.live(two_link, ["dls", "ccd"], port=0, running=False, motion="hand") as view:
+        first = view.picture((0.5, 0.3))
+        again = view.picture(first.camera)
+    assert again.camera is first.camera
+    assert (again.pixels == first.pixels).all()
+
+
 def test_a_view_or_a_size_that_is_none_is_said_in_words(two_link):
     with pinik.live(two_link, port=0, running=False) as view:
         with pytest.raises(pinik.UnknownNameError, match="no view 'back'"):
@@ -131,6 +169,52 @@ def test_while_its_server_answers_it_is_the_page_in_a_frame(two_link, notebook):
         assert page.locator("img").count() == 0
         assert page.locator("iframe").first.get_attribute("src") == view.url
         page.frame_locator("iframe").first.get_by_test_id("robot").wait_for()
+
+
+@pytest.mark.parametrize("host", ["localhost", "127.0.0.1"])
+def test_a_notebook_of_this_machine_may_frame_it(two_link, notebook, host):
+    with pinik.live(two_link, ["dls"], port=0) as view:
+        page = notebook(view._repr_html_(), host)
+        page.frame_locator("iframe").get_by_test_id("robot").wait_for()
+
+
+def test_a_foreign_page_cannot_put_its_set_up_in_a_frame(two_link, notebook, tmp_path):
+    """Neither one under another name, which is all that a browser knows of a machine, nor one of a file."""
+    with pinik.live(two_link, ["dls"], port=0, running=False, motion="hand") as view:
+        before = view.state["setup"]
+        frame = f'<iframe src="{view.url}#{before.replace("methods=dls", "methods=ccd")}"></iframe>'
+        (tmp_path / "foreign.html").write_text(frame, "utf-8")
+        page = notebook("")
+        refused = []
+        page.on("requestfailed", lambda request: refused.append((request.url.split("#")[0], request.failure)))
+        notebook(frame, "foreign.localhost")
+        page.wait_for_timeout(300)
+        page.goto((tmp_path / "foreign.html").as_uri())
+        page.wait_for_timeout(300)
+        assert refused == [(view.url, "net::ERR_BLOCKED_BY_RESPONSE")] * 2
+        assert view.state["setup"] == before
+        notebook(frame)  # the same from this machine
+        page.frame_locator("iframe").get_by_test_id("robot").wait_for()
+        for _ in range(int(20 * PATIENCE)):
+            if view.state["setup"] != before:
+                break
+            page.wait_for_timeout(50)
+        assert "methods=ccd" in view.state["setup"]
+
+
+@pytest.mark.parametrize("where", ["another name", "a file"])
+def test_where_it_may_not_frame_it_a_notebook_keeps_the_picture(two_link, notebook, where, tmp_path):
+    with pinik.live(two_link, ["dls"], port=0) as view:
+        text = view._repr_html_()
+        page = notebook("")
+        if where == "a file":
+            (tmp_path / "kept.html").write_text(text, "utf-8")
+            page.goto((tmp_path / "kept.html").as_uri())
+        else:
+            notebook(text, "foreign.localhost")
+        page.wait_for_timeout(300)
+        assert page.locator("iframe").count() == 0
+        assert page.locator("img").evaluate("image => image.naturalWidth") == 720
 
 
 def asked_and_answered(page, text, show):

@@ -556,6 +556,28 @@ def test_the_page_has_a_policy_that_runs_its_own_scripts_alone(view):
     assert nonces[0] != nonces[1]
 
 
+@pytest.mark.parametrize(
+    ("host", "own"),
+    [
+        ("localhost", []),
+        ("127.0.0.1", []),
+        ("[::1]", []),  # policies know no such addresses, and chromium complains of one
+        ("192.168.1.20", ["http://192.168.1.20:*", "https://192.168.1.20:*"]),
+        (
+            socket.gethostname(),
+            [f"http://{socket.gethostname().lower()}:*", f"https://{socket.gethostname().lower()}:*"],
+        ),
+    ],
+)
+def test_only_pages_of_its_own_machine_may_frame_the_page(two_link, host, own):
+    with pinik.live(two_link, port=0, host="0.0.0.0", running=False) as view:
+        status, headers, _ = get(view, "/", Host=f"{host}:{view.port}")
+    policy = dict(part.split(" ", 1) for part in headers["Content-Security-Policy"].split("; "))
+    local = [f"{scheme}://{name}:*" for name in ("localhost", "127.0.0.1") for scheme in ("http", "https")]
+    assert status == 200
+    assert policy["frame-ancestors"].split() == ["'self'", *local, *own, "vscode-webview:", "vscode-file:"]
+
+
 def test_every_file_that_the_page_names_is_served(view):
     page = get(view, "/")[2].decode()
     named = set(re.findall(r'(?:src|href)="/?((?:page|meshcat)/[^"]+)"', page))

@@ -7,14 +7,14 @@ import operator
 import os
 import re
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..checks import as_array, as_finite_number, as_points, as_vector
+from ..checks import as_array, as_finite_number, as_length, as_point, as_points, as_vector
 from ..errors import InputError, UnknownNameError
 from ..home import home_configuration, robot_size
 from ..robot import Robot
@@ -22,6 +22,9 @@ from .bodies import Body, bodies_of
 from .camera import Camera, look_from
 from .render import render
 from .solids import ball
+
+if TYPE_CHECKING:
+    from PIL.Image import Image
 
 __all__ = ["BALL", "Picture", "ball_radius", "checked_size", "draw", "view_direction"]
 
@@ -34,7 +37,8 @@ BALL = "#d81f2f"
 _TINT = 0.75
 _LENS = float(np.tan(np.deg2rad(26.0) / 2))
 _FILLED = 0.86
-_SMALLEST, _LARGEST = 16, 4000  # pixels
+_SMALLEST, _LARGEST, _MOST = 16, 4000, 10_000_000  # pixels of a side, and of a picture
+_WITH_OPACITY = ("AVIF", "DDS", "ICNS", "ICO", "JPEG2000", "PNG", "QOI", "SGI", "TGA", "TIFF", "WEBP")
 
 
 @dataclass(frozen=True, eq=False)
@@ -72,16 +76,26 @@ class Picture:
         return np.asarray(found[0] if single else found)
 
     def save(self, path: str | os.PathLike[str]) -> None:
-        """Write it to a file, in the format of its name's end, such as .png or .jpg."""
+        """Write it to a file, in the format of its name's end, such as .png or .jpg.
+
+        In a format that knows no opacity it stands on white.
+
+        Raises:
+            InputError: The name ends in nothing that Pillow can write.
+            OSError: There the file cannot be written.
+        """
         from PIL import Image
 
+        if not isinstance(path, (str, os.PathLike)) or not isinstance(os.fspath(path), str):
+            raise InputError(f"path is a file's name, such as 'robot.png'; got {path!r}")
+        kind = Image.registered_extensions().get(Path(path).suffix.lower(), "")
         image = Image.fromarray(self.pixels)
-        end = Path(path).suffix.lower()
-        if end not in Image.registered_extensions():
-            raise InputError(f"a picture's file ends in .png, .jpg or another format's name; got {os.fspath(path)!r}")
-        if end in (".jpg", ".jpeg", ".bmp", ".gif"):  # these know no opacity
-            white = Image.new("RGBA", image.size, "white")
-            image = Image.alpha_composite(white, image).convert("RGB")
+        if kind not in _WITH_OPACITY:
+            image = Image.alpha_composite(Image.new("RGBA", image.size, "white"), image).convert("RGB")
+        if not _is_written(image, kind):
+            raise InputError(
+                f"a picture's file ends in .png, .jpg or another format that Pillow writes; got {os.fspath(path)!r}"
+            )
         image.save(path)
 
     def png(self, colors: int | None = None) -> bytes:
@@ -137,7 +151,7 @@ def draw(
         offset: (3,) [m] by which each configuration stands beside the one before, or one for each (n, 3).
         view: "angle", "front", "side" or "top"; the azimuth and elevation [rad] of the camera as seen from the robot;
             or another picture's `camera`.
-        size: Width and height [pixels].
+        size: Width and height [pixels], 16 to 4000 each and 10 million in all.
         ground: Whether it stands on a ground, which lies under the lowest point of the robot, or at this height [m].
         background: "#rrggbb", or None for a transparent one.
 
@@ -173,9 +187,10 @@ def draw(
         raise InputError("there is nothing to draw: no configuration with an opacity over zero, and no ball")
     everything = np.vstack([body.solid.vertices for layer in layers.values() for body in layer])
     camera = _camera(view, everything, size)
-    floor = float(np.vstack(robots or [everything])[:, 2].min()) if ground is True else None
-    if not isinstance(ground, bool):
-        floor = as_finite_number(ground, "ground")
+    if isinstance(ground, (bool, np.bool_)):
+        floor = float(np.vstack(robots or [everything])[:, 2].min()) if ground else None
+    else:
+        floor = as_length(ground, "ground")
     return Picture(render(list(layers.values()), camera, size, floor, paper), camera)
 
 
@@ -184,13 +199,15 @@ def view_direction(view: str | tuple[float, float]) -> Array:
 
     Raises:
         UnknownNameError: No such view.
-        InputError: Not two angles.
+        InputError: Not two angles, or an elevation past straight above or below.
     """
     if isinstance(view, str):
         if view not in VIEWS:
             raise UnknownNameError("view", view, VIEWS)
         view = VIEWS[view]
     azimuth, elevation = as_vector(view, 2, "view", "the camera's azimuth and elevation in radians")
+    if abs(elevation) > np.pi / 2:
+        raise InputError(f"view: the camera's elevation is between -π/2 and π/2 [rad]; got {elevation:g}")
     flat = np.cos(elevation) * np.array([np.cos(azimuth), np.sin(azimuth)])
     return np.array([*flat, np.sin(elevation)])
 
@@ -200,8 +217,17 @@ def ball_radius(robot: Robot) -> float:
     return 0.025 * robot_size(robot)
 
 
+def _is_written(image: Image, kind: str) -> bool:
+    """Whether Pillow writes this format, found out by a corner of the picture."""
+    try:
+        image.crop((0, 0, _SMALLEST, _SMALLEST)).save(io.BytesIO(), kind)
+    except (KeyError, OSError, ValueError):
+        return False
+    return True
+
+
 def _radius(robot: Robot, given: float | None) -> float:
-    radius = ball_radius(robot) if given is None else as_finite_number(given, "ball_radius")
+    radius = ball_radius(robot) if given is None else as_length(given, "ball_radius")
     if not radius > 0.0:
         raise InputError(f"ball_radius is greater than zero [m]; got {given!r}")
     return radius
@@ -209,7 +235,8 @@ def _radius(robot: Robot, given: float | None) -> float:
 
 def _placed(body: Body, offset: Array, opacity: float, tint: Array | None) -> Body:
     color = body.color if tint is None else (1.0 - _TINT) * body.color + _TINT * tint
-    return Body(body.solid.moved(np.eye(3), offset), color, body.opacity * opacity, body.gloss)
+    solid = body.solid.moved(np.eye(3), offset)
+    return replace(body, solid=solid, color=color, opacity=body.opacity * opacity)
 
 
 def checked_size(size: tuple[int, int]) -> tuple[int, int]:
@@ -221,6 +248,8 @@ def checked_size(size: tuple[int, int]) -> tuple[int, int]:
         fits = False
     if not fits:
         raise InputError(f"size is a width and a height of {_SMALLEST} to {_LARGEST} pixels; got {size!r}")
+    if width * height > _MOST:
+        raise InputError(f"a picture has at most {_MOST // 1_000_000} million pixels, width times height; got {size!r}")
     return width, height
 
 
@@ -261,8 +290,8 @@ def _each(color: str | Sequence[str], count: int, what: str, of: str) -> list[Ar
 
 def _offsets(offset: ArrayLike, count: int) -> Array:
     if _depth(offset) == 1:
-        return np.arange(count)[:, None] * as_vector(offset, 3, "offset")
-    return as_array(offset, (count, 3), "offset", "one for each q")
+        return np.arange(count)[:, None] * as_point(offset, "offset")
+    return as_points(as_array(offset, (count, 3), "offset", "one for each q"), "offset")
 
 
 def _points(points: ArrayLike, what: str) -> Array:

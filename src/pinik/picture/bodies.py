@@ -111,5 +111,5 @@ def _skeleton(robot: Robot, q: Array) -> Iterable[Body]:
             # A link that begins away from its joint, such as a tool's tip, is the end of one more rod.
             ways.append((joints[link.parentJoint].translation, robot.placement(name, q).translation))
     for start, end in ways:
-        if np.linalg.norm(end - start) > 1e-4:
+        if np.linalg.norm(end - start) > 1e-4 * size:
             yield Body(rod(start, end, 0.55 * radius, 0.385 * radius), _BONE)

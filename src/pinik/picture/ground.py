@@ -38,8 +38,8 @@ class Ground:
         self._below = look_from(np.array([0.0, 0.0, -1.0]), points, aspect=1.0, lens=FAR, filled=0.6)
         levels = np.array([0.0, 0.25, 1.0]) * sun.radius
         lit, far = np.ones(self._map_size[::-1]), np.ones(self._map_size[::-1])
-        for mesh, map_ in zip(meshes, sun.maps, strict=True):
-            depth = map_.depth[::2, ::2]
+        for mesh in meshes:
+            depth = sun.sees(mesh)[::2, ::2]
             above = self._above(sun.camera, depth)
             cast = np.zeros(self._map_size[::-1])
             for k, level in enumerate(levels):
@@ -65,16 +65,15 @@ class Ground:
         away = (points.mean(axis=0) - camera.position) @ camera.axes[2]
         return float(length * self._map_size[1] / (2.0 * FAR * away))
 
-    def seen_by(self, camera: Camera, size: tuple[int, int]) -> tuple[Array, Array]:
-        """The floor's strength and its darkness by shadows, in 0..1, at each pixel (h, w)."""
-        width, height = size
-        rows, columns = np.indices((height, width))
+    def seen_by(self, camera: Camera, size: tuple[int, int], band: tuple[int, int]) -> tuple[Array, Array]:
+        """The floor's strength and its darkness by shadows, in 0..1, at each pixel (h, w) of some rows of a picture."""
+        rows, columns = np.mgrid[slice(*band), : size[0]]
         rays = camera.rays(columns + 0.5, rows + 0.5, size)
-        hit = rays[..., 2] * (self._height - camera.position[2]) > 1e-9
+        hit = rays[..., 2] * np.sign(self._height - camera.position[2]) > 1e-9
         ahead = (self._height - camera.position[2]) / rays[hit][:, 2]
         points = camera.position + rays[hit] * ahead[:, None]
         away = np.linalg.norm(points[:, :2] - self._middle, axis=1) / self._radius
-        floor, dark = np.zeros((height, width)), np.zeros((height, width))
+        floor, dark = np.zeros(rows.shape), np.zeros(rows.shape)
         t = ((away - _FADES[0]) / (_FADES[1] - _FADES[0])).clip(0.0, 1.0)
         floor[hit] = 1.0 - t * t * (3.0 - 2.0 * t)
         cast, near = _sampled(self._cast, self._sun, points), _sampled(self._near, self._below, points)

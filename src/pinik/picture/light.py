@@ -71,9 +71,12 @@ class Mesh:
             bodies[0].opacity,
         )
 
-    def drawn_by(self, camera: Camera, size: tuple[int, int]) -> Raster:
-        """What a camera sees of it."""
-        return rasterize(camera.seen(self.vertices, size)[self.faces], size)
+    def drawn_by(self, camera: Camera, size: tuple[int, int], rows: tuple[int, int] | None = None) -> Raster:
+        """What a camera sees of it in a picture of that size, or in these rows of it: the first, and the one below."""
+        top, bottom = (0, size[1]) if rows is None else rows
+        seen = camera.seen(self.vertices, size)
+        seen[:, 1] -= top * seen[:, 2]
+        return rasterize(seen[self.faces], (size[0], bottom - top))
 
 
 class Sun:
@@ -98,9 +101,15 @@ class Sun:
         self.map_size = (side, side)
         away = (points.mean(axis=0) - self.camera.position) @ self.camera.axes[2]
         self._pixel = float(2.0 * FAR * away / side)  # [m]
-        self.maps = [mesh.drawn_by(self.camera, self.map_size) for mesh in meshes]
-        solid = [k for k, mesh in enumerate(meshes) if mesh.opacity >= 1.0]
-        self._depth = self.maps[solid[0]].depth if solid else np.full(self.map_size[::-1], np.inf)
+        self._solid = next((mesh for mesh in meshes if mesh.opacity >= 1.0), None)
+        if self._solid is None:
+            self._depth = np.full(self.map_size[::-1], np.inf)
+        else:
+            self._depth = self._solid.drawn_by(self.camera, self.map_size).depth
+
+    def sees(self, mesh: Mesh) -> Array:
+        """How far from the sun a mesh is, at each pixel of its map; infinite where it is not."""
+        return self._depth if mesh is self._solid else mesh.drawn_by(self.camera, self.map_size).depth
 
     def shines_on(self, points: Array, normals: Array, sample: NDArray[np.int64]) -> Array:
         """How much of the sun reaches points (k, 3) on surfaces; `sample` (k,) in 0..3 says which of a pixel's four."""

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Sequence
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,6 +19,8 @@ __all__ = ["render"]
 Array = NDArray[np.float64]
 
 _SAMPLES = 2  # across a pixel, and as many down
+_AT_ONCE = 400_000  # pixels, so that large pictures take no more memory than these
+_LAYERS = 20  # of which more make them fewer
 
 
 def render(
@@ -36,11 +40,28 @@ def render(
     """
     meshes = [Mesh.of(layer) for layer in layers]
     points = np.vstack([_box(body.solid.vertices) for layer in layers for body in layer])
+    width, height = size
     sun = Sun(meshes, camera, size, points)
-    color, opacity = _drawn(meshes, sun, camera, size)
-    behind, cover = np.zeros((*opacity.shape, 3)), np.zeros_like(opacity)
-    if floor is not None and camera.position[2] > floor:
-        behind, cover = _floor(Ground(floor, meshes, sun, points), camera, size, paper)
+    ground = None if floor is None or camera.position[2] <= floor else Ground(floor, meshes, sun, points)
+    step = max(_AT_ONCE // (width * max(len(meshes) // _LAYERS, 1)), 1)
+    bands = [(top, min(top + step, height)) for top in range(0, height, step)]
+    return np.vstack([_band(meshes, sun, ground, camera, size, band, paper) for band in bands])
+
+
+def _band(
+    meshes: Sequence[Mesh],
+    sun: Sun,
+    ground: Ground | None,
+    camera: Camera,
+    size: tuple[int, int],
+    band: tuple[int, int],
+    paper: Array | None,
+) -> NDArray[np.uint8]:
+    """Some rows of the picture: the first, and the one below the last."""
+    color, opacity = _drawn(meshes, sun, camera, size, band)
+    behind, cover = np.zeros_like(color), np.zeros_like(opacity)
+    if ground is not None:
+        behind, cover = _floor(ground, camera, size, band, paper)
     if paper is not None:
         behind, cover = behind + (1.0 - cover)[..., None] * paper, np.ones_like(cover)
     color = color + (1.0 - opacity)[..., None] * behind  # all of them multiplied by their opacity
@@ -49,33 +70,68 @@ def render(
     return np.asarray(np.dstack([plain, opacity]).clip(0.0, 1.0) * 255.0 + 0.5).astype(np.uint8)
 
 
-def _floor(ground: Ground, camera: Camera, size: tuple[int, int], paper: Array | None) -> tuple[Array, Array]:
+def _floor(
+    ground: Ground, camera: Camera, size: tuple[int, int], band: tuple[int, int], paper: Array | None
+) -> tuple[Array, Array]:
     """The ground's colour, multiplied by its opacity, and that; without paper it is its shadows alone."""
-    strength, dark = ground.seen_by(camera, size)
+    strength, dark = ground.seen_by(camera, size, band)
     if paper is None:
         return np.zeros((*dark.shape, 3)), dark
     return (strength * (1.0 - dark))[..., None] * ground.color, 1.0 - (1.0 - strength) * (1.0 - dark)
 
 
-def _drawn(meshes: Sequence[Mesh], sun: Sun, camera: Camera, size: tuple[int, int]) -> tuple[Array, Array]:
+@dataclass(frozen=True)
+class _Fragments:
+    """What layers show at the samples that they cover.
+
+    Attributes:
+        key: The sample's place in the picture, and below it the depth, so that sorted they are in the order in which a
+            look meets them (k,).
+        color: sRGB (k, 3).
+        opacity: (k,).
+    """
+
+    key: NDArray[np.uint64]
+    color: NDArray[np.float32]
+    opacity: NDArray[np.float32]
+
+
+def _drawn(
+    meshes: Sequence[Mesh], sun: Sun, camera: Camera, size: tuple[int, int], band: tuple[int, int]
+) -> tuple[Array, Array]:
     """Colour (h, w, 3), multiplied by opacity, and opacity (h, w) of all layers, the nearer before the farther."""
-    width, height = size
-    fine = (width * _SAMPLES, height * _SAMPLES)
-    drawn = [_shaded(mesh, sun, camera, fine) for mesh in meshes]
-    order = np.argsort([depth for _, depth in drawn], axis=0) if len(drawn) > 1 else np.zeros((1, *fine[::-1]))
-    total, left = np.zeros((fine[1], fine[0], 3)), np.ones((fine[1], fine[0]))
-    for rank in order:
-        for k, (mesh, (color, depth)) in enumerate(zip(meshes, drawn, strict=True)):
-            here = np.nonzero((rank == k) & np.isfinite(depth))
-            share = mesh.opacity * left[here]
-            total[here] += share[:, None] * color[here]
-            left[here] -= share
-    return _averaged(total), _averaged(1.0 - left)
+    fine = (size[0] * _SAMPLES, size[1] * _SAMPLES)
+    top, bottom = band[0] * _SAMPLES, band[1] * _SAMPLES
+    drawn = [_shaded(mesh, sun, camera, fine, (top, bottom)) for mesh in meshes]
+    key = np.concatenate([one.key for one in drawn])
+    color = np.concatenate([one.color for one in drawn])
+    opacity = np.concatenate([one.opacity for one in drawn])
+    order = np.argsort(key, kind="stable")
+    place = (key[order] >> np.uint64(32)).astype(np.int64)
+    rank = _ranks(place)
+    ends = np.cumsum(np.bincount(rank))
+    by_rank = np.argsort(rank, kind="stable")
+    total, left = np.zeros(((bottom - top) * fine[0], 3)), np.ones((bottom - top) * fine[0])
+    for begin, end in itertools.pairwise([0, *ends]):
+        some = by_rank[begin:end]
+        here, of = place[some], order[some]
+        share = opacity[of] * left[here]
+        total[here] += share[:, None] * color[of]
+        left[here] -= share
+    shape = (bottom - top, fine[0])
+    return _averaged(total.reshape(*shape, 3)), _averaged(1.0 - left.reshape(shape))
 
 
-def _shaded(mesh: Mesh, sun: Sun, camera: Camera, size: tuple[int, int]) -> tuple[Array, Array]:
-    """sRGB (h, w, 3) and depth (h, w) of one layer."""
-    raster = mesh.drawn_by(camera, size)
+def _ranks(place: NDArray[np.int64]) -> NDArray[np.int64]:
+    """How many entries before each, in a sorted list, are the same."""
+    counted = np.arange(len(place))
+    begins = np.r_[True, place[1:] != place[:-1]][: len(place)]
+    return np.asarray(counted - np.maximum.accumulate(np.where(begins, counted, 0)))
+
+
+def _shaded(mesh: Mesh, sun: Sun, camera: Camera, size: tuple[int, int], band: tuple[int, int]) -> _Fragments:
+    """One layer in these rows."""
+    raster = mesh.drawn_by(camera, size, band)
     rows, columns = np.nonzero(raster.covered)
     triangles = raster.triangles(rows, columns)
     weights = raster.weights(rows, columns)
@@ -92,9 +148,9 @@ def _shaded(mesh: Mesh, sun: Sun, camera: Camera, size: tuple[int, int]) -> tupl
     normals /= np.maximum(_lengths(normals), 1e-12)
     sample = columns % _SAMPLES + _SAMPLES * (rows % _SAMPLES)
     light = sun.shade(mesh, triangles, points, normals, back, sample)
-    color = np.zeros((*raster.depth.shape, 3))
-    color[rows, columns] = to_srgb(light)
-    return color, raster.depth
+    depth = raster.depth[rows, columns].astype(np.float32)
+    key = (rows * size[0] + columns).astype(np.uint64) << np.uint64(32) | depth.view(np.uint32).astype(np.uint64)
+    return _Fragments(key, to_srgb(light).astype(np.float32), np.full(len(key), mesh.opacity, np.float32))
 
 
 def _lengths(vectors: Array) -> Array:

@@ -24,6 +24,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from .. import errors
 from ..picture import Picture
+from ..picture.camera import Camera
 from ..robot import Robot
 from .notebook import as_html, draw_beside
 from .server import later_in_threads, make_application
@@ -124,7 +125,9 @@ class LiveView:
             caption += f"; from left to right: {', '.join(methods)}"
         return as_html(self.url, self._mark, self.picture(), caption)
 
-    def picture(self, view: str | tuple[float, float] = "angle", size: tuple[int, int] = (720, 360)) -> Picture:
+    def picture(
+        self, view: str | tuple[float, float] | Camera = "angle", size: tuple[int, int] = (720, 360)
+    ) -> Picture:
         """The instances that are seen, beside each other as they stand; `view` and `size` are as for `pinik.draw`."""
 
         def now() -> tuple[Robot, list[NDArray[Any]], list[tuple[NDArray[Any], bool]]]:

@@ -16,7 +16,7 @@ from ..errors import UrdfWarning
 from ..home import home_configuration
 from ..picture import BALL, Picture, ball_radius, checked_size, draw, view_direction
 from ..picture.bodies import bodies_of
-from ..picture.camera import look_from
+from ..picture.camera import Camera, facing, look_from
 from ..robot import Robot
 
 __all__ = ["as_html", "draw_beside"]
@@ -30,12 +30,12 @@ _GAP = 0.06  # between neighbours, of their width
 _FILLED = 0.9  # of the picture
 _LENS = 0.23  # for a single one; many are seen from so far away that all are seen from the same side
 
-# Only a page of this machine asks whether the server is there: one from elsewhere, such as a published notebook, must
-# not knock at its reader's ports. An image is asked for, as the answer of another server would not be one.
+# Only a page that may frame the server's asks whether it is there: one from elsewhere, such as a published notebook,
+# must not knock at its reader's ports. An image is asked for, as the answer of another server would not be one.
 _SCRIPT = """(() => {
     const place = document.getElementById(%(place)s);
-    const local = ["localhost", "127.0.0.1", "[::1]", ""].includes(location.hostname);
-    if (!place || (location.protocol.startsWith("http") && !local)) return;
+    const local = ["localhost", "127.0.0.1"].includes(location.hostname);
+    if (!place || !(local || location.protocol === "vscode-webview:")) return;
     const alive = new Image();
     alive.onload = () => {
         const frame = document.createElement("iframe");
@@ -52,7 +52,7 @@ def draw_beside(
     configurations: Sequence[Array],
     balls: Sequence[tuple[Array, bool]],
     *,
-    view: str | tuple[float, float] = "angle",
+    view: str | tuple[float, float] | Camera = "angle",
     size: tuple[int, int] = _SIZE,
 ) -> Picture:
     """The instances beside each other from left to right, each with all the balls.
@@ -65,9 +65,7 @@ def draw_beside(
         size: As for `pinik.draw`.
     """
     width, height = checked_size(size)
-    camera = view_direction(view)
-    right = np.array([-camera[1], camera[0], 0.0])
-    right = right / np.linalg.norm(right) if right.any() else np.array([1.0, 0.0, 0.0])
+    right = (view.axes if isinstance(view, Camera) else facing(view_direction(view)))[0]
     points = np.array([position for position, _ in balls]).reshape(-1, 3)
     radius = ball_radius(robot)
     with warnings.catch_warnings():
@@ -75,14 +73,17 @@ def draw_beside(
         one = [_vertices(robot, q) for q in configurations]
         reach = np.vstack([*one, points - radius, points + radius])
         offsets = np.arange(len(one))[:, None] * ((1.0 + _GAP) * np.ptp(reach @ right)) * right
-        everything = np.vstack([reach + offset for offset in offsets])
+        if not isinstance(view, Camera):
+            everything = np.vstack([reach + offset for offset in offsets])
+            direction, lens = view_direction(view), _LENS / len(one)
+            view = look_from(direction, everything, aspect=width / height, lens=lens, filled=_FILLED)
         return draw(
             robot,
             list(configurations),
             offset=offsets,
             balls=(offsets[:, None] + points).reshape(-1, 3),
             ball_color=[_PINNED if pinned else BALL for _ in configurations for _, pinned in balls],
-            view=look_from(camera, everything, aspect=width / height, lens=_LENS / len(one), filled=_FILLED),
+            view=view,
             size=size,
             ground=float(_vertices(robot, home_configuration(robot))[:, 2].min()),
         )

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import ipaddress
 import json
+import re
 import secrets
 import socket
 from collections.abc import Callable
@@ -58,6 +59,17 @@ def is_own_host(host_header: str, served: str) -> bool:
     if served in _LOOPBACK:
         return False
     return name in (served.lower(), socket.gethostname().lower()) or _is_address(name)
+
+
+def _framers(host_header: str) -> str:
+    """Who may show the page in a frame: pages of the machine it is on, such as Jupyter's, and VS Code's.
+
+    Any other could replace what runs by the set-up in the frame's address. An IPv6 address cannot be told to browsers.
+    """
+    hosts = dict.fromkeys(("localhost", "127.0.0.1", urlsplit(f"//{host_header}").hostname or ""))
+    named = [host for host in hosts if re.fullmatch(r"[a-z0-9-]+(\.[a-z0-9-]+)*", host)]
+    origins = [f"{scheme}://{host}:*" for host in named for scheme in ("http", "https")]
+    return " ".join((*origins, "vscode-webview:", "vscode-file:"))
 
 
 def _is_address(name: str) -> bool:
@@ -128,6 +140,7 @@ class _Index(_Handler):
             "connect-src": f"'self' ws://{here} wss://{here}",
             "object-src": "'none'",
             "base-uri": "'none'",
+            "frame-ancestors": f"'self' {_framers(here)}",
         }
         self.set_header("Content-Security-Policy", "; ".join(f"{name} {value}" for name, value in policy.items()))
         self.set_header("Content-Type", "text/html; charset=utf-8")
