@@ -192,11 +192,12 @@ def test_a_ghost_costs_what_it_covers_and_not_what_the_picture_has(two_link):
 
 
 @pytest.mark.parametrize("background", ["#ffffff", None])
-def test_it_does_not_matter_how_many_rows_are_drawn_at_once(arm, monkeypatch, background):
+@pytest.mark.parametrize(("name", "most"), [("_AT_ONCE", 1000), ("_MOST", 500)])
+def test_it_does_not_matter_how_many_rows_are_drawn_at_once(arm, monkeypatch, background, name, most):
     options = {"q": [np.zeros(12), np.full(12, 0.3)], "opacity": [1.0, 0.4], "balls": [0.3, 0.3, 0.3]}
     options |= {"size": (160, 101), "background": background}
     at_once = pinik.draw(arm, **options).pixels.astype(int)
-    monkeypatch.setattr(sys.modules["pinik.picture.render"], "_AT_ONCE", 1000)
+    monkeypatch.setattr(sys.modules["pinik.picture.render"], name, most)
     assert np.abs(pinik.draw(arm, **options).pixels - at_once).max() <= 1
 
 

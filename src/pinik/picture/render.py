@@ -19,8 +19,9 @@ __all__ = ["render"]
 Array = NDArray[np.float64]
 
 _SAMPLES = 2  # across a pixel, and as many down
-_AT_ONCE = 400_000  # pixels, so that large pictures take no more memory than these
-_LAYERS = 20  # of which more make them fewer
+# What is in memory at once, so that pictures that are large or have many ghosts take no more:
+_AT_ONCE = 400_000  # pixels
+_MOST = 8_000_000  # samples of all layers together
 
 
 def render(
@@ -43,22 +44,43 @@ def render(
     width, height = size
     sun = Sun(meshes, camera, size, points)
     ground = None if floor is None or camera.position[2] <= floor else Ground(floor, meshes, sun, points)
-    step = max(_AT_ONCE // (width * max(len(meshes) // _LAYERS, 1)), 1)
-    bands = [(top, min(top + step, height)) for top in range(0, height, step)]
-    return np.vstack([_band(meshes, sun, ground, camera, size, band, paper) for band in bands])
+    bands: list[NDArray[np.uint8]] = []
+    top, count = 0, max(_AT_ONCE // width, 1)
+    while top < height:
+        band = (top, min(top + count, height))
+        drawn = _covered(meshes, sun, camera, size, band)
+        if drawn is None:
+            count = (count + 1) // 2
+        else:
+            bands.append(_band(drawn, ground, camera, size, band, paper))
+            top = band[1]
+    return np.vstack(bands)
+
+
+def _covered(
+    meshes: Sequence[Mesh], sun: Sun, camera: Camera, size: tuple[int, int], band: tuple[int, int]
+) -> list[_Fragments] | None:
+    """What each layer shows in some rows: the first, and the one below the last; None where that is too much."""
+    fine = (size[0] * _SAMPLES, size[1] * _SAMPLES)
+    drawn, total = [], 0
+    for mesh in meshes:
+        drawn.append(_shaded(mesh, sun, camera, fine, (band[0] * _SAMPLES, band[1] * _SAMPLES)))
+        total += len(drawn[-1].key)
+        if total > _MOST and band[1] - band[0] > 1:
+            return None
+    return drawn
 
 
 def _band(
-    meshes: Sequence[Mesh],
-    sun: Sun,
+    drawn: Sequence[_Fragments],
     ground: Ground | None,
     camera: Camera,
     size: tuple[int, int],
     band: tuple[int, int],
     paper: Array | None,
 ) -> NDArray[np.uint8]:
-    """Some rows of the picture: the first, and the one below the last."""
-    color, opacity = _drawn(meshes, sun, camera, size, band)
+    """Rows of the picture."""
+    color, opacity = _together(drawn, (size[0] * _SAMPLES, (band[1] - band[0]) * _SAMPLES))
     behind, cover = np.zeros_like(color), np.zeros_like(opacity)
     if ground is not None:
         behind, cover = _floor(ground, camera, size, band, paper)
@@ -85,7 +107,7 @@ class _Fragments:
     """What layers show at the samples that they cover.
 
     Attributes:
-        key: The sample's place in the picture, and below it the depth, so that sorted they are in the order in which a
+        key: The sample's place in these rows, and below it the depth, so that sorted they are in the order in which a
             look meets them (k,).
         color: sRGB (k, 3).
         opacity: (k,).
@@ -96,13 +118,9 @@ class _Fragments:
     opacity: NDArray[np.float32]
 
 
-def _drawn(
-    meshes: Sequence[Mesh], sun: Sun, camera: Camera, size: tuple[int, int], band: tuple[int, int]
-) -> tuple[Array, Array]:
+def _together(drawn: Sequence[_Fragments], size: tuple[int, int]) -> tuple[Array, Array]:
     """Colour (h, w, 3), multiplied by opacity, and opacity (h, w) of all layers, the nearer before the farther."""
-    fine = (size[0] * _SAMPLES, size[1] * _SAMPLES)
-    top, bottom = band[0] * _SAMPLES, band[1] * _SAMPLES
-    drawn = [_shaded(mesh, sun, camera, fine, (top, bottom)) for mesh in meshes]
+    width, height = size
     key = np.concatenate([one.key for one in drawn])
     color = np.concatenate([one.color for one in drawn])
     opacity = np.concatenate([one.opacity for one in drawn])
@@ -111,15 +129,14 @@ def _drawn(
     rank = _ranks(place)
     ends = np.cumsum(np.bincount(rank))
     by_rank = np.argsort(rank, kind="stable")
-    total, left = np.zeros(((bottom - top) * fine[0], 3)), np.ones((bottom - top) * fine[0])
+    total, left = np.zeros((height * width, 3)), np.ones(height * width)
     for begin, end in itertools.pairwise([0, *ends]):
         some = by_rank[begin:end]
         here, of = place[some], order[some]
         share = opacity[of] * left[here]
         total[here] += share[:, None] * color[of]
         left[here] -= share
-    shape = (bottom - top, fine[0])
-    return _averaged(total.reshape(*shape, 3)), _averaged(1.0 - left.reshape(shape))
+    return _averaged(total.reshape(height, width, 3)), _averaged(1.0 - left.reshape(height, width))
 
 
 def _ranks(place: NDArray[np.int64]) -> NDArray[np.int64]:
