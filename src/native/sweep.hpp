@@ -103,7 +103,8 @@ class Sweep {
       for (const Chaser& chaser : chasers_)
         if (chaser.moved_by(mover)) M += chaser.correlation(mover, origin);
       Turning g = turning(M, axis);
-      if (std::hypot(g.cosine, g.sine) <= suspect * g.along) g = measured_across(mover, axis, origin);
+      if (g.cosine * g.cosine + g.sine * g.sine <= suspect * suspect * g.along * g.along)
+        g = measured_across(mover, axis, origin);
       change = best_turn(g, low, high, scale < 1.0 || solver_.max_step < M_PI);
       // The long way round to a goal has none of its own to overshoot into.
       if (scale > 1.0 && std::abs(change) > M_PI) scale = 1.0;
