@@ -69,8 +69,9 @@ def run(
     chain's length L: a stretched-out arm swings from side to side where λ² is small beside d · L.
     """
     bold = bold and isinstance(solver, JacobianSolver)
-    bounds = [None] * len(kinematics.terms) if bold else bounds_of(kinematics, limits)  # a bold run is within reach
-    compiled, beyond = kinematics.terms, shortfall(kinematics, limits, tolerance.position, bounds) is not None
+    damps = isinstance(solver, JacobianSolver) and not bold  # a bold run knows that its targets may be reached
+    compiled, bounds = kinematics.terms, bounds_of(kinematics, limits) if damps else []
+    beyond = damps and shortfall(kinematics, limits, tolerance.position, bounds) is not None
     box = limits.loosened() if bold and limits.enabled else limits
     at = kinematics.linearize(start)
     milestone, since = at.residual, 0
@@ -95,9 +96,9 @@ def run(
         moved = yield State(at.q, iteration, updates, tuple(at.errors), at.residual, attempt, status)
         if moved is not None:
             kinematics.retarget(moved)
-            if kinematics.terms is not compiled:
+            if damps and kinematics.terms is not compiled:
                 compiled, bounds = kinematics.terms, bounds_of(kinematics, limits)
-            beyond = shortfall(kinematics, limits, tolerance.position, bounds) is not None
+            beyond = damps and shortfall(kinematics, limits, tolerance.position, bounds) is not None
             at = kinematics.linearize(at.q)
             milestone, since, last = math.inf, 0, iteration + max_iterations
         elif status is not None:

@@ -17,13 +17,13 @@ from ..solvers import SOLVERS, Solver
 from ..studies.accuracy import CASES, Cost, Problem, asked_of, problems
 from ..studies.accuracy import accuracy as run_accuracy
 from ..studies.chain import TIP, length_of, planar_chain
-from ..studies.spread import Spread, drags, firmer_towards_the_tip, spread
+from ..studies.spread import FIRMEST, Spread, drags, firmer_towards_the_tip, spread
 from ..studies.straight_arm import Pull, pull_inwards
 from . import output
 from .accuracy_plots import draw_accuracy, draw_spread, draw_straight_arm
-from .assignments import MethodParameters, solvers_with
+from .assignments import solvers_with
 from .exits import ExitStatus
-from .options import AsJson
+from .options import AsJson, MethodParameters
 from .plots import check_plot, save_plot
 from .progress import progress
 from .tables import emit_table
@@ -98,6 +98,7 @@ def accuracy(
         costs = list(
             run_accuracy(chain, solvers, asked, range(1, digits + 1), repeats=_REPEATS, engine=engine, progress=tick)
         )
+    dragged = drags(chain, _DRAGS, seed)
     answer = {
         "schema": 1,
         "robot": chain.name,
@@ -111,7 +112,7 @@ def accuracy(
         "examples": [_example(chain, solvers, own[0], engine) for own in asked.values()],
         "straight": [_pull_fields(chain, pull) for pull in pull_inwards(chain, solvers, engine)],
         "spread": [
-            _spread_fields(spread(chain, solver, drags(chain, _DRAGS, seed), weights, engine))
+            _spread_fields(spread(chain, solver, dragged, weights, engine))
             for weights in ({}, firmer_towards_the_tip(chain))
             for solver in solvers.values()
         ],
@@ -228,8 +229,8 @@ def _emit(answer: Mapping[str, Any]) -> None:
     )
     _emit_paragraph(
         f"Each joint's share of the motion in %, base first, when the tip is dragged a fifth of the chain's length "
-        f"aside; mean of {_DRAGS}. weighted: w from 1 at the base to 0.1 at the tip. moving joints: how many turn, "
-        "1 / sum of squared shares.",
+        f"aside; mean of {_DRAGS}. weighted: w from 1 at the base to {FIRMEST:g} at the tip. moving joints: how many "
+        "turn, 1 / sum of squared shares.",
         last=True,
     )
 

@@ -6,9 +6,7 @@ import json
 import os
 import sys
 from collections.abc import Iterable, Mapping
-from typing import Annotated, Any
-
-import typer
+from typing import Any
 
 from ..errors import PinikError, UnknownNameError
 from ..robot import Robot
@@ -17,16 +15,7 @@ from .exits import CommandError, in_words
 from .output import say
 from .units import Units
 
-__all__ = ["MethodParameters", "configuration", "solver_with", "solvers_with"]
-
-MethodParameters = Annotated[
-    list[str] | None,
-    typer.Option(
-        "--param",
-        metavar="METHOD.NAME=VALUE",
-        help="A parameter of one of the methods, such as jt.alpha=0.1 ('pinik solve --help' lists them); repeatable.",
-    ),
-]
+__all__ = ["configuration", "solver_with", "solvers_with"]
 
 
 def configuration(

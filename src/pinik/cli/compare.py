@@ -18,11 +18,11 @@ from ..studies.comparison import compare as run_comparisons
 from ..studies.thesis import METHODS, PRESETS, Contest, Mismatch, contest, mismatch, published
 from ..viewer.effectors import principal_frames
 from . import output
-from .assignments import MethodParameters, solvers_with
+from .assignments import solvers_with
 from .comparison_plot import draw_comparison
 from .exits import ExitStatus
 from .loading import load_robot
-from .options import AsJson, PackageDirs
+from .options import AsJson, MethodParameters, PackageDirs
 from .plots import check_plot, save_plot
 from .progress import progress
 from .tables import emit_table

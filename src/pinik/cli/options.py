@@ -7,7 +7,17 @@ from typing import Annotated
 
 import typer
 
-__all__ = ["AsJson", "Degrees", "PackageDirs", "PoseName", "RelativeTo", "RobotSource", "Root", "Settings"]
+__all__ = [
+    "AsJson",
+    "Degrees",
+    "MethodParameters",
+    "PackageDirs",
+    "PoseName",
+    "RelativeTo",
+    "RobotSource",
+    "Root",
+    "Settings",
+]
 
 RobotSource = Annotated[
     str,
@@ -48,4 +58,12 @@ Settings = Annotated[
 RelativeTo = Annotated[
     str | None,
     typer.Option("--relative-to", metavar="FRAME", help="Express it in this frame instead of the world."),
+]
+MethodParameters = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--param",
+        metavar="METHOD.NAME=VALUE",
+        help="A parameter of one of the methods, such as jt.alpha=0.1 ('pinik solve --help' lists them); repeatable.",
+    ),
 ]

@@ -18,7 +18,7 @@ from ..prepared import Prepared, prepare
 from ..robot import Robot
 from ..run import compiled_for, run
 from ..solvers import Patience, Solver
-from ..state import State, Status
+from ..state import State, Status, measure_errors
 from ..targets import Target, Tolerance
 
 __all__ = ["LAP", "PROGRAM", "BareChase", "Chase", "EngineChase", "Rules", "Step", "chase_with"]
@@ -135,10 +135,11 @@ class BareChase:
     def step(self, place: Array) -> Step:
         """Iterate until the place is reached or the iterations run out; not at all where it is reached already."""
         before, began = self._state, self._clock()
-        away = float(np.linalg.norm(self._robot.placement(self._target.frame, before.q).translation - place))
-        if away <= self._tolerance.position:
-            return Step(self._clock() - began, 0, 0, True, away, 0.0)
-        state = self._states.send(self._target.moved_to(place))
+        target = self._target.moved_to(place)
+        (there,) = measure_errors(self._robot, (target,), before.q)
+        if there.position is not None and there.within(self._tolerance):
+            return Step(self._clock() - began, 0, 0, True, there.position, 0.0)
+        state = self._states.send(target)
         while state.status is None:
             state = next(self._states)
         spent = self._clock() - began
