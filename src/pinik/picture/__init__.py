@@ -3,21 +3,31 @@
 from __future__ import annotations
 
 import io
-import operator
 import os
-import re
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..checks import as_array, as_finite_number, as_length, as_point, as_points, as_vector
-from ..errors import InputError, UnknownNameError
-from ..home import home_configuration, robot_size
+from ..checks import as_length
+from ..errors import InputError
+from ..home import robot_size
 from ..robot import Robot
+from .arguments import (
+    SMALLEST,
+    as_any_points,
+    as_color,
+    as_colors,
+    as_configurations,
+    as_offsets,
+    as_opacities,
+    checked_size,
+    depth_of,
+    view_direction,
+)
 from .bodies import Body, bodies_of
 from .camera import Camera, look_from
 from .render import render
@@ -26,18 +36,14 @@ from .solids import ball
 if TYPE_CHECKING:
     from PIL.Image import Image
 
-__all__ = ["BALL", "Picture", "ball_radius", "checked_size", "draw", "view_direction"]
+__all__ = ["BALL", "Picture", "ball_radius", "draw"]
 
 Array = NDArray[np.float64]
-
-VIEWS = {"angle": (-0.6, 0.28), "front": (0.0, 0.12), "side": (-np.pi / 2, 0.12), "top": (-np.pi / 2, np.pi / 2)}
-"""Name → azimuth and elevation [rad] of the camera as seen from the robot; "top" is a map: x to the right, y up."""
 
 BALL = "#d81f2f"
 _TINT = 0.75
 _LENS = float(np.tan(np.deg2rad(26.0) / 2))
 _FILLED = 0.86
-_SMALLEST, _LARGEST, _MOST = 16, 4000, 10_000_000  # pixels of a side, and of a picture
 _WITH_OPACITY = ("AVIF", "DDS", "ICNS", "ICO", "JPEG2000", "PNG", "QOI", "SGI", "TGA", "TIFF", "WEBP")
 
 
@@ -69,8 +75,8 @@ class Picture:
             Pixels from the left and from the top (2,) or (n, 2), as `axes.imshow` counts them; NaN for a point behind
             the camera.
         """
-        single = _depth(points) == 1
-        x, y, depth = self.camera.seen(_points(points, "points"), self.size).T
+        single = depth_of(points) == 1
+        x, y, depth = self.camera.seen(as_any_points(points, "points"), self.size).T
         depth = np.where(depth > 0.0, depth, np.nan)
         found = np.stack([x / depth, y / depth], axis=1) - 0.5
         return np.asarray(found[0] if single else found)
@@ -165,14 +171,14 @@ def draw(
     if not isinstance(robot, Robot):
         raise InputError(f"a picture is drawn of a robot that pinik.load returned; got {robot!r}")
     size = checked_size(size)
-    configurations = _configurations(robot, q)
+    configurations = as_configurations(robot, q)
     count = len(configurations)
-    opacities, offsets = _opacities(opacity, count), _offsets(offset, count)
-    tints = [None] * count if color is None else _each(color, count, "color", "configurations")
-    paper = None if background is None else _color(background, "background")
+    opacities, offsets = as_opacities(opacity, count), as_offsets(offset, count)
+    tints = [None] * count if color is None else as_colors(color, count, "color", "configurations")
+    paper = None if background is None else as_color(background, "background")
     radius = _radius(robot, ball_radius)
-    points = _points(balls, "balls")
-    tones = _each(ball_color, len(points), "ball_color", "balls")
+    points = as_any_points(balls, "balls")
+    tones = as_colors(ball_color, len(points), "ball_color", "balls")
     layers: dict[tuple[int, float], list[Body]] = {}
     for k, (one, share, tint) in enumerate(zip(configurations, opacities, tints, strict=True)):
         for body in bodies_of(robot, one):
@@ -194,24 +200,6 @@ def draw(
     return Picture(render(list(layers.values()), camera, size, floor, paper), camera)
 
 
-def view_direction(view: str | tuple[float, float]) -> Array:
-    """From a robot to the camera (3,), of unit length; `view` as for `draw`, but no camera.
-
-    Raises:
-        UnknownNameError: No such view.
-        InputError: Not two angles, or an elevation past straight above or below.
-    """
-    if isinstance(view, str):
-        if view not in VIEWS:
-            raise UnknownNameError("view", view, VIEWS)
-        view = VIEWS[view]
-    azimuth, elevation = as_vector(view, 2, "view", "the camera's azimuth and elevation in radians")
-    if abs(elevation) > np.pi / 2:
-        raise InputError(f"view: the camera's elevation is between -π/2 and π/2 [rad]; got {elevation:g}")
-    flat = np.cos(elevation) * np.array([np.cos(azimuth), np.sin(azimuth)])
-    return np.array([*flat, np.sin(elevation)])
-
-
 def ball_radius(robot: Robot) -> float:
     """Of the balls that are drawn beside a robot [m], as in the live view."""
     return 0.025 * robot_size(robot)
@@ -220,7 +208,7 @@ def ball_radius(robot: Robot) -> float:
 def _is_written(image: Image, kind: str) -> bool:
     """Whether Pillow writes this format, found out by a corner of the picture."""
     try:
-        image.crop((0, 0, _SMALLEST, _SMALLEST)).save(io.BytesIO(), kind)
+        image.crop((0, 0, SMALLEST, SMALLEST)).save(io.BytesIO(), kind)
     except (KeyError, OSError, ValueError):
         return False
     return True
@@ -237,73 +225,6 @@ def _placed(body: Body, offset: Array, opacity: float, tint: Array | None) -> Bo
     color = body.color if tint is None else (1.0 - _TINT) * body.color + _TINT * tint
     solid = body.solid.moved(np.eye(3), offset)
     return replace(body, solid=solid, color=color, opacity=body.opacity * opacity)
-
-
-def checked_size(size: tuple[int, int]) -> tuple[int, int]:
-    """Width and height [pixels]; InputError unless they are whole numbers and not too many."""
-    try:
-        width, height = (operator.index(side) for side in size)
-        fits = all(_SMALLEST <= side <= _LARGEST for side in (width, height))
-    except (TypeError, ValueError):
-        fits = False
-    if not fits:
-        raise InputError(f"size is a width and a height of {_SMALLEST} to {_LARGEST} pixels; got {size!r}")
-    if width * height > _MOST:
-        raise InputError(f"a picture has at most {_MOST // 1_000_000} million pixels, width times height; got {size!r}")
-    return width, height
-
-
-def _configurations(robot: Robot, q: ArrayLike | None) -> list[Array]:
-    if q is None:
-        return [home_configuration(robot)]
-    if isinstance(q, (list, tuple)) and q and all(_depth(one) == 1 for one in q):
-        return [robot.check_configuration(one, f"q[{k}]") for k, one in enumerate(q)]
-    if isinstance(q, np.ndarray) and q.ndim == 2 and len(q):
-        return list(robot.check_configurations(q))
-    return [robot.check_configuration(q)]
-
-
-def _depth(values: Any) -> int:
-    """How many indices an array has; -1 for rows of different lengths."""
-    try:
-        return np.ndim(values)
-    except ValueError:
-        return -1
-
-
-def _opacities(opacity: ArrayLike, count: int) -> list[float]:
-    values = [opacity] * count if _depth(opacity) == 0 else list(as_vector(opacity, count, "opacity", "one for each q"))
-    numbers = [as_finite_number(value, "opacity") for value in values]
-    if any(not 0.0 <= number <= 1.0 for number in numbers):
-        raise InputError(f"opacity is between 0 and 1; got {opacity!r}")
-    return numbers
-
-
-def _each(color: str | Sequence[str], count: int, what: str, of: str) -> list[Array]:
-    """One colour for all, or one for each, as red, green and blue (3,)."""
-    if isinstance(color, str):
-        return [_color(color, what)] * count
-    if not isinstance(color, Iterable) or len(colors := list(color)) != count:
-        raise InputError(f"{what} is one colour, or one for each of {count} {of}; got {color!r}")
-    return [_color(one, what) for one in colors]
-
-
-def _offsets(offset: ArrayLike, count: int) -> Array:
-    if _depth(offset) == 1:
-        return np.arange(count)[:, None] * as_point(offset, "offset")
-    return as_points(as_array(offset, (count, 3), "offset", "one for each q"), "offset")
-
-
-def _points(points: ArrayLike, what: str) -> Array:
-    if isinstance(points, (list, tuple, np.ndarray)) and len(points) == 0:
-        return np.zeros((0, 3))
-    return as_points([points] if _depth(points) == 1 else points, what)  # type: ignore[arg-type]
-
-
-def _color(text: str, what: str) -> Array:
-    if not isinstance(text, str) or not re.fullmatch(r"#[0-9a-fA-F]{6}", text):
-        raise InputError(f"{what} is a colour such as '#1f6fc4'; got {text!r}")
-    return np.array([int(text[k : k + 2], 16) for k in (1, 3, 5)]) / 255.0
 
 
 def _camera(view: str | tuple[float, float] | Camera, points: Array, size: tuple[int, int]) -> Camera:

@@ -14,7 +14,8 @@ from numpy.typing import NDArray
 
 from ..errors import UrdfWarning
 from ..home import home_configuration
-from ..picture import BALL, Picture, ball_radius, checked_size, draw, view_direction
+from ..picture import BALL, Picture, ball_radius, draw
+from ..picture.arguments import checked_size, view_direction
 from ..picture.bodies import bodies_of
 from ..picture.camera import Camera, facing, look_from
 from ..robot import Robot
