@@ -177,3 +177,21 @@ def test_meshcats_one_command_that_evaluates_text_does_nothing_here(open_desk):
     desk = open_desk("two_link", ("dls",))
     desk.runs("pinik.viewer.set_control('evil', 'window.evil = 1')")
     assert desk.runs("window.evil === undefined")
+
+
+def test_no_figure_of_the_statistics_is_cut_short(open_desk):
+    """The widest texts that a row may hold, put there by hand; iterations, in two sizes of letters, are the page's."""
+    desk = open_desk("two_link", ("two_bone", "ccd", "jt", "dls"), viewport=WIDE)
+    desk.expect("status-0").to_be_visible()
+    widest = ["two_bone", "0.85 mm short", "0.671 ms", None, "98.3 %", "0.099 mm", "44.4°"]
+    cut = desk.page.evaluate(
+        """texts => {
+            const cells = [...document.querySelector("tbody tr").cells];
+            const dot = cells[0].querySelector("*")?.cloneNode();
+            cells.forEach((cell, k) => texts[k] && cell.replaceChildren(texts[k]));
+            if (dot) cells[0].prepend(dot);
+            return cells.filter(cell => cell.scrollWidth > cell.clientWidth).map(cell => cell.textContent);
+        }""",
+        widest,
+    )
+    assert cut == []
