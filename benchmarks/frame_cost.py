@@ -32,10 +32,10 @@ import tornado.netutil
 from pinocchio.visualize import MeshcatVisualizer
 
 import pinik
-from pinik.packages import example_robot_data
-from pinik.viewer.server import make_application
-from pinik.viewer.session import Session
-from pinik.viewer.show import Show, Tab
+from pinik.description.packages import example_robot_data
+from pinik.viewer.simulation.session import Session
+from pinik.viewer.web.server import make_application
+from pinik.viewer.web.show import Show, Tab
 
 BAR = 2.0  # [ms]
 ROBOTS = 4

@@ -11,9 +11,9 @@ import pinocchio
 import pytest
 
 import pinik
-from pinik.kinematics import Kinematics
-from pinik.limits import Limits
-from pinik.stepping import advance
+from pinik.model.limits import Limits
+from pinik.problem.kinematics import Kinematics
+from pinik.solving.stepping import advance
 
 NEVER = pinik.Tolerance(1e-30, 1e-30)
 FRAME = "panda_hand_tcp"

@@ -15,7 +15,7 @@ import numpy as np
 import pinocchio
 import pytest
 
-from pinik.viewer.live_view import LiveView
+from pinik.viewer.web.live_view import LiveView
 from stand_ins import plain_placement
 
 if TYPE_CHECKING:

@@ -12,8 +12,8 @@ import pytest
 from numpy.typing import NDArray
 
 import pinik
-from pinik import native
-from pinik.run import TO_THE_END, run
+from pinik.solving import native
+from pinik.solving.run import TO_THE_END, run
 
 Array = NDArray[np.float64]
 Step = Callable[..., Array]

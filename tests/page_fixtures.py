@@ -11,7 +11,7 @@ import pytest
 
 import pinik
 from desk import CHROMIUM, DRAWN, METHODS, PATIENCE, SMALL, WIDE, Desk, Faults, need_browser
-from pinik.viewer.live_view import LiveView
+from pinik.viewer.web.live_view import LiveView
 from robots import load_quietly
 
 if TYPE_CHECKING:

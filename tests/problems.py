@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 
 import pinik
 from by_hand import ZOO
-from pinik.limits import Limits
+from pinik.model.limits import Limits
 from robots import load_quietly
 
 # Source, options of load, and frames worth moving: chains, hands, humanoids; continuous, prismatic, floating and planar

@@ -13,9 +13,9 @@ import pinocchio
 from numpy.typing import NDArray
 
 import pinik
-from pinik.viewer.session import Session
-from pinik.viewer.setup import write_setup
-from pinik.viewer.state import session_state
+from pinik.viewer.protocol.setup import write_setup
+from pinik.viewer.protocol.state import session_state
+from pinik.viewer.simulation.session import Session
 
 # A well-formed message of every type that a session itself can answer, and what each field is.
 GOOD = {

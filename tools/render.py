@@ -1,6 +1,7 @@
 """Render robots to a PNG: `python tools/render.py ROBOT [--pose NAME | --angles JSON] [--out FILE.png]`.
 
-Shapes come from pinik.geometry, placements from Pinocchio, the picture from meshcat's three.js in Debian's chromium.
+Shapes come from pinik.shapes.meshes, placements from Pinocchio, the picture from meshcat's three.js in Debian's
+chromium.
 It needs the dev extras (`make lint` installs them) and `apt install chromium`.
 docs/images/robots.png is made by tools/hero.py.
 """
@@ -23,7 +24,7 @@ from numpy.typing import NDArray
 from playwright.sync_api import sync_playwright
 
 import pinik
-from pinik.geometry import Color, load_shapes
+from pinik.shapes.meshes import Color, load_shapes
 
 HERE = Path(__file__).parent
 CHROMIUM = "/usr/bin/chromium"

@@ -10,7 +10,7 @@ import numpy as np
 import pinocchio
 from numpy.typing import NDArray
 
-from pinik import robot_catalog
+from pinik.description import catalog as robot_catalog
 
 __all__ = ["ARMS", "Arm", "ArmSource", "write_arm"]
 

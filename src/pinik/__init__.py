@@ -4,46 +4,30 @@ Where are its frames (`Robot.placement`, `Robot.jacobian`), and which joint valu
 (`Robot.solve`, `solve`, `iterate`).
 """
 
-from .closed_form import TwoBoneAnswers, two_bone
-from .errors import (
-    EngineError,
-    InputError,
-    PinikError,
-    RobotLoadError,
-    SolveError,
-    UnknownNameError,
-    UrdfWarning,
-)
-from .joint import Joint
-from .kinematics import Kinematics, Linearization
+from .closed_form.recognise import TwoBone, TwoBoneConfigurations
+from .closed_form.two_bone import TwoBoneAnswers, two_bone
+from .description.catalog import catalog
+from .errors import EngineError, InputError, PinikError, RobotLoadError, SolveError, UnknownNameError, UrdfWarning
 from .loading import load
-from .loop import iterate, solve
-from .many import Solutions, solve_many
-from .picture import Picture, draw
-from .prepared import Prepared, prepare
-from .robot import Robot
-from .robot_catalog import catalog
-from .solution import Solution
-from .solvers import (
-    CCD,
-    CLOSED_FORMS,
-    SOLVERS,
-    DampedLeastSquares,
-    JacobianSolver,
-    JacobianTranspose,
-    Patience,
-    PseudoInverse,
-    Solver,
-    SweepingSolver,
-    TwoBoneSolver,
-    parameter,
-)
-from .state import State, Status
-from .targets import Target, TargetError, Tolerance
-from .two_bone_robot import TwoBone, TwoBoneConfigurations
-from .viewer import live
-
-__version__ = "0.1.0"
+from .model.joint import Joint
+from .model.robot_model import Robot
+from .picture.draw import Picture, draw
+from .problem.kinematics import Kinematics, Linearization
+from .problem.targets import Target, TargetError, Tolerance
+from .solvers.base import JacobianSolver, Patience, Solver, SweepingSolver, parameter
+from .solvers.ccd import CCD
+from .solvers.damped_least_squares import DampedLeastSquares
+from .solvers.pseudo_inverse import PseudoInverse
+from .solvers.registry import CLOSED_FORMS, SOLVERS
+from .solvers.transpose import JacobianTranspose
+from .solvers.two_bone import TwoBoneSolver
+from .solving.front import iterate, solve
+from .solving.many import Solutions, solve_many
+from .solving.prepared import Prepared, prepare
+from .solving.solution import Solution
+from .solving.state import State, Status
+from .version import __version__ as __version__
+from .viewer.live import live
 
 __all__ = [
     "CCD",

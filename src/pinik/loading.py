@@ -7,9 +7,11 @@ import warnings
 from collections.abc import Iterable, Sequence
 from pathlib import Path
 
-from . import packages, robot_catalog, urdf
+from .description import catalog as robot_catalog
+from .description import packages
+from .description import reader as urdf
 from .errors import InputError, RobotLoadError, UrdfWarning
-from .robot import Robot
+from .model.robot_model import Robot
 
 __all__ = ["load", "load_in_silence", "locate"]
 

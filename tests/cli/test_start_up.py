@@ -4,21 +4,9 @@ import resource
 import subprocess
 import sys
 
-SOLVE = ["solve", "arm", "--frame", "tip", "--position", "0.3", "0.1", "0.8"]
+from start_up import SOLVE, modules_after
+
 HEAVY = ("yourdfpy", "trimesh", "meshcat", "scipy", "matplotlib", "IPython")
-
-
-def modules_after(environment: dict[str, str], arguments: list[str]) -> set[str]:
-    script = (
-        "import sys\nfrom pinik.cli import main\n"
-        f"status = main({arguments!r})\n"
-        "sys.stderr.write('\\n'.join(sys.modules))\nsys.exit(status)"
-    )
-    done = subprocess.run(
-        [sys.executable, "-c", script], env=environment, capture_output=True, text=True, timeout=30, check=True
-    )
-    return set(done.stderr.split())
-
 
 IMPORTING = 0.3  # seconds that Pinocchio and numpy alone take, where the 0.8 s below were set
 

@@ -12,7 +12,8 @@ import sys
 import pytest
 
 import pinik
-from pinik.cli import ExitStatus, main, solve
+from pinik.cli import ExitStatus, main
+from pinik.cli.commands import solve
 
 SOLVE = ("solve", "arm", "--frame", "tip", "--position", "0.3", "0.1")
 
@@ -114,7 +115,7 @@ def test_an_interrupt_anywhere_in_a_command_is_status_130(run, monkeypatch):
     def interrupted(*_: object, **__: object) -> None:
         raise KeyboardInterrupt
 
-    monkeypatch.setattr(sys.modules["pinik.cli.solve"], "solve_targets", interrupted)
+    monkeypatch.setattr(sys.modules["pinik.cli.commands.solve"], "solve_targets", interrupted)
     assert run(*SOLVE, "0.8")[:] == (ExitStatus.INTERRUPTED, "", "interrupted\n")
 
 
@@ -159,4 +160,4 @@ def test_the_version_and_an_empty_command_line(run):
 def test_python_dash_m_and_the_entry_point_are_one(run_process):
     assert run_process("--version").out == f"pinik {pinik.__version__}\n"
     assert main.__module__.startswith("pinik.cli")
-    assert solve.__name__ == "pinik.cli.solve"
+    assert solve.__name__ == "pinik.cli.commands.solve"

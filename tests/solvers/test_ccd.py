@@ -11,7 +11,7 @@ import pytest
 import pinik
 from engines import needs_native
 from pinik import CCD, Kinematics, Target, Tolerance
-from pinik.limits import Limits
+from pinik.model.limits import Limits
 from robots import load_quietly
 from urdf_texts import joint, link
 from urdf_texts import robot as robot_text

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import pinik
-from pinik.solvers import make_solver
+from pinik.solvers.registry import make_solver
 
 
 @pytest.mark.parametrize("name", ["ccd", "jt", "pinv", "dls"])

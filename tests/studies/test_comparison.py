@@ -5,11 +5,10 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-import pinik
-from pinik.home import home_configuration
+from pinik.model.home import home_configuration
+from pinik.problem.targets import Tolerance
 from pinik.studies.comparison import COMPARISONS, Comparison, bones, chain_length, compare, places
 from pinik.studies.steps import Rules, Step
-from pinik.targets import Tolerance
 from stand_ins import plain_placement
 
 RULES = Rules(tolerance=Tolerance())
@@ -116,7 +115,7 @@ def test_progress_is_told_of_every_step(arm):
 def test_a_ball_in_pieces_comes_from_where_it_was(arm):
     chase = Scripted(STILL)
     rows(arm, chase, Rules(tolerance=Tolerance(), pieces=2), comparisons=[Comparison("2", "random", False)], steps=2)
-    home = pinik.home.home_configuration(arm)
+    home = home_configuration(arm)
     ways = [plain_placement(arm, "tip", home).translation, *places(arm, "tip", "random", 2, 0)]
     assert np.allclose(chase.places[0], (ways[0] + ways[1]) / 2)
     assert np.allclose(chase.places[2], (ways[1] + ways[2]) / 2)

@@ -9,8 +9,8 @@ import pinocchio
 import pytest
 
 import pinik
+from pinik.problem.targets import Tolerance
 from pinik.studies.steps import Rules, Step, chase_with, in_pieces
-from pinik.targets import Tolerance
 from stand_ins import plain_placement
 
 NEAR = Tolerance(1e-4, 1e-3)

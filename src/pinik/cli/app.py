@@ -9,8 +9,10 @@ from typing import Annotated, Any
 import typer
 
 from ..errors import PinikError
-from . import accuracy, check, compare, fk, info, jacobian, live, output, robots, solve
-from .exits import CommandError, ExitStatus, in_words
+from ..version import __version__
+from .commands import accuracy, check, compare, fk, info, jacobian, live, robots, solve
+from .terminal import output
+from .terminal.exits import CommandError, ExitStatus, in_words
 
 __all__ = ["main"]
 
@@ -46,8 +48,6 @@ def _pinik(
       pinik solve arm --frame tip --position 0.3 0.1 0.8
     """
     if version:
-        from .. import __version__
-
         output.emit(f"pinik {__version__}")
         raise typer.Exit(ExitStatus.ANSWERED)
     if context.invoked_subcommand is None:

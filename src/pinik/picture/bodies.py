@@ -11,8 +11,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..errors import UrdfWarning
-from ..home import robot_size
-from ..robot import Robot
+from ..model.home import robot_size
+from ..model.robot_model import Robot
 from .solids import Solid, ball, rod
 
 __all__ = ["Body", "bodies_of"]
@@ -74,7 +74,7 @@ def bodies_of(robot: Robot, q: Array) -> list[Body]:
 def _parts(robot: Robot) -> list[_Part]:
     """Read once for each robot: it takes seconds for a large one."""
     if robot not in _PARTS:
-        from ..geometry import load_shapes  # over a second to import
+        from ..shapes.meshes import load_shapes  # over a second to import
 
         shapes, faults = load_shapes(robot)
         for fault in faults:

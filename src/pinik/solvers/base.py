@@ -16,11 +16,11 @@ from numpy.typing import NDArray
 from ..errors import InputError, UnknownNameError
 
 if TYPE_CHECKING:
-    from ..kinematics import Kinematics, Linearization
-    from ..limits import Limits
-    from ..robot import Robot
-    from ..targets import Target, Tolerance
-    from ..two_bone_robot import OffPlane
+    from ..closed_form.recognise import OffPlane
+    from ..model.limits import Limits
+    from ..model.robot_model import Robot
+    from ..problem.kinematics import Kinematics, Linearization
+    from ..problem.targets import Target, Tolerance
 
 __all__ = [
     "JacobianSolver",

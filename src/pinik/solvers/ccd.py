@@ -14,11 +14,11 @@ from .base import Array, Patience, SweepingSolver, parameter, stiffness_paramete
 from .chaser import Chaser
 
 if TYPE_CHECKING:
-    from ..coordinates import Coordinate
-    from ..joint import Joint
-    from ..kinematics import Kinematics
-    from ..limits import Limits
-    from ..targets import Tolerance
+    from ..model.joint import Joint
+    from ..model.limits import Limits
+    from ..problem.coordinates import Coordinate
+    from ..problem.kinematics import Kinematics
+    from ..problem.targets import Tolerance
 
 __all__ = ["CCD"]
 

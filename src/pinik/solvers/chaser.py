@@ -8,13 +8,13 @@ from typing import TYPE_CHECKING
 import numpy as np
 import pinocchio
 
-from ..targets import NO_DIRECTION
+from ..problem.targets import NO_DIRECTION
 from .base import Array
 
 if TYPE_CHECKING:
-    from ..joint import Joint
-    from ..target_term import TargetTerm
-    from ..targets import Tolerance
+    from ..model.joint import Joint
+    from ..problem.targets import Tolerance
+    from ..problem.term import TargetTerm
 
 __all__ = ["Chaser"]
 

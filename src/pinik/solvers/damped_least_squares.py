@@ -12,7 +12,7 @@ import numpy as np
 from .base import Array, JacobianSolver, Patience, parameter
 
 if TYPE_CHECKING:
-    from ..kinematics import Kinematics, Linearization
+    from ..problem.kinematics import Kinematics, Linearization
 
 __all__ = ["DampedLeastSquares"]
 

@@ -12,7 +12,7 @@ import pinocchio
 from .base import Array, JacobianSolver, Patience, max_step_parameter, parameter
 
 if TYPE_CHECKING:
-    from ..kinematics import Kinematics, Linearization
+    from ..problem.kinematics import Kinematics, Linearization
 
 __all__ = ["PseudoInverse"]
 

@@ -10,15 +10,15 @@ from typing import TYPE_CHECKING
 import numpy as np
 import pinocchio
 
+from ..closed_form.recognise import OffPlane, TwoBone
 from ..errors import InputError
-from ..two_bone_robot import OffPlane, TwoBone
 from .base import Array, SweepingSolver, parameter
 
 if TYPE_CHECKING:
-    from ..kinematics import Kinematics
-    from ..limits import Limits
-    from ..robot import Robot
-    from ..targets import Target, Tolerance
+    from ..model.limits import Limits
+    from ..model.robot_model import Robot
+    from ..problem.kinematics import Kinematics
+    from ..problem.targets import Target, Tolerance
 
 __all__ = ["TwoBoneSolver"]
 

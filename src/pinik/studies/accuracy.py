@@ -10,11 +10,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..errors import InputError
-from ..prepared import Prepared, prepare
-from ..robot import Robot
-from ..solution import Solution
-from ..solvers import Solver
-from ..targets import Target
+from ..model.robot_model import Robot
+from ..problem.targets import Target
+from ..solvers.base import Solver
+from ..solving.prepared import Prepared, prepare
+from ..solving.solution import Solution
 from .chain import TIP, length_of
 
 __all__ = ["CASES", "EDGE", "NEAR", "Cost", "Problem", "accuracy", "asked_of", "problems", "random_bends"]

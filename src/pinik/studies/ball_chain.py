@@ -11,8 +11,8 @@ import pinocchio
 from numpy.typing import NDArray
 
 from ..errors import InputError
-from ..robot import Robot
-from ..solvers import SOLVERS
+from ..model.robot_model import Robot
+from ..solvers.registry import SOLVERS
 from .steps import PROGRAM, Step
 
 __all__ = ["BallChain", "ProgramChase"]

@@ -8,8 +8,9 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ..robot import Robot
-from ..solvers import Solver, make_solver
+from ..model.robot_model import Robot
+from ..solvers.base import Solver
+from ..solvers.registry import make_solver
 from .accuracy import Problem, asked_of, random_bends
 from .chain import TIP, length_of
 

@@ -13,13 +13,13 @@ import pinocchio
 from numpy.typing import NDArray
 
 from ..errors import EngineError
-from ..limits import Limits
-from ..prepared import Prepared, prepare
-from ..robot import Robot
-from ..run import compiled_for, run
-from ..solvers import Patience, Solver
-from ..state import State, Status, measure_errors
-from ..targets import Target, Tolerance
+from ..model.limits import Limits
+from ..model.robot_model import Robot
+from ..problem.targets import Target, Tolerance
+from ..solvers.base import Patience, Solver
+from ..solving.prepared import Prepared, prepare
+from ..solving.run import compiled_for, run
+from ..solving.state import State, Status, measure_errors
 
 __all__ = ["LAP", "PROGRAM", "BareChase", "Chase", "EngineChase", "Rules", "Step", "chase_with"]
 

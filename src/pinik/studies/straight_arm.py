@@ -7,10 +7,10 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..robot import Robot
-from ..solution import Solution
-from ..solvers import Solver
-from ..targets import Target
+from ..model.robot_model import Robot
+from ..problem.targets import Target
+from ..solvers.base import Solver
+from ..solving.solution import Solution
 from .accuracy import asked_of
 from .chain import TIP, length_of
 

@@ -12,9 +12,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..errors import InputError, UnknownNameError
-from ..robot import Robot
-from ..solvers import CCD, SOLVERS, DampedLeastSquares, JacobianTranspose, PseudoInverse, Solver
-from ..targets import Tolerance
+from ..model.robot_model import Robot
+from ..problem.targets import Tolerance
+from ..solvers.base import Solver
+from ..solvers.ccd import CCD
+from ..solvers.damped_least_squares import DampedLeastSquares
+from ..solvers.pseudo_inverse import PseudoInverse
+from ..solvers.registry import SOLVERS
+from ..solvers.transpose import JacobianTranspose
 from .ball_chain import BallChain, ProgramChase
 from .comparison import Comparison, Row, bones, chain_length
 from .steps import LAP, Chase, Rules, chase_with

@@ -1,0 +1,60 @@
+"""`pinik check`: what is wrong with a URDF file."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+import typer
+
+from ..inputs.loading import check_folders, one_line_a_kind
+from ..inputs.options import AsJson, PackageDirs
+from ..reports.inspection import Inspection, inspect
+from ..terminal import output
+from ..terminal.exits import ExitStatus
+from ..terminal.units import counted
+
+__all__ = ["check"]
+
+
+def check(
+    file: Annotated[
+        str,
+        typer.Argument(metavar="FILE.urdf", help="A URDF file, or a name of the catalogue.", show_default=False),
+    ],
+    package_dir: PackageDirs = None,
+    as_json: AsJson = False,
+) -> ExitStatus:
+    """Check a URDF file: its faults, what pinik had to mend, its meshes, and whether yourdfpy agrees about its links.
+
+    Exit status 3 says that it cannot be loaded; what yourdfpy says changes no status.
+
+    Example:
+
+      pinik check lion
+    """
+    check_folders(package_dir)
+    found = inspect(file, tuple(package_dir or ()))
+    if as_json:
+        output.emit_json(found.to_dict())
+    else:
+        _emit(found)
+    return ExitStatus.ANSWERED if found.loads else ExitStatus.NO_ROBOT
+
+
+def _emit(found: Inspection) -> None:
+    verdict = "loads" if found.loads else "cannot be loaded"
+    output.emit(output.painted(f"{found.file}: {verdict}", "green" if found.loads else "red"))
+    for fault in found.faults:
+        output.emit("fault: " + (f"{fault.element}: " if fault.element else "") + fault.message)
+    for words in one_line_a_kind(found.warnings):
+        output.emit(f"warning: {words}")
+    for address in found.missing_meshes:
+        output.emit(f"missing mesh: {address}")
+    for words in found.mesh_faults:
+        output.emit(f"mesh: {words}")
+    opinion = found.second_opinion
+    if opinion is not None:
+        output.emit(str(opinion) if opinion.agrees else f"warning: {opinion}")
+    if found.loads:
+        counts = {"link": found.links, "joint": found.joints, "mesh": found.meshes, "shape": found.shapes}
+        output.emit(", ".join(counted(count, noun) for noun, count in counts.items()))

@@ -1,0 +1,147 @@
+"""`pinik info`: what a robot has."""
+
+from __future__ import annotations
+
+import shutil
+import sys
+import textwrap
+from typing import Any
+
+import pinocchio
+
+from ...model.joint import Joint
+from ...model.robot_model import Robot
+from ...solving import native
+from ...version import __version__
+from ..inputs.loading import load_robot
+from ..inputs.options import AsJson, Degrees, PackageDirs, RobotSource, Root
+from ..terminal import output
+from ..terminal.exits import ExitStatus
+from ..terminal.tables import emit_table
+from ..terminal.units import Units, counted
+
+__all__ = ["info"]
+
+
+def info(
+    robot: RobotSource,
+    degrees: Degrees = False,
+    root: Root = "fixed",
+    package_dir: PackageDirs = None,
+    as_json: AsJson = False,
+) -> ExitStatus:
+    """Show a robot's joints with their limits, its frames and its named poses.
+
+    Angles are radians, or degrees with --deg.
+
+    Example:
+
+      pinik info panda
+    """
+    machine = load_robot(robot, root=root, package_dirs=package_dir)
+    if as_json:
+        output.emit_json(_fields(machine))
+    else:
+        _emit(machine, Units(degrees))
+    return ExitStatus.ANSWERED
+
+
+def _fields(robot: Robot) -> dict[str, Any]:
+    return {
+        "schema": 1,
+        "robot": robot.name,
+        "source": robot.description.source,
+        "root": robot.root,
+        "root_link": robot.description.root,
+        "nq": robot.model.nq,
+        "nv": robot.model.nv,
+        "joints": [_joint_fields(robot, joint) for joint in robot.joints],
+        "mimics": {
+            follower: {"leader": leader, "multiplier": multiplier, "offset": offset}
+            for follower, (leader, multiplier, offset) in robot.mimics.items()
+        },
+        "frames": list(robot.frame_names),
+        "poses": {name: {"angles": robot.angles(q), "q": q.tolist()} for name, q in robot.poses.items()},
+        "warnings": list(robot.warnings),
+        "engine": _engine(),
+        "why_not_native": native.why_not(),
+        "version": __version__,
+        "pinocchio": pinocchio.__version__,
+    }
+
+
+def _engine() -> str:
+    """The engine that `engine="auto"` takes for pinik's own methods."""
+    return "python" if native.why_not() else "native"
+
+
+def _joint_fields(robot: Robot, joint: Joint) -> dict[str, Any]:
+    lower, upper = _limits(robot, joint)
+    unit = Units().of(joint) if joint.has_one_axis else None
+    axis = list(joint.axis) if joint.has_one_axis else None
+    return {
+        "name": joint.name,
+        "kind": joint.kind,
+        "unit": unit,
+        "lower": lower,
+        "upper": upper,
+        "axis": axis,
+        "mimics": joint.leader,
+    }
+
+
+def _limits(robot: Robot, joint: Joint) -> tuple[float | None, float | None]:
+    """A joint's limits as they hold: its leader's where it follows; None where there are none."""
+    if not joint.has_one_axis:
+        return None, None
+    index = robot.joint_names.index(joint.leader or joint.name)
+    ends = (float(robot.lower[index]), float(robot.upper[index]))
+    lower, upper = sorted(joint.multiplier * end + joint.offset for end in ends)
+    return lower, upper
+
+
+def _emit(robot: Robot, units: Units) -> None:
+    description, model = robot.description, robot.model
+    output.emit(f"{robot.name}  {description.source}")
+    output.emit(f"root      {description.root}, {robot.root}")
+    output.emit(
+        f"size      {counted(len(robot.joint_names), 'joint')} to set, {counted(len(robot.frame_names), 'frame')}, "
+        f"nq {model.nq}, nv {model.nv}"
+    )
+    output.emit(f"engine    {_engine()}, pinik {__version__}, Pinocchio {pinocchio.__version__}")
+    why = native.why_not()
+    if why:
+        output.emit(textwrap.fill(why, _width(), initial_indent=" " * 10, subsequent_indent=" " * 10))
+    output.emit("")
+    if robot.joints:
+        rows = [_row(robot, joint, units) for joint in robot.joints]
+        emit_table(("joint", "kind", "lower", "upper", "unit", ""), rows, numeric=("lower", "upper"))
+        output.emit("")
+    output.emit(_wrapped("frames", robot.frame_names))
+    poses = tuple(robot.poses)
+    output.emit(_wrapped("poses", poses or ("none",)))
+
+
+def _row(robot: Robot, joint: Joint, units: Units) -> tuple[str, ...]:
+    if not joint.has_one_axis:
+        return joint.name, joint.kind, "", "", "", ""
+    lower, upper = _limits(robot, joint)
+    assert lower is not None
+    assert upper is not None
+    note = _following(joint) if joint.leader else ""
+    return joint.name, joint.kind, *units.show_limits(lower, upper, joint), units.of(joint), note
+
+
+def _following(joint: Joint) -> str:
+    factor = "" if joint.multiplier == 1.0 else f" × {joint.multiplier:g}"
+    offset = "" if joint.offset == 0.0 else f" + {joint.offset:g}"
+    return f"follows {joint.leader}{factor}{offset}"
+
+
+def _width() -> int:
+    return shutil.get_terminal_size().columns if output.is_terminal(sys.stdout) else 100
+
+
+def _wrapped(title: str, names: tuple[str, ...]) -> str:
+    text = f"{title:8}  " + ", ".join(names)
+    return textwrap.fill(text, _width(), subsequent_indent=" " * 10, break_long_words=False, break_on_hyphens=False)

@@ -1,0 +1,69 @@
+"""`pinik live`: the live view in the browser."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+import typer
+
+from ...viewer.live import live as open_view
+from ..inputs.assignments import solver_with
+from ..inputs.loading import load_robot
+from ..inputs.options import PackageDirs, Root
+from ..terminal import output
+from ..terminal.exits import ExitStatus
+
+__all__ = ["live"]
+
+
+def live(
+    robot: Annotated[
+        str,
+        typer.Argument(
+            metavar="[ROBOT]",
+            help="A name of the catalogue ('pinik robots' lists them) or the path of a URDF file.",
+            show_default="arm",
+        ),
+    ] = "arm",
+    methods: Annotated[
+        str,
+        typer.Option(metavar="A,B,…", help="One to four methods, one for each robot; module:Class finds yours."),
+    ] = "ccd,jt,pinv,dls",
+    view: Annotated[
+        int | None,
+        typer.Option(metavar="1|2|4", help="How many robots are seen.", show_default="enough for the methods"),
+    ] = None,
+    motion: Annotated[str, typer.Option(metavar="hand|curve|random", help="How the ball moves at first.")] = "curve",
+    root: Root = "fixed",
+    port: Annotated[
+        int | None,
+        typer.Option(metavar="N", help="Where to listen; 0 is any free port.", show_default="a free one from 7007"),
+    ] = None,
+    host: Annotated[
+        str,
+        typer.Option(
+            metavar="ADDRESS", help="The address to listen on; others than the default let other machines in."
+        ),
+    ] = "127.0.0.1",
+    no_browser: Annotated[bool, typer.Option("--no-browser", help="Only print the address of the page.")] = False,
+    package_dir: PackageDirs = None,
+) -> ExitStatus:
+    """Open a page on which robots chase a ball side by side, each by its own method.
+
+    Drag the ball, change everything while it runs. Ctrl-C ends it.
+
+    Examples:
+
+      pinik live
+      pinik live lion --root free_flyer --methods ccd,dls
+      pinik live path/to/robot.urdf --view 1 --methods pinv
+    """
+    solvers = [solver_with(name.strip(), None) for name in methods.split(",")]
+    machine = load_robot(robot, root=root, package_dirs=package_dir)
+    with open_view(machine, solvers, view=view, motion=motion, port=port, host=host) as page:
+        output.emit(page.url)
+        output.say("Ctrl-C ends the live view.")
+        if not no_browser and not page.open():
+            output.say(f"There is no browser here; open {page.url} in one.")
+        page.wait()
+    return ExitStatus.ANSWERED

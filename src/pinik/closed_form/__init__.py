@@ -1,0 +1,1 @@
+"""Two bones solved exactly."""

@@ -1,0 +1,1 @@
+"""A robot file, from text to a checked tree."""

@@ -1,0 +1,136 @@
+"""How the links and joints of a URDF hang together: one tree, and mimics that end at a leader."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import replace
+
+from .joints import ONE_AXIS_KINDS, JointTag, Mimic
+from .values import required_name
+from .xml import DocumentError, Element
+
+__all__ = ["check_unique", "resolved_mimics", "root_link"]
+
+
+def check_unique(robot: Element) -> None:
+    """See that every link and joint of `<robot>` has a name, and its own.
+
+    Raises:
+        DocumentError: One has no name, or two links or two joints share one.
+    """
+    for tag in ("link", "joint"):
+        first: dict[str, int] = {}
+        for element in robot.named(tag):
+            name = required_name(element)
+            if name in first:
+                cause = f"defined twice, first in line {first[name]}"
+                raise DocumentError(cause, owner=f"{tag} {name!r}", line=element.line)
+            first[name] = element.line
+
+
+def root_link(links: Sequence[str], joints: Iterable[JointTag]) -> str:
+    """The one link without a parent, from which every other one hangs.
+
+    Raises:
+        DocumentError: A joint names a link that is not there, a link has two parents, links form a cycle, or
+            there are several roots.
+    """
+    names = set(links)
+    joint_above: dict[str, JointTag] = {}
+    for joint in joints:
+        for role, link in (("parent", joint.parent), ("child", joint.child)):
+            if link not in names:
+                raise DocumentError(f"its {role} link {link!r} is not defined", owner=f"joint {joint.name!r}")
+        other = joint_above.setdefault(joint.child, joint)
+        if other is not joint:
+            raise DocumentError(
+                f"it has two parents: joint {other.name!r} from link {other.parent!r} and "
+                f"joint {joint.name!r} from link {joint.parent!r}",
+                owner=f"link {joint.child!r}",
+            )
+    cycle = _cycle({link: joint.parent for link, joint in joint_above.items()})
+    if cycle:
+        raise DocumentError(f"links form a cycle: {_listed(cycle[::-1])}", owner=f"link {cycle[0]!r}")
+    roots = [link for link in links if link not in joint_above]
+    if len(roots) > 1:
+        cause = f"{len(roots)} root links where a robot has one: {_listed(roots)}; join them by fixed joints"
+        raise DocumentError(cause, owner="<robot>")
+    return roots[0]
+
+
+def resolved_mimics(joints: Sequence[JointTag], warnings: list[str]) -> list[JointTag]:
+    """The joints, each mimic naming its ultimate leader with the whole chain's multiplier and offset.
+
+    Mimics that can follow nothing are taken off, and named in `warnings` (appended to).
+
+    Raises:
+        DocumentError: A joint mimics itself, or joints mimic each other in a circle.
+    """
+    by_name = {joint.name: joint for joint in joints}
+    followers: dict[str, Mimic] = {}
+    for joint in joints:
+        # A fixed joint with a mimic is the usual rest of a reduced robot; it simply stays fixed.
+        if joint.mimic is None or joint.kind == "fixed":
+            continue
+        leader = by_name.get(joint.mimic.leader)
+        if joint.kind not in ONE_AXIS_KINDS:
+            cause = f"a {joint.kind} joint cannot mimic another; its mimic is ignored"
+        elif leader is None:
+            cause = f"it mimics {joint.mimic.leader!r}, and there is no such joint; it is left free"
+        elif leader.kind not in ONE_AXIS_KINDS:
+            cause = f"it mimics {leader.name!r}, which is a {leader.kind} joint; it is left free"
+        else:
+            followers[joint.name] = joint.mimic
+            continue
+        warnings.append(f"joint {joint.name!r}: {cause}")
+    circle = _cycle({name: mimic.leader for name, mimic in followers.items()})
+    if circle:
+        cause = "it mimics itself" if len(circle) == 1 else f"joints mimic in a circle: {_listed(circle)}"
+        raise DocumentError(cause, owner=f"joint {circle[0]!r}")
+    resolved = _ultimate_leaders(followers)
+    return [replace(joint, mimic=resolved.get(joint.name)) for joint in joints]
+
+
+def _ultimate_leaders(followers: Mapping[str, Mimic]) -> dict[str, Mimic]:
+    """Every follower's mimic, composed along its chain; walked without recursion, for chains may be long."""
+    resolved: dict[str, Mimic] = {}
+    for start in followers:
+        chain = []
+        name = start
+        while name in followers and name not in resolved:
+            chain.append(name)
+            name = followers[name].leader
+        for name in reversed(chain):
+            mimic = followers[name]
+            above = resolved.get(mimic.leader)
+            if above is not None:
+                multiplier = mimic.multiplier * above.multiplier
+                offset = mimic.multiplier * above.offset + mimic.offset
+                mimic = Mimic(above.leader, multiplier, offset)
+            if not (math.isfinite(mimic.multiplier) and math.isfinite(mimic.offset)):
+                cause = f"its chain of mimics up to {mimic.leader!r} has no finite multiplier and offset"
+                raise DocumentError(cause, owner=f"joint {name!r}")
+            resolved[name] = mimic
+    return resolved
+
+
+def _cycle(above: Mapping[str, str]) -> list[str]:
+    """The names of one cycle, each followed by the one above it; empty where every walk up ends."""
+    seen: set[str] = set()
+    for start in above:
+        walk: dict[str, None] = {}
+        name = start
+        while name in above and name not in seen:
+            if name in walk:
+                names = list(walk)
+                return names[names.index(name) :]
+            walk[name] = None
+            name = above[name]
+        seen.update(walk)
+    return []
+
+
+def _listed(names: Sequence[str]) -> str:
+    shown = ", ".join(repr(name) for name in names[:6])
+    return shown if len(names) <= 6 else f"{shown} and {len(names) - 6} more"

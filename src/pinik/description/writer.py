@@ -1,0 +1,87 @@
+"""Write checked links and joints as the URDF text that Pinocchio gets: no shapes, plain numbers."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+from .joints import JointTag
+from .links import INERTIA_ATTRIBUTES, Inertial, LinkTag
+from .values import Vector
+
+__all__ = ["UNLIMITED", "written"]
+
+# Stands for efforts and velocities that the file leaves open: the number Pinocchio takes for its root joints.
+UNLIMITED = 1.7976931348623157e308
+_ENTITIES = {
+    "&": "&amp;",  # first: the others bring ampersands of their own
+    "<": "&lt;",
+    ">": "&gt;",
+    '"': "&quot;",
+    "\n": "&#10;",
+    "\r": "&#13;",
+    "\t": "&#9;",
+}
+
+
+def written(name: str, links: Iterable[LinkTag], joints: Iterable[JointTag]) -> str:
+    """The URDF text of a robot; every number survives exactly."""
+    lines = [f"<robot name={_quoted(name)}>"]
+    lines.extend(_link(link) for link in links)
+    lines.extend(_joint(joint) for joint in joints)
+    lines.append("</robot>")
+    return "\n".join(lines)
+
+
+def _link(link: LinkTag) -> str:
+    start = f"<link name={_quoted(link.name)}"
+    return f"{start}/>" if link.inertial is None else f"{start}>{_inertial(link.inertial)}</link>"
+
+
+def _inertial(inertial: Inertial) -> str:
+    entries = zip(INERTIA_ATTRIBUTES, inertial.inertia, strict=True)
+    inertia = " ".join(f'{attribute}="{value!r}"' for attribute, value in entries)
+    origin = _origin(inertial.xyz, inertial.rpy)
+    return f'<inertial>{origin}<mass value="{inertial.mass!r}"/><inertia {inertia}/></inertial>'
+
+
+def _joint(joint: JointTag) -> str:
+    parts = [
+        f'<joint name={_quoted(joint.name)} type="{joint.kind}">',
+        _origin(joint.xyz, joint.rpy),
+        f"<parent link={_quoted(joint.parent)}/><child link={_quoted(joint.child)}/>",
+        f'<axis xyz="{_numbers(joint.axis)}"/>',
+        _limit(joint),
+    ]
+    if joint.mimic is not None:
+        leader = _quoted(joint.mimic.leader)
+        scale = f'multiplier="{joint.mimic.multiplier!r}" offset="{joint.mimic.offset!r}"'
+        parts.append(f"<mimic joint={leader} {scale}/>")
+    if joint.damping is not None or joint.friction is not None:
+        parts.append(f'<dynamics damping="{joint.damping or 0.0!r}" friction="{joint.friction or 0.0!r}"/>')
+    return "".join([*parts, "</joint>"])
+
+
+def _limit(joint: JointTag) -> str:
+    """Bounds, effort and velocity; nothing where the kind needs none and none is given."""
+    bounded = joint.kind in ("revolute", "prismatic")
+    if not bounded and joint.effort is None and joint.velocity is None:
+        return ""
+    effort = UNLIMITED if joint.effort is None else joint.effort
+    velocity = UNLIMITED if joint.velocity is None else joint.velocity
+    bounds = f'lower="{joint.lower or 0.0!r}" upper="{joint.upper or 0.0!r}" ' if bounded else ""
+    return f'<limit {bounds}effort="{effort!r}" velocity="{velocity!r}"/>'
+
+
+def _origin(xyz: Vector, rpy: Vector) -> str:
+    return f'<origin xyz="{_numbers(xyz)}" rpy="{_numbers(rpy)}"/>'
+
+
+def _numbers(vector: Vector) -> str:
+    return " ".join(repr(value) for value in vector)
+
+
+def _quoted(text: str) -> str:
+    """`text` as an XML attribute's value, quotes included; xml.sax.saxutils has the same but imports urllib."""
+    for character, entity in _ENTITIES.items():
+        text = text.replace(character, entity)
+    return f'"{text}"'

@@ -1,0 +1,1 @@
+"""Pinocchio's model with names: joints, limits, poses, chains."""

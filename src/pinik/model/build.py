@@ -1,0 +1,172 @@
+"""From a checked description to Pinocchio's model, with every mimic joint that Pinocchio gets right."""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Callable, Collection
+from xml.etree import ElementTree
+
+import pinocchio
+
+from ..description.reader import Description
+from ..errors import InputError, RobotLoadError
+
+__all__ = ["MAX_DEGREES_OF_FREEDOM", "MAX_LINKS", "build_model"]
+
+# pinocchio.Data holds tensors of nv³ numbers, and a solve has two of them, the robot's and its own: 0.9 GB at
+# nv = 200, 1.6 GB at 250, 2.7 GB at 300 (measured as the largest resident size of `pinik solve`).
+MAX_DEGREES_OF_FREEDOM = 250
+# The parser looks every parent up by a walk over all frames: 10,000 links take a second, 100,000 minutes.
+MAX_LINKS = 10_000
+
+# The parser calls itself once per link of a chain and needs 2.1 to 2.4 kB of stack for it (an 8 MB stack ends
+# between 3,500 and 4,000 links). Deeper trees are built on a stack that holds MAX_LINKS of them twice over.
+DEEP_TREE = 100
+DEEP_STACK_BYTES = 64 * 1024 * 1024
+_stack_size_lock = threading.Lock()
+
+FREEDOMS = {"revolute": 1, "continuous": 1, "prismatic": 1, "fixed": 0, "floating": 6, "planar": 3}
+ROOT_JOINTS = {
+    "fixed": None,
+    "free_flyer": pinocchio.JointModelFreeFlyer,
+    "planar": pinocchio.JointModelPlanar,
+}
+
+
+def build_model(
+    description: Description, *, root: str = "fixed", mimic: bool = True
+) -> tuple[pinocchio.Model, tuple[str, ...]]:
+    """Build Pinocchio's model of a robot.
+
+    Args:
+        description: What `urdf.read` returned.
+        root: How the root link hangs in the world: "fixed", "free_flyer" (6 degrees of freedom) or "planar"
+            (3); the joint is called "root_joint".
+        mimic: Whether mimic joints follow their leaders; else all of them are free.
+
+    Returns:
+        The model, and warnings in words: the mimic joints that Pinocchio cannot represent and that were left
+        free.
+
+    Raises:
+        InputError: `root` is none of these.
+        RobotLoadError: The robot is too large for Pinocchio, or Pinocchio refuses it.
+    """
+    if not isinstance(root, str) or root not in ROOT_JOINTS:
+        raise InputError(f"no root {root!r}; there are: {', '.join(map(repr, ROOT_JOINTS))}")
+    root_joint = None if ROOT_JOINTS[root] is None else ROOT_JOINTS[root]()
+    _check_names(description, root)
+    _check_size(description, 0 if root_joint is None else root_joint.nv)
+    free = _built(description, description.xml, root_joint, mimic=False)
+    causes = {
+        tag.name: _why_left_free(tag.name, tag.mimic.leader, free)
+        for tag in description.joints
+        if mimic and tag.mimic is not None
+    }
+    warnings = tuple(f"joint {name!r}: {cause}; it is left free" for name, cause in causes.items() if cause)
+    honoured = {name for name, cause in causes.items() if cause is None}
+    if not honoured:
+        return free, warnings
+    leaders = {tag.mimic.leader for tag in description.joints if tag.mimic is not None and tag.name in honoured}
+    xml = _with_mimics(description.xml, honoured, leaders)
+    return _built(description, xml, root_joint, mimic=True), warnings
+
+
+def _check_names(description: Description, root: str) -> None:
+    """Refuse the two joint names that Pinocchio gives to its own joints."""
+    for joint in description.joints:
+        owner = f"joint {joint.name!r}"
+        if joint.name == "universe":
+            raise RobotLoadError(
+                "Pinocchio keeps this name for the world; rename it", source=description.source, element=owner
+            )
+        if joint.name == "root_joint" and root != "fixed" and joint.kind != "fixed":
+            raise RobotLoadError(
+                f"with root={root!r} Pinocchio's root joint has this name; rename it",
+                source=description.source,
+                element=owner,
+            )
+
+
+def _check_size(description: Description, root_freedoms: int) -> None:
+    if len(description.links) > MAX_LINKS:
+        raise RobotLoadError(
+            f"{len(description.links):,} links; at most {MAX_LINKS:,} can be loaded",
+            source=description.source,
+        )
+    freedoms = root_freedoms + sum(FREEDOMS[joint.kind] for joint in description.joints)
+    if freedoms > MAX_DEGREES_OF_FREEDOM:
+        raise RobotLoadError(
+            f"{freedoms:,} degrees of freedom; at most {MAX_DEGREES_OF_FREEDOM} can be loaded, because "
+            "Pinocchio's working memory grows with their third power (a solve at 250 takes 1.6 GB)",
+            source=description.source,
+        )
+
+
+def _why_left_free(follower: str, leader: str, free: pinocchio.Model) -> str | None:
+    """Why Pinocchio cannot make this joint follow its leader; None where it can."""
+    if free.getJointId(follower) < free.getJointId(leader):
+        return f"it mimics {leader!r}, which comes after it in Pinocchio's order of joints"
+    return None
+
+
+def _with_mimics(xml: str, honoured: Collection[str], leaders: Collection[str]) -> str:
+    """The text with the honoured mimics alone, and no continuous joint among leaders and followers.
+
+    As (cos, sin) a leader would forget its whole turns, which its followers need, and could keep no limits that
+    theirs impose; and Pinocchio pairs continuous joints with continuous ones only.
+    """
+    robot = ElementTree.fromstring(xml)
+    for joint in robot.iter("joint"):
+        name, mimic = joint.attrib["name"], joint.find("mimic")
+        if mimic is not None and name not in honoured:
+            joint.remove(mimic)
+        if joint.attrib["type"] == "continuous" and (name in leaders or name in honoured):
+            joint.set("type", "revolute")
+            for limit in joint.findall("limit"):
+                joint.remove(limit)
+            ElementTree.SubElement(joint, "limit", lower="0", upper="0", effort="0", velocity="0")
+    return ElementTree.tostring(robot, encoding="unicode")
+
+
+def _built(
+    description: Description, xml: str, root_joint: pinocchio.JointModel | None, *, mimic: bool
+) -> pinocchio.Model:
+    """Pinocchio's model of a URDF text; what Pinocchio raises becomes a `RobotLoadError`."""
+    arguments = (xml, mimic) if root_joint is None else (xml, root_joint, mimic)
+
+    def build() -> pinocchio.Model:
+        return pinocchio.buildModelFromXML(*arguments)
+
+    try:
+        return _on_deep_stack(build) if _depth(description) > DEEP_TREE else build()
+    except Exception as error:
+        cause = " ".join(str(error).split())
+        raise RobotLoadError(f"Pinocchio refuses it: {cause}", source=description.source) from error
+
+
+def _depth(description: Description) -> int:
+    """The number of joints between the root and the link farthest from it."""
+    above = {joint.child: joint.parent for joint in description.joints}
+    depth = {description.root: 0}
+    for link in description.links:
+        walk = []
+        while link not in depth:
+            walk.append(link)
+            link = above[link]
+        for below, name in enumerate(reversed(walk), start=1):
+            depth[name] = depth[link] + below
+    return max(depth.values())
+
+
+def _on_deep_stack(build: Callable[[], pinocchio.Model]) -> pinocchio.Model:
+    """Run `build` in a thread of its own, whose stack is large enough for the deepest tree admitted."""
+    from concurrent.futures import ThreadPoolExecutor  # slow to import, seldom needed
+
+    with _stack_size_lock, ThreadPoolExecutor(max_workers=1) as pool:
+        usual = threading.stack_size(DEEP_STACK_BYTES)
+        try:
+            future = pool.submit(build)
+        finally:
+            threading.stack_size(usual)
+        return future.result()

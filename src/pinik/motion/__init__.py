@@ -1,0 +1,1 @@
+"""How balls and frames travel."""

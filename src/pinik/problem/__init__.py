@@ -1,0 +1,1 @@
+"""What is asked, as numbers: residuals and Jacobians."""

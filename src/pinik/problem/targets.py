@@ -1,0 +1,330 @@
+"""What a solve is asked for: targets, and how near is near enough."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from typing import Any, NamedTuple
+
+import numpy as np
+import pinocchio
+from numpy.typing import ArrayLike, NDArray
+
+from ..checks import as_finite_number, as_point, as_rotation, as_se3, as_unit_vector, as_vector
+from ..errors import InputError, UnknownNameError
+
+__all__ = ["NO_DIRECTION", "TARGET_KEYWORDS", "Target", "TargetError", "Tolerance", "as_targets", "largest_of"]
+
+Array = NDArray[np.float64]
+
+NO_DIRECTION = 1e-9
+"""[m] A frame nearer than this to the point that it should look at counts as looking at it."""
+_LIGHTEST, _HEAVIEST = 1e-3, 1e3
+_NAMED_AXES = {"x": (1.0, 0.0, 0.0), "y": (0.0, 1.0, 0.0), "z": (0.0, 0.0, 1.0)}
+_NAMED_AXES |= {f"-{name}": (-x, -y, -z) for name, (x, y, z) in list(_NAMED_AXES.items())}
+
+
+class Tolerance(NamedTuple):
+    """The largest errors that count as reached.
+
+    Attributes:
+        position: Metres.
+        orientation: Radians.
+    """
+
+    position: float = 1e-4
+    orientation: float = 1e-3
+
+    @classmethod
+    def of(cls, value: Tolerance | ArrayLike | None) -> Tolerance:
+        """A checked Tolerance from None (the defaults), a Tolerance or a pair (metres, radians)."""
+        if value is None:
+            return cls()
+        pair = as_vector(value, 2, "tolerance", "metres, radians")
+        if (pair <= 0.0).any():
+            raise InputError(f"tolerance takes two positive numbers (metres, radians); got {pair.tolist()}")
+        return cls(float(pair[0]), float(pair[1]))
+
+
+class TargetError(NamedTuple):
+    """How far one target is missed; None for what it does not ask for.
+
+    Attributes:
+        position: Metres.
+        orientation: Radians; for an axis target the angle between the axis and its direction.
+    """
+
+    position: float | None
+    orientation: float | None
+
+    def within(self, tolerance: Tolerance) -> bool:
+        """Whether both errors are at most their tolerances."""
+        return (self.position is None or self.position <= tolerance.position) and (
+            self.orientation is None or self.orientation <= tolerance.orientation
+        )
+
+
+def largest_of(errors: Iterable[TargetError]) -> TargetError:
+    """The largest position error and the largest orientation error of several targets, None where none has one."""
+    errors = tuple(errors)
+    return TargetError(
+        max((error.position for error in errors if error.position is not None), default=None),
+        max((error.orientation for error in errors if error.orientation is not None), default=None),
+    )
+
+
+@dataclass(frozen=True, eq=False, init=False)
+class Target:
+    """A frame, and where it should be.
+
+    At most one way to give the orientation: `rotation`, `rpy`, `quat_xyzw`, `quat_wxyz`, `placement` (which gives the
+    position as well), or `axis` with `direction` or `at`, which leaves the spin about that axis free.
+
+    Attributes:
+        frame: The frame that should move, by name.
+        position: Wanted position (3,) of the frame's origin, or of `tool`'s [m]; None leaves it free.
+        rotation: Wanted orientation (3, 3); None leaves it free or to `axis`.
+        axis: A unit vector (3,) fixed in the frame (in `tool`, when given).
+        direction: The unit vector (3,) that `axis` should point along.
+        at: The point (3,) [m] that `axis` should point at.
+        tool: SE3 of the point meant, in the frame.
+        relative_to: The frame, moving or not, in which all of the above is expressed; the world when None.
+        weight: Scales this target's residual in the step, never in the verdict.
+    """
+
+    frame: str
+    position: Array | None
+    rotation: Array | None
+    axis: Array | None
+    direction: Array | None
+    at: Array | None
+    tool: pinocchio.SE3 | None
+    relative_to: str | None
+    weight: float
+
+    def __init__(
+        self,
+        frame: str,
+        position: ArrayLike | None = None,
+        *,
+        rotation: ArrayLike | None = None,
+        rpy: ArrayLike | None = None,
+        quat_xyzw: ArrayLike | None = None,
+        quat_wxyz: ArrayLike | None = None,
+        placement: pinocchio.SE3 | ArrayLike | None = None,
+        axis: str | ArrayLike | None = None,
+        direction: ArrayLike | None = None,
+        at: ArrayLike | None = None,
+        tool: pinocchio.SE3 | ArrayLike | None = None,
+        relative_to: str | None = None,
+        weight: float = 1.0,
+    ) -> None:
+        """Check and normalise.
+
+        Args:
+            frame: The frame that should move.
+            position: Where its origin should be (3,) [m].
+            rotation: Rotation matrix (3, 3).
+            rpy: Fixed-axis roll, pitch, yaw (3,) [rad]: Rz(yaw) Ry(pitch) Rx(roll).
+            quat_xyzw: Quaternion, scalar last; scaled to unit length.
+            quat_wxyz: Quaternion, scalar first; scaled to unit length.
+            placement: SE3 or 4×4 matrix: position and orientation at once.
+            axis: "x", "y", "z", "-x", "-y", "-z" or a vector (3,) in the frame.
+            direction: Vector (3,) for `axis` to point along; scaled to unit length.
+            at: Point (3,) [m] for `axis` to point at.
+            tool: SE3 (or 4×4) of the point meant, in the frame; or just its position (3,) [m].
+            relative_to: Frame in which the target is expressed.
+            weight: Factor from 0.001 to 1000.
+
+        Raises:
+            InputError: Nothing asked for, contradictory, not finite, of the wrong shape; a zero direction or
+                quaternion; a weight out of its range.
+        """
+        if not isinstance(frame, str):
+            raise InputError(f"a target's frame is a name; got {frame!r}")
+        if not isinstance(relative_to, (str, type(None))):
+            raise InputError(f"target {frame!r}: relative_to is the name of a frame; got {relative_to!r}")
+        orientations = {
+            "rotation": rotation, "rpy": rpy, "quat_xyzw": quat_xyzw, "quat_wxyz": quat_wxyz,
+            "placement": placement, "axis": axis,
+        }  # fmt: skip
+        given = [name for name, value in orientations.items() if value is not None]
+        what = f"target {frame!r}: "
+        if len(given) > 1:
+            raise InputError(f"{what}give the orientation once; got {' and '.join(given)}")
+        if (axis is None) != (direction is None and at is None):
+            raise InputError(f"{what}axis goes with direction= or at=, and these with axis=")
+        if direction is not None and at is not None:
+            raise InputError(f"{what}give direction= or at=, not both")
+        if placement is not None:
+            if position is not None:
+                raise InputError(f"{what}placement gives the position already; leave out position=")
+            pose = as_se3(placement, f"{what}placement")
+            position, rotation = pose.translation, pose.rotation
+        if position is None and not given:
+            raise InputError(f"{what}nothing is asked for; give position=, an orientation, or placement=")
+        if not _LIGHTEST <= as_finite_number(weight, f"{what}weight") <= _HEAVIEST:
+            raise InputError(
+                f"{what}weight is a number from {_LIGHTEST:g} to {_HEAVIEST:g}; got {weight!r}; "
+                "leave the target out to switch it off"
+            )
+
+        def keep(name: str, value: Any) -> None:
+            if isinstance(value, np.ndarray):
+                value.setflags(write=False)
+            object.__setattr__(self, name, value)
+
+        keep("frame", frame)
+        keep("position", None if position is None else as_point(position, f"{what}position"))
+        keep("rotation", _rotation(what, rotation, rpy, quat_xyzw, quat_wxyz))
+        keep("axis", None if axis is None else _axis(axis, f"{what}axis"))
+        keep("direction", None if direction is None else as_unit_vector(direction, f"{what}direction"))
+        keep("at", None if at is None else as_point(at, f"{what}at"))
+        keep("tool", None if tool is None else _tool(tool, f"{what}tool"))
+        keep("relative_to", relative_to)
+        keep("weight", float(weight))
+
+    @property
+    def asks_orientation(self) -> bool:
+        """Whether a rotation, or an axis's direction, is wanted."""
+        return self.rotation is not None or self.axis is not None
+
+    @property
+    def shape(self) -> tuple[object, ...]:
+        """What is asked of which frame, without the numbers that say where: equal where only these differ."""
+        axis = None if self.axis is None else tuple(self.axis.tolist())
+        parts = (self.position is not None, self.rotation is not None, axis, self.at is not None)
+        tool = None if self.tool is None else self.tool.homogeneous.tobytes()
+        return self.frame, self.relative_to, self.weight, tool, parts
+
+    def moved_to(self, place: pinocchio.SE3 | ArrayLike) -> Target:
+        """The same target elsewhere.
+
+        Args:
+            place: An SE3 or 4×4 matrix where position and rotation are asked for, the parts that are asked for taken
+                from it; or a position (3,) [m] where only that is.
+
+        Raises:
+            InputError: It is neither, or the target asks for an axis, or for more than a position alone says.
+        """
+        what = f"target {self.frame!r}"
+        if self.axis is not None:
+            raise InputError(f"{what} asks for an axis's direction; give a Target")
+        if not isinstance(place, pinocchio.SE3) and np.shape(place) == (3,):
+            if self.rotation is not None:
+                raise InputError(f"{what} asks for an orientation too; give an SE3 or a 4×4 matrix")
+            place = pinocchio.SE3(np.eye(3), as_point(place, f"{what}: position"))
+        pose = as_se3(place, f"{what}: placement")
+        return self.with_numbers(pose.translation, pose.rotation)
+
+    def with_numbers(
+        self, position: Array, rotation: Array, direction: Array | None = None, at: Array | None = None
+    ) -> Target:
+        """The same target with other numbers, which are right: those that it does not ask for are not read."""
+        moved = object.__new__(Target)
+        fields = dict(vars(self))
+        for name, value in (("position", position), ("rotation", rotation), ("direction", direction), ("at", at)):
+            if fields[name] is not None and value is not None:
+                fields[name] = value.copy()
+                fields[name].setflags(write=False)
+        vars(moved).update(fields)
+        return moved
+
+    @classmethod
+    def from_dict(cls, fields: Mapping[str, Any]) -> Target:
+        """A target from its JSON form: `Target`'s own keywords, `frame` among them.
+
+        Raises:
+            InputError: Not an object, no frame, or a value that `Target` refuses.
+            UnknownNameError: A key that is not one of the keywords.
+        """
+        if not isinstance(fields, Mapping):
+            raise InputError(f'a target is an object such as {{"frame": …, "position": [x, y, z]}}; got {fields!r}')
+        keywords = ("frame", "position", *TARGET_KEYWORDS)
+        for key in fields:
+            if key not in keywords:
+                raise UnknownNameError("target keyword", key, keywords)
+        if "frame" not in fields:
+            raise InputError(f"a target names its frame; got only {', '.join(fields) or 'nothing'}")
+        return cls(**fields)
+
+    def to_dict(self) -> dict[str, Any]:
+        """The JSON form: plain numbers and lists, only what was asked for; `from_dict` reads it back."""
+        fields: dict[str, Any] = {"frame": self.frame}
+        for name in ("position", "rotation", "axis", "direction", "at"):
+            value = getattr(self, name)
+            if value is not None:
+                fields[name] = value.tolist()
+        if self.tool is not None:
+            fields["tool"] = self.tool.homogeneous.tolist()
+        if self.relative_to is not None:
+            fields["relative_to"] = self.relative_to
+        if self.weight != 1.0:
+            fields["weight"] = self.weight
+        return fields
+
+
+def as_targets(targets: Target | Iterable[Target]) -> tuple[Target, ...]:
+    """One target or several, as a tuple of at least one.
+
+    Raises:
+        InputError: Something that is no Target, or none at all.
+    """
+    if isinstance(targets, Target):
+        return (targets,)
+    if isinstance(targets, str) or not isinstance(targets, Iterable):
+        raise InputError(f"targets are Target objects; got {targets!r}")
+    checked = tuple(targets)
+    for target in checked:
+        if not isinstance(target, Target):
+            raise InputError(f"targets are Target objects; got {target!r}")
+    if not checked:
+        raise InputError("there is nothing to solve: give at least one target")
+    return checked
+
+
+TARGET_KEYWORDS = (
+    "rotation", "rpy", "quat_xyzw", "quat_wxyz", "placement", "axis", "direction", "at", "tool", "relative_to",
+    "weight",
+)  # fmt: skip
+"""What `Target` takes beside frame and position."""
+
+
+def _rotation(
+    what: str,
+    rotation: ArrayLike | None,
+    rpy: ArrayLike | None,
+    quat_xyzw: ArrayLike | None,
+    quat_wxyz: ArrayLike | None,
+) -> Array | None:
+    if rotation is not None:
+        return as_rotation(rotation, f"{what}rotation")
+    if rpy is not None:
+        return np.array(pinocchio.rpy.rpyToMatrix(as_vector(rpy, 3, f"{what}rpy", "roll, pitch, yaw in radians")))
+    if quat_xyzw is None and quat_wxyz is None:
+        return None
+    if quat_xyzw is not None:
+        x, y, z, w = as_vector(quat_xyzw, 4, f"{what}quat_xyzw")
+    else:
+        assert quat_wxyz is not None
+        w, x, y, z = as_vector(quat_wxyz, 4, f"{what}quat_wxyz")
+    quaternion = np.array([x, y, z, w])
+    largest = np.abs(quaternion).max()
+    if largest < 1e-9:
+        raise InputError(f"{what}a quaternion has a length; got {quaternion.tolist()} (x, y, z, w)")
+    quaternion = quaternion / largest  # first, so that no square overflows
+    return np.array(pinocchio.Quaternion(quaternion / np.linalg.norm(quaternion)).toRotationMatrix())
+
+
+def _axis(axis: str | ArrayLike, what: str) -> Array:
+    if isinstance(axis, str):
+        if axis not in _NAMED_AXES:
+            raise InputError(f"{what} is one of {', '.join(_NAMED_AXES)} or three numbers; got {axis!r}")
+        return np.array(_NAMED_AXES[axis])
+    return as_unit_vector(axis, what)
+
+
+def _tool(tool: pinocchio.SE3 | ArrayLike, what: str) -> pinocchio.SE3:
+    if isinstance(tool, (list, tuple, np.ndarray)) and len(tool) == 3:
+        return pinocchio.SE3(np.eye(3), as_point(tool, what))
+    return as_se3(tool, what)

@@ -1,0 +1,1 @@
+"""A robot's meshes, and a second opinion on where they are."""

@@ -1,0 +1,211 @@
+"""A second opinion on a robot: yourdfpy reads the same file, and every link's placement is compared.
+
+yourdfpy shares no code with Pinocchio, nor with pinik's own reader. Importing this module imports it, and with it
+trimesh (over a second); import it only where the opinion is wanted.
+"""
+
+from __future__ import annotations
+
+import io
+import logging
+import warnings
+from collections import defaultdict
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pinocchio
+import yourdfpy
+from numpy.typing import NDArray
+
+from ..model.robot_model import Robot
+
+__all__ = ["SecondOpinion", "ask_yourdfpy"]
+
+Array = NDArray[np.float64]
+
+TOLERANCE = 1e-9  # [m and rad]; relative for links that are more than 1 m from the root link
+RANDOM_CONFIGURATIONS = 2
+NO_AXIS = ("floating", "planar")
+
+
+@dataclass(frozen=True)
+class SecondOpinion:
+    """What yourdfpy says about a robot.
+
+    Attributes:
+        unread: Why yourdfpy could not read the file, in words; None where it could, else the rest is empty.
+        links: How many links were compared.
+        configurations: At how many configurations, the neutral one first.
+        position_difference_m: The largest distance between the two placements of a link [m].
+        rotation_difference_rad: The largest angle between them [rad].
+        disagreeing: The links whose placements differ by more than 1e-9, and those that only one of the two knows.
+        unmoved: The floating and planar joints; yourdfpy cannot move them, so they stayed neutral.
+    """
+
+    unread: str | None = None
+    links: int = 0
+    configurations: int = 0
+    position_difference_m: float | None = None
+    rotation_difference_rad: float | None = None
+    disagreeing: tuple[str, ...] = ()
+    unmoved: tuple[str, ...] = ()
+
+    @property
+    def agrees(self) -> bool:
+        """Whether yourdfpy read the file and put every link where pinik puts it."""
+        return self.unread is None and not self.disagreeing
+
+    def to_dict(self) -> dict[str, Any]:
+        """The JSON form; docs/json.md explains the fields."""
+        return {"agrees": self.agrees, **asdict(self)}
+
+    def __str__(self) -> str:
+        if self.unread is not None:
+            return f"yourdfpy gives no second opinion: {self.unread}"
+        verdict = f"disagrees about {_listed(self.disagreeing)}" if self.disagreeing else "agrees"
+        compared = f"{self.links} links at {self.configurations} configurations"
+        apart = f"at most {_apart(self.position_difference_m)} m and {_apart(self.rotation_difference_rad)} rad apart"
+        unmoved = f"; it cannot move {_listed(self.unmoved)}, which stayed neutral" if self.unmoved else ""
+        return f"yourdfpy {verdict}: {compared}, {apart}{unmoved}"
+
+
+def ask_yourdfpy(robot: Robot, path: str | Path) -> SecondOpinion:
+    """Compare a robot with what yourdfpy reads in a file.
+
+    The placements are those in the root link, at the neutral and at two random configurations, always the same.
+    Followers move as yourdfpy's own reading of their mimics says; those that pinik left free get their own angles.
+    What yourdfpy is known to do otherwise is kept out: it multiplies a slider's travel by the length of its axis, and
+    leaves floating and planar joints, and mimics of mimics, where they are.
+
+    Args:
+        robot: The robot; how its root hangs in the world does not matter.
+        path: The file that it was loaded from; read again, so `urdf.read` should have accepted it.
+    """
+    rng = np.random.default_rng(0)
+    configurations = [
+        robot.configuration(),
+        *(_with_neutral_placements(robot, robot.random(rng)) for _ in range(RANDOM_CONFIGURATIONS)),
+    ]
+    try:
+        with _silenced():
+            reader, mimics = _read(Path(path))
+            theirs = [_their_links(reader, mimics, robot, q) for q in configurations]
+    except Exception as fault:  # it raises whatever its reader stumbles over: KeyError, TypeError, AttributeError, …
+        cause = " ".join(str(fault).split())[:200]
+        return SecondOpinion(unread=f"it could not read the file ({type(fault).__name__}: {cause})")
+    return _compared(robot, [_our_links(robot, q) for q in configurations], theirs)
+
+
+def _apart(difference: float | None) -> str:
+    """A difference without the noise of rounding."""
+    return "nan" if difference is None else f"{max(difference, 1e-12):.2g}"
+
+
+def _listed(names: Sequence[str]) -> str:
+    shown = ", ".join(repr(name) for name in names[:6])
+    return shown if len(names) <= 6 else f"{shown} and {len(names) - 6} more"
+
+
+def _with_neutral_placements(robot: Robot, q: Array) -> Array:
+    """The configuration with the angles of `q` whose floating and planar joints are neutral."""
+    angles = robot.angles(q)
+    return robot.configuration({name: angles[name] for name in robot.joint_names})
+
+
+@contextmanager
+def _silenced() -> Iterator[None]:
+    """Keep off stderr what yourdfpy logs and warns about."""
+    logger = logging.getLogger("yourdfpy.urdf")
+    disabled, logger.disabled = logger.disabled, True
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            yield
+    finally:
+        logger.disabled = disabled
+
+
+def _read(path: Path) -> tuple[yourdfpy.URDF, dict[str, Any]]:
+    """yourdfpy's reading of the file, without shapes and with unit axes, and its mimics, taken off the joints.
+
+    With its mimics left on, yourdfpy would move followers by itself: wrongly where they follow a follower, or a leader
+    that comes after a floating or planar joint.
+    """
+    document = io.BytesIO(path.read_bytes())
+    read = yourdfpy.URDF.load(document, load_meshes=False, build_scene_graph=False).robot
+    for link in read.links:
+        link.visuals.clear()  # it would build boxes and cylinders
+    mimics = {}
+    for joint in read.joints:
+        if joint.mimic is not None:
+            mimics[joint.name], joint.mimic = joint.mimic, None
+        if joint.type in NO_AXIS:
+            joint.type = "fixed"
+        elif joint.type != "fixed":
+            axis = joint.axis / np.abs(joint.axis).max()  # first, so that no square over- or underflows
+            joint.axis = axis / np.linalg.norm(axis)
+    return yourdfpy.URDF(robot=read, load_meshes=False, build_scene_graph=True), mimics
+
+
+def _their_links(reader: yourdfpy.URDF, mimics: Mapping[str, Any], robot: Robot, q: Array) -> dict[str, Array]:
+    """Link → its placement (4, 4) in the root link, by yourdfpy.
+
+    What it says of single joints is multiplied here: asked for a whole chain, it looks for the path anew each time,
+    minutes in all for some thousand links.
+    """
+    angles = robot.angles(q)
+    settable = {name: angles[name] for name in robot.joint_names}
+
+    def angle(joint: str) -> float:
+        if joint in settable or joint not in mimics:
+            return settable.get(joint, 0.0)
+        mimic = mimics[joint]
+        return float(mimic.multiplier * angle(mimic.joint) + mimic.offset)
+
+    reader.update_cfg({joint.name: angle(joint.name) for joint in reader.robot.joints if joint.type != "fixed"})
+    children = defaultdict(list)
+    for joint in reader.robot.joints:
+        children[joint.parent].append(joint.child)
+    placed = {robot.description.root: np.eye(4)}
+    pending = [robot.description.root]
+    while pending:
+        parent = pending.pop()
+        for child in children[parent]:
+            if child not in placed:
+                placed[child] = placed[parent] @ reader.get_transform(child, parent)
+                pending.append(child)
+    return placed
+
+
+def _our_links(robot: Robot, q: Array) -> dict[str, Array]:
+    """Link → its placement (4, 4) in the root link, by Pinocchio."""
+    data = robot.data
+    pinocchio.framesForwardKinematics(robot.model, data, q)
+    root = data.oMf[robot.frame_id(robot.description.root)]
+    return {name: root.actInv(data.oMf[robot.frame_id(name)]).homogeneous for name in robot.description.links}
+
+
+def _compared(
+    robot: Robot, ours: Sequence[Mapping[str, Array]], theirs: Sequence[Mapping[str, Array]]
+) -> SecondOpinion:
+    names = [name for name in robot.description.links if name in theirs[0]]
+    a, b = (np.array([[links[name] for name in names] for links in side]) for side in (ours, theirs))  # (k, n, 4, 4)
+    apart = np.linalg.norm(a[..., :3, 3] - b[..., :3, 3], axis=-1)  # (k, n)
+    # ‖A − B‖ = 2√2 sin(θ/2) for rotations an angle θ apart; exact near 0, where the arc cosine of a trace is not.
+    chord = np.linalg.norm(a[..., :3, :3] - b[..., :3, :3], axis=(-2, -1)) / np.sqrt(8.0)
+    turned = 2.0 * np.arcsin(np.minimum(chord, 1.0))
+    far = np.maximum(np.linalg.norm(a[..., :3, 3], axis=-1), 1.0)
+    same = ((apart <= TOLERANCE * far) & (turned <= TOLERANCE)).all(axis=0)  # never where yourdfpy says NaN
+    wrong = [name for name, agreed in zip(names, same, strict=True) if not agreed]
+    return SecondOpinion(
+        links=len(names),
+        configurations=len(ours),
+        position_difference_m=float(apart.max()),
+        rotation_difference_rad=float(turned.max()),
+        disagreeing=(*wrong, *sorted(ours[0].keys() ^ theirs[0].keys())),
+        unmoved=tuple(joint.name for joint in robot.description.joints if joint.kind in NO_AXIS),
+    )

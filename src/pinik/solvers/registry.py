@@ -1,0 +1,87 @@
+"""The solvers, and how one is found by name."""
+
+from __future__ import annotations
+
+import dataclasses
+import importlib
+import inspect
+from typing import Any, TypeGuard
+
+from ..errors import InputError, UnknownNameError
+from .base import JacobianSolver, Patience, Solver, SweepingSolver, parameter
+from .ccd import CCD
+from .damped_least_squares import DampedLeastSquares
+from .pseudo_inverse import PseudoInverse
+from .transpose import JacobianTranspose
+from .two_bone import TwoBoneSolver
+
+__all__ = [
+    "CCD",
+    "CLOSED_FORMS",
+    "SOLVERS",
+    "DampedLeastSquares",
+    "JacobianSolver",
+    "JacobianTranspose",
+    "Patience",
+    "PseudoInverse",
+    "Solver",
+    "SweepingSolver",
+    "TwoBoneSolver",
+    "known_methods",
+    "make_solver",
+    "parameter",
+]
+
+SOLVERS: dict[str, type[Solver]] = {
+    solver.name: solver for solver in (CCD, JacobianTranspose, PseudoInverse, DampedLeastSquares)
+}
+"""Short name → class. Add your own class here and every front of pinik knows it."""
+
+CLOSED_FORMS: dict[str, type[Solver]] = {TwoBoneSolver.name: TwoBoneSolver}
+"""The same for methods that can do only some robots, and refuse the others with a reason."""
+
+
+def known_methods() -> dict[str, type[Solver]]:
+    """Short name → class of every method: those for any robot, then the closed forms."""
+    return SOLVERS | {name: solver for name, solver in CLOSED_FORMS.items() if name not in SOLVERS}
+
+
+def make_solver(method: str | type[Solver] | Solver, **parameters: Any) -> Solver:
+    """The solver that is meant.
+
+    Args:
+        method: A name in `SOLVERS` or `CLOSED_FORMS`, "module:Class" for one that is imported, a class, or an instance.
+        **parameters: The solver's parameters; with an instance they replace its own.
+
+    Raises:
+        UnknownNameError: No such method or parameter.
+        InputError: A value out of its range, or something that is no solver.
+    """
+    if isinstance(method, Solver) and _is_complete(type(method)):
+        return type(method).make(**(method.parameters | parameters)) if parameters else method
+    if isinstance(method, str):
+        method = _class_by_name(method)
+    if not _is_complete(method):
+        raise InputError(f"method is a name ({', '.join(SOLVERS)}), a Solver class or an instance; got {method!r}")
+    if any(isinstance(value, dataclasses.Field) for value in vars(method).values()):
+        raise InputError(f"{method.name}: its class lacks @dataclass(frozen=True, kw_only=True)")
+    return method.make(**parameters)
+
+
+def _is_complete(method: object) -> TypeGuard[type[Solver]]:
+    """Whether it is a class with all that the loop needs of a solver."""
+    bases = (JacobianSolver, SweepingSolver)
+    return isinstance(method, type) and issubclass(method, bases) and not inspect.isabstract(method)
+
+
+def _class_by_name(name: str) -> Any:
+    known = known_methods()
+    if name in known:
+        return known[name]
+    module, colon, attribute = name.partition(":")
+    if colon:
+        try:
+            return getattr(importlib.import_module(module), attribute)
+        except (ImportError, AttributeError, ValueError, TypeError) as error:
+            raise UnknownNameError("method", name, known, f"could not import it: {error}") from None
+    raise UnknownNameError("method", name, known)

@@ -1,0 +1,131 @@
+"""The verdict of a solve in one sentence."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+
+from ..closed_form.recognise import OffPlane
+from ..problem.reach import Shortfall
+from ..problem.targets import Target, TargetError, Tolerance, largest_of
+from .state import Status
+
+__all__ = ["explain"]
+
+
+def explain(
+    status: Status,
+    targets: Sequence[Target],
+    errors: Sequence[TargetError],
+    tolerance: Tolerance,
+    active: Mapping[str, str],
+    proof: Shortfall | None,
+    off_plane: OffPlane | None,
+    anything_moves: bool,
+) -> str:
+    """Why the solve ended, what is missing, and which joints sit at their limits.
+
+    Args:
+        status: The verdict.
+        targets: What was asked for.
+        errors: Each target's error.
+        tolerance: What counts as reached.
+        active: Joint name → "lower", "upper" or "both".
+        proof: Of a target out of reach.
+        off_plane: What the target lies beside a plane that its frame cannot leave.
+        anything_moves: Whether any free joint moves any of the frames.
+    """
+    if status is Status.CONVERGED:
+        position, orientation = largest_of(errors)
+        words = [] if position is None else [_length(position)]
+        words += [] if orientation is None else [_angle(orientation)]
+        return f"converged, {' and '.join(words)} off"
+    missed = _missed(targets, errors, tolerance)
+    if not anything_moves:
+        return f"no free joint moves {_frames(targets)}; {missed}"
+    begin = {
+        Status.STALLED: "stalled",
+        Status.MAX_ITERATIONS: "out of iterations,",
+        Status.TIME_LIMIT: "out of time,",
+        Status.UNREACHABLE: "unreachable:",
+    }[status]
+    why = _out_of_reach(targets, tolerance, proof, off_plane)
+    first, *others = [*why, missed] if status is Status.UNREACHABLE else [missed, *why]
+    return "; ".join([f"{begin} {first}", *others, *_limits(active)])
+
+
+def _out_of_reach(
+    targets: Sequence[Target], tolerance: Tolerance, proof: Shortfall | None, off_plane: OffPlane | None
+) -> list[str]:
+    """Where a target lies that cannot be reached, as far as that is known."""
+    frame, places = targets[0 if proof is None else proof.target].frame, []
+    if proof is not None and proof.inner:
+        places.append(
+            f"{_length(proof.distance)} inside the hole of {_length(proof.bound)} around its chain's first joint"
+        )
+    elif proof is not None:
+        places.append(f"{_length(proof.distance)} beyond its chain's reach of {_length(proof.bound)}")
+    if off_plane is not None and abs(off_plane.distance) > tolerance.position:
+        places.append(f"{_length(abs(off_plane.distance))} off the plane in which {frame} moves, {_normal(off_plane)}")
+    return [f"the target of {frame} lies {' and '.join(places)}"] if places else []
+
+
+def _normal(plane: OffPlane) -> str:
+    """The plane's normal: by an axis' name where it is one, else by its three numbers."""
+    whose = "the world" if plane.relative_to is None else f"frame {plane.relative_to!r}"
+    numbers = [round(float(x), 3) + 0.0 for x in plane.normal]  # + 0.0: no −0
+    for name, number in zip("xyz", numbers, strict=True):
+        if abs(number) == 1.0:
+            return f"whose normal is the {name} axis of {whose}"
+    return f"whose normal is ({', '.join(f'{x:g}' for x in numbers)}) in the axes of {whose}"
+
+
+def _missed(targets: Sequence[Target], errors: Sequence[TargetError], tolerance: Tolerance) -> str:
+    parts = []
+    for target, error in zip(targets, errors, strict=True):
+        words = []
+        if error.position is not None and error.position > tolerance.position:
+            words.append(f"{_length(error.position)} short")
+        if error.orientation is not None and error.orientation > tolerance.orientation:
+            words.append(f"{_angle(error.orientation)} off")
+        if words:
+            name = f"{target.frame} " if len(targets) > 1 else ""
+            parts.append(name + " and ".join(words))
+    return ", ".join(parts)
+
+
+def _limits(active: Mapping[str, str]) -> list[str]:
+    sentences = []
+    for side, words in (("lower", "lower limit"), ("upper", "upper limit"), ("both", "only value")):
+        names = [name for name, at in active.items() if at == side]
+        if names:
+            sentences.append(
+                f"{', '.join(names)} at {'its' if len(names) == 1 else 'their'} {words}{'' if len(names) == 1 else 's'}"
+            )
+    return sentences
+
+
+def _frames(targets: Sequence[Target]) -> str:
+    names = list(dict.fromkeys(target.frame for target in targets))
+    return f"frame {names[0]!r}" if len(names) == 1 else f"frames {', '.join(map(repr, names))}"
+
+
+def _length(metres: float) -> str:
+    if metres >= 100.0:
+        return f"{metres:,.0f} m"
+    if metres >= 1.0:
+        return f"{metres:.3g} m"
+    if metres >= 0.01:
+        return f"{100.0 * metres:.3g} cm"
+    if metres >= 1e-5:
+        return f"{1000.0 * metres:.2g} mm"
+    if metres >= 1e-8:
+        return f"{1e6 * metres:.2g} µm"
+    return "less than 0.01 µm"
+
+
+def _angle(radians: float) -> str:
+    degrees = math.degrees(radians)
+    if degrees >= 10.0:
+        return f"{degrees:.0f}°"
+    return f"{degrees:.2g}°" if degrees >= 0.001 else f"{degrees:.4f}°"

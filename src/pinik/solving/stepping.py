@@ -1,0 +1,84 @@
+"""One step of any solver: clamped, scaled, and along the limits where it meets them."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pinocchio
+from numpy.typing import NDArray
+
+from ..errors import InputError
+from ..model.limits import Limits
+from ..problem.kinematics import Kinematics, Linearization
+from ..problem.targets import Tolerance
+from ..solvers.base import JacobianSolver, Solver, SweepingSolver
+
+__all__ = ["advance"]
+
+Array = NDArray[np.float64]
+
+
+def advance(
+    solver: Solver, kinematics: Kinematics, limits: Limits, at: Linearization, tolerance: Tolerance, scale: float = 1.0
+) -> tuple[Array, int]:
+    """(the next configuration, joints updated one by one); `scale` shortens the step of a Jacobian method."""
+    if isinstance(solver, SweepingSolver):
+        q, updates = solver.sweep(at.q, kinematics, limits, tolerance)
+        if np.shape(q) != at.q.shape:
+            raise InputError(f"{solver.name}.sweep returns q of shape {at.q.shape}; got {np.shape(q)}")
+        return (limits.clip(q), updates) if np.isfinite(q).all() else (at.q, updates)
+    assert isinstance(solver, JacobianSolver)
+    if solver.max_residual < math.inf:
+        at = at._replace(e=kinematics.shortened(at.e, solver.max_residual))
+    q = _stepped(solver, kinematics, at, scale)
+    if not limits.enabled:
+        return q, 0
+    inside = limits.clip(q)
+    if (inside == q).all():
+        return q, 0
+    return _step_along_limits(q, solver, kinematics, limits, at, scale), 0
+
+
+def _stepped(solver: JacobianSolver, kinematics: Kinematics, at: Linearization, scale: float) -> Array:
+    """The configuration after the step, clamped and scaled; joints that are not free stay to the last bit."""
+    roots = solver.roots(kinematics)
+    dq = solver.step(at if roots is None else at._replace(J=at.J * roots), kinematics)
+    if np.shape(dq) != at.free.shape:
+        raise InputError(f"{solver.name}.direction returns dq of shape {at.free.shape}; got {np.shape(dq)}")
+    dq = dq * (at.free if roots is None else at.free * roots)
+    length = math.sqrt(dq.dot(dq))
+    if not math.isfinite(length):
+        return at.q  # no step: the loop will say that it stalled
+    if length > solver.max_step:
+        largest = float(np.abs(dq).max())
+        if largest > solver.max_step:
+            dq = dq * (solver.max_step / largest)
+    scale *= solver.step_size
+    if scale != 1.0:
+        dq = dq * scale
+    q: Array = pinocchio.integrate(kinematics.model, at.q, dq)
+    if kinematics.held_entries is not None:
+        q[kinematics.held_entries] = at.q[kinematics.held_entries]
+    return q
+
+
+def _step_along_limits(
+    q: Array, solver: JacobianSolver, kinematics: Kinematics, limits: Limits, at: Linearization, scale: float
+) -> Array:
+    """The step again, after the first try `q` left the limits.
+
+    Joints that sat at a limit already and would go further out hold still and leave their part to the others, until
+    none does; what is outside then is clipped.
+    """
+    held = np.zeros_like(at.free)
+    while True:
+        inside = limits.clip(q)
+        pushing = limits.blocked(at.q, q, inside) & ~held
+        if not pushing.any():
+            return inside
+        held |= pushing
+        J = at.J.copy()
+        J[:, held] = 0.0
+        free = at._replace(J=J, free=at.free & ~held)
+        q = _stepped(solver, kinematics, free, scale)

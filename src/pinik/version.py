@@ -1,0 +1,5 @@
+"""This version of pinik."""
+
+__all__ = ["__version__"]
+
+__version__ = "0.1.0"

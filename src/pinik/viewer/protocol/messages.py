@@ -1,0 +1,195 @@
+"""What a page may ask of a session: every message checked, field by field, before anything happens."""
+
+from __future__ import annotations
+
+import dataclasses
+import json
+from collections.abc import Callable, Iterable, Mapping
+from typing import Any
+
+from ...checks import as_finite_number, as_vector
+from ...errors import InputError, UnknownNameError
+from ..simulation.session import Session
+
+__all__ = ["FARTHEST", "RANGES", "apply", "parse", "read_json"]
+
+RANGES: dict[str, tuple[float, float]] = {
+    "speed": (0.1, 100.0),
+    "iterations": (1, 1000),
+    "position_tolerance": (1e-6, 1.0),
+    "orientation_tolerance": (1e-6, 3.2),
+}
+"""What numbers may be; the page's sliders show it."""
+FARTHEST = 100.0
+"""[m] A ball stays within this of the world's origin."""
+_LONGEST_NAME = 200
+_LARGEST_ANGLE = 100.0  # [rad]
+_DEEPEST = 8
+
+Check = Callable[[str, Any], Any]
+
+
+def parse(text: str) -> dict[str, Any]:
+    """One message from its text: a JSON object with a `type`.
+
+    Raises:
+        InputError: It is something else.
+    """
+
+    try:
+        message = read_json(text)
+    except ValueError as error:
+        raise InputError(f"a message is a JSON object; this is none: {error}") from None
+    if not isinstance(message, dict) or not isinstance(message.get("type"), str):
+        raise InputError('a message is a JSON object with a "type"')
+    return message
+
+
+def read_json(text: str) -> Any:
+    """A JSON value that nests no deeper than anything here does: what is wrong with it can be shown in words.
+
+    Raises:
+        ValueError: It is none, or holds NaN or an infinity by name.
+    """
+
+    def refuse(word: str) -> None:
+        raise ValueError(f"{word} is no JSON number")
+
+    try:
+        value = json.loads(text, parse_constant=refuse)
+    except RecursionError:
+        raise ValueError("it nests too deeply") from None
+    level = [value]
+    for _ in range(_DEEPEST):
+        level = [inner for outer in level if isinstance(outer, (list, dict)) for inner in _parts(outer)]
+    if level:
+        raise ValueError("it nests too deeply")
+    return value
+
+
+def _parts(outer: list[Any] | dict[str, Any]) -> Iterable[Any]:
+    return outer.values() if isinstance(outer, dict) else outer
+
+
+def apply(session: Session, message: Mapping[str, Any]) -> None:
+    """Do what a message says; nothing when it is not well formed.
+
+    Raises:
+        InputError, UnknownNameError: The message is unknown, a field is missing, too many, or out of its range.
+    """
+    kind = message["type"]
+    if kind not in _MESSAGES:
+        raise UnknownNameError("message", kind, _MESSAGES)
+    fields, act = _MESSAGES[kind]
+    act(session, **checked(kind, message, fields))
+
+
+def checked(kind: str, message: Mapping[str, Any], fields: Mapping[str, Check]) -> dict[str, Any]:
+    """The fields of a message, each checked: exactly those that belong to it."""
+    given = {name: value for name, value in message.items() if name != "type"}
+    if set(given) != set(fields):
+        wanted = ", ".join(fields) or "no fields"
+        raise InputError(f"message {kind!r} takes {wanted}; got {', '.join(given) or 'none'}")
+    return {name: check(f"{kind}: {name}", given[name]) for name, check in fields.items()}
+
+
+def text(what: str, value: Any) -> str:
+    """A name, not too long."""
+    if not isinstance(value, str) or len(value) > _LONGEST_NAME:
+        raise InputError(f"{what} is a text of at most {_LONGEST_NAME} characters; got {str(value)[:60]!r}")
+    return value
+
+
+def _truth(what: str, value: Any) -> bool:
+    if not isinstance(value, bool):
+        raise InputError(f"{what} is true or false; got {value!r}")
+    return value
+
+
+def whole_number(what: str, value: Any) -> int:
+    """A whole number."""
+    if isinstance(value, bool) or not isinstance(value, int):
+        raise InputError(f"{what} is a whole number; got {value!r}")
+    return value
+
+
+def _in_range(name: str, *, whole: bool = False) -> Check:
+    def check(what: str, value: Any) -> float:
+        low, high = RANGES[name]
+        number = whole_number(what, value) if whole else as_finite_number(value, what)
+        if not low <= number <= high:
+            raise InputError(f"{what} is a number from {low:g} to {high:g}; got {value!r}")
+        return number
+
+    return check
+
+
+def _point(what: str, value: Any) -> Any:
+    point = as_vector(value, 3, what)
+    if abs(point).max() > FARTHEST:
+        raise InputError(f"{what} is a point within {FARTHEST:g} m of the origin; got {point.tolist()}")
+    return point
+
+
+def _angles(what: str, value: Any) -> Any:
+    angles = as_vector(value, 3, what, "roll, pitch, yaw in radians")
+    if abs(angles).max() > _LARGEST_ANGLE:
+        raise InputError(f"{what} is three angles of at most {_LARGEST_ANGLE:g} rad; got {angles.tolist()}")
+    return angles
+
+
+def _parameter_value(what: str, value: Any) -> Any:
+    """Anything plain that is small enough to look at; the solver itself checks its range."""
+    if isinstance(value, Mapping) and len(value) > 1000:
+        raise InputError(f"{what} names more joints than any robot has")
+    return value
+
+
+def _set_speed(session: Session, value: float) -> None:
+    session.motion.speed = value
+
+
+def _set_iterations(session: Session, until_reached: bool, at_most: int) -> None:
+    session.set_chase(dataclasses.replace(session.chase, until_reached=until_reached, at_most=at_most))
+
+
+def _single_step(session: Session) -> None:
+    session.running = False
+    session.step()
+
+
+def _run(session: Session, on: bool) -> None:
+    session.running = on
+
+
+_INSTANCE: dict[str, Check] = {"instance": whole_number}
+_BALL: dict[str, Check] = {"index": whole_number}
+
+_MESSAGES: dict[str, tuple[dict[str, Check], Callable[..., None]]] = {
+    "view": ({"count": whole_number}, lambda s, count: s.set_view(count)),
+    "method": ({**_INSTANCE, "method": text}, lambda s, instance, method: s.set_method(instance, method)),
+    "parameter": (
+        {**_INSTANCE, "name": text, "value": _parameter_value},
+        lambda s, instance, name, value: s.set_parameter(instance, name, value),
+    ),
+    "limits": ({"on": _truth}, Session.set_limits),
+    "motion": ({"motion": text}, lambda s, motion: s.set_motion(motion)),
+    "curve": ({"curve": text}, lambda s, curve: s.set_curve(curve)),
+    "speed": ({"value": _in_range("speed")}, _set_speed),
+    "iterations": (
+        {"until_reached": _truth, "at_most": _in_range("iterations", whole=True)},
+        _set_iterations,
+    ),
+    "tolerance": (
+        {"position": _in_range("position_tolerance"), "orientation": _in_range("orientation_tolerance")},
+        Session.set_tolerance,
+    ),
+    "run": ({"on": _truth}, _run),
+    "step": ({}, _single_step),
+    "reset": ({}, Session.reset),
+    "ball": ({**_BALL, "position": _point}, Session.move_ball),
+    "orientation": ({**_BALL, "on": _truth, "rpy": _angles}, Session.orient_ball),
+    "effector": ({**_BALL, "mode": text}, Session.set_mode),
+    "add_effector": ({"frame": text}, Session.add_ball),
+    "remove_effector": (_BALL, Session.remove_ball),
+}

@@ -1,0 +1,206 @@
+"""A session's set-up as the text behind the # of its address, so that a link opens it again."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterator
+from typing import Any
+from urllib.parse import parse_qsl, quote, urlencode
+
+from ...errors import InputError, UnknownNameError
+from ...problem.targets import Tolerance
+from ..simulation.instance import Chase
+from ..simulation.session import Session
+from .messages import apply, read_json
+from .parameters import changed_parameters, describe_parameters
+
+__all__ = ["Setup", "apply_setup", "read_setup", "write_setup"]
+
+Setup = dict[str, str]
+_LONGEST = 20_000
+_KEYS = ("robot", "root", "view", "methods", "parameters", "motion", "curve", "speed", "limits", "iterations",
+         "tolerance", "balls", "run")  # fmt: skip
+
+
+def write_setup(session: Session) -> str:
+    """The set-up as "name=value&…"; what stands at its default is left out, but for robot, view and methods."""
+    chase, motion, default = session.chase, session.motion, Chase()
+    setup = {
+        "robot": session.robot.name,
+        "root": session.robot.root,
+        "view": str(session.view),
+        "methods": ",".join(instance.solver.name for instance in session.seen),
+    }
+    changed = {str(i): p for i, instance in enumerate(session.seen) if (p := changed_parameters(instance.solver))}
+    if changed:
+        setup["parameters"] = _compact(changed)
+    setup["motion"] = motion.kind
+    if motion.kind == "curve":
+        setup["curve"] = motion.curve
+    if motion.speed != 1.0:
+        setup["speed"] = _short(motion.speed)
+    if chase.limits != default.limits:
+        setup["limits"] = "off"
+    if not chase.until_reached:
+        setup["iterations"] = str(chase.at_most)
+    if chase.tolerance != default.tolerance:
+        setup["tolerance"] = ",".join(map(_short, chase.tolerance))
+    setup["balls"] = _compact([_ball(session, index) for index in range(len(session.balls))])
+    setup["run"] = "on" if session.running else "off"
+    return urlencode(setup, quote_via=quote, safe=",:[]{}")
+
+
+def _ball(session: Session, index: int) -> list[Any]:
+    """[frame, mode, and where it is unless a motion decides that, and its orientation where asked for]."""
+    ball = session.balls[index]
+    led = ball.mode == "off" or (session.motion.kind != "hand" and ball.mode == "on")
+    position = None if led else [round(float(x), 4) for x in ball.position]
+    rpy = [round(float(x), 4) for x in ball.rpy] if ball.oriented else None
+    parts = [ball.frame, ball.mode, position, rpy]
+    while parts[-1] is None:
+        parts.pop()
+    return parts
+
+
+def _short(number: float) -> str:
+    """As few digits as say exactly this number."""
+    return repr(float(number)).removesuffix(".0")
+
+
+def _compact(value: Any) -> str:
+    return json.dumps(value, separators=(",", ":"))
+
+
+def read_setup(text: str) -> Setup:
+    """The set-up's parts by name.
+
+    Raises:
+        InputError: It is too long, or names a part twice.
+        UnknownNameError: It names a part that there is not.
+    """
+    if len(text) > _LONGEST:
+        raise InputError(f"a set-up has at most {_LONGEST} characters; got {len(text)}")
+    setup: Setup = {}
+    for name, value in parse_qsl(text.lstrip("#"), keep_blank_values=True):
+        if name not in _KEYS:
+            raise UnknownNameError("part of a set-up", name, _KEYS)
+        if name in setup:
+            raise InputError(f"the set-up says {name!r} twice")
+        setup[name] = value
+    return setup
+
+
+def apply_setup(session: Session, setup: Setup) -> None:
+    """Bring a session to a set-up; what already stands so stays untouched, its statistics too. The robot is the
+    session's own.
+
+    Raises:
+        InputError, UnknownNameError: A part that cannot be; the parts before it are done.
+    """
+    for message in _messages(session, setup):
+        apply(session, message)
+
+
+def _messages(session: Session, setup: Setup) -> Iterator[dict[str, Any]]:
+    if "view" in setup:
+        yield {"type": "view", "count": _whole("view", setup["view"])}
+    if "balls" in setup:  # first of all: which methods there are depends on them
+        yield from _ball_messages(session, _parsed("balls", setup["balls"], list))
+    if "parameters" in setup and "methods" not in setup:
+        raise InputError("set-up: parameters say nothing without the methods that have them")
+    if "methods" in setup:
+        changed = _parsed("parameters", setup.get("parameters", "{}"), dict)
+        methods = setup["methods"].split(",")
+        if len(methods) > len(session.instances):
+            raise InputError(f"set-up: there are {len(session.instances)} methods at most; got {len(methods)}")
+        for index, method in enumerate(methods):
+            if session.instances[index].solver.name != method:
+                yield {"type": "method", "instance": index, "method": method}
+            wanted = changed.get(str(index), {})
+            if not isinstance(wanted, dict):
+                raise InputError(f"set-up: the parameters of instance {index} are an object; got {wanted!r}")
+            described = describe_parameters(session.instances[index].solver)
+            defaults = {p["name"]: p["default"] for p in described if p["value"] != p["default"]}
+            for name, value in (defaults | wanted).items():
+                yield {"type": "parameter", "instance": index, "name": name, "value": value}
+    chase = session.chase
+    yield {"type": "limits", "on": _on("limits", setup.get("limits", "on"))}
+    yield {
+        "type": "iterations",
+        "until_reached": "iterations" not in setup,
+        "at_most": _whole("iterations", setup["iterations"]) if "iterations" in setup else chase.at_most,
+    }
+    tolerance = _numbers("tolerance", setup["tolerance"], 2) if "tolerance" in setup else Tolerance()
+    yield {"type": "tolerance", "position": tolerance[0], "orientation": tolerance[1]}
+    if "curve" in setup:
+        yield {"type": "curve", "curve": setup["curve"]}
+    yield {"type": "speed", "value": _numbers("speed", setup["speed"], 1)[0] if "speed" in setup else 1.0}
+    if "motion" in setup:
+        yield {"type": "motion", "motion": setup["motion"]}
+    if "run" in setup:
+        yield {"type": "run", "on": _on("run", setup["run"])}
+
+
+def _ball_messages(session: Session, balls: list[Any]) -> Iterator[dict[str, Any]]:
+    """Frames first, so that every ball has its number; then mode, place and orientation of each."""
+    for ball in balls:
+        if not (isinstance(ball, list) and 2 <= len(ball) <= 4):
+            raise InputError(f"set-up: a ball is [frame, mode, position, rpy]; got {ball!r}")
+    wanted = [ball[0] for ball in balls]
+    if not wanted:
+        raise InputError("set-up: balls are at least one")
+    yield from _removals(session, wanted)
+    for frame in wanted:
+        if frame not in [ball.frame for ball in session.balls]:
+            yield {"type": "add_effector", "frame": frame}
+        yield from _removals(session, wanted)  # now the last ball may go too
+    session.balls.sort(key=lambda ball: wanted.index(ball.frame))
+    for frame, mode, position, rpy in ([*ball, None, None][:4] for ball in balls):
+        index = [ball.frame for ball in session.balls].index(frame)
+        here = session.balls[index]
+        if here.mode != mode:
+            yield {"type": "effector", "index": index, "mode": mode}
+        if position is not None and position != [round(float(x), 4) for x in here.position]:
+            yield {"type": "ball", "index": index, "position": position}
+        if (rpy is not None) != here.oriented or rpy not in (None, [round(float(x), 4) for x in here.rpy]):
+            angles = here.rpy.tolist() if rpy is None else rpy
+            yield {"type": "orientation", "index": index, "on": rpy is not None, "rpy": angles}
+
+
+def _removals(session: Session, wanted: list[Any]) -> Iterator[dict[str, Any]]:
+    """All balls whose frame is not wanted; the last ball stays."""
+    for index in reversed(range(len(session.balls))):
+        if session.balls[index].frame not in wanted and len(session.balls) > 1:
+            yield {"type": "remove_effector", "index": index}
+
+
+def _on(name: str, text: str) -> bool:
+    if text not in ("on", "off"):
+        raise InputError(f"set-up: {name} is on or off; got {text[:60]!r}")
+    return text == "on"
+
+
+def _parsed(name: str, text: str, kind: type) -> Any:
+    try:
+        value = read_json(text)
+    except ValueError:
+        value = None
+    if not isinstance(value, kind):
+        raise InputError(f"set-up: {name} is JSON; got {text[:60]!r}")
+    return value
+
+
+def _whole(name: str, text: str) -> int:
+    if not text.isdecimal() or len(text) > 9:
+        raise InputError(f"set-up: {name} is a whole number; got {text[:60]!r}")
+    return int(text)
+
+
+def _numbers(name: str, text: str, count: int) -> list[float]:
+    try:
+        numbers = [float(part) for part in text.split(",")]
+    except ValueError:
+        numbers = []
+    if len(numbers) != count:
+        raise InputError(f"set-up: {name} is {count} number{'s' if count > 1 else ''}; got {text[:60]!r}")
+    return numbers

@@ -1,0 +1,86 @@
+"""A session as JSON: what there is to choose from, and where everything stands."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from ...description.catalog import catalog
+from ...motion.curves import CURVES
+from ...solvers.base import Solver
+from ..simulation.instance import STATUSES, Instance
+from ..simulation.motion import MOTIONS
+from ..simulation.session import STEPS_PER_SECOND, VIEWS, Session
+from ..simulation.statistics import Summary
+from .messages import FARTHEST, RANGES
+from .parameters import describe_parameters
+from .robots import ROOTS
+
+__all__ = ["hello_message", "session_state"]
+
+
+def hello_message(version: str, methods: dict[str, type[Solver]], own_robots: list[str]) -> dict[str, Any]:
+    """What there is to choose from; `own_robots` are names that the catalogue does not have."""
+    return {
+        "type": "hello",
+        "schema": 1,
+        "version": version,
+        "robots": [*own_robots, *catalog()],
+        "roots": list(ROOTS),
+        "methods": [{"name": name, "title": cls.title, "help": cls.about} for name, cls in methods.items()],
+        "motions": [{"name": name, "title": title} for name, title in MOTIONS.items()],
+        "curves": [{"name": name, "title": curve.title} for name, curve in CURVES.items()],
+        "views": list(VIEWS),
+        "ranges": {**{name: list(ends) for name, ends in RANGES.items()}, "reach": FARTHEST},
+        "statuses": list(STATUSES),
+        "steps_per_second": STEPS_PER_SECOND,
+    }
+
+
+def session_state(session: Session) -> dict[str, Any]:
+    """Everything but what the server adds: generation, pace, loading, set-up."""
+    chase, motion = session.chase, session.motion
+    return {
+        "type": "state",
+        "schema": 1,
+        "robot": session.robot.name,
+        "root": session.robot.root,
+        "view": session.view,
+        "running": session.running,
+        "motion": motion.kind,
+        "curve": motion.curve,
+        "speed": motion.speed,
+        "limits": chase.limits,
+        "iterations": {"until_reached": chase.until_reached, "at_most": chase.at_most},
+        "tolerance": chase.tolerance._asdict(),
+        "step": session.steps,
+        "balls": [
+            {
+                "frame": ball.frame,
+                "mode": ball.mode,
+                "position": ball.position.tolist(),
+                "rpy": ball.rpy.tolist(),
+                "oriented": ball.oriented,
+                "curve": motion.path(ball).round(4).tolist(),
+            }
+            for ball in session.balls
+        ],
+        "instances": [
+            _instance_state(instance, summary)
+            for instance, summary in zip(session.seen, session.summaries, strict=True)
+        ],
+        "joint_names": list(session.robot.joint_names),
+        "methods": session.offered,
+    }
+
+
+def _instance_state(instance: Instance, summary: Summary) -> dict[str, Any]:
+    verdict = instance.verdict()
+    return {
+        "method": instance.solver.name,
+        "title": instance.solver.title,
+        "parameters": describe_parameters(instance.solver),
+        **verdict._asdict(),
+        "active_limits": list(verdict.active_limits),
+        "angles": instance.robot.angles(instance.q),
+        "statistics": summary._asdict(),
+    }

@@ -1,0 +1,1 @@
+"""The live view's simulation: no socket, no drawing."""

@@ -1,0 +1,79 @@
+"""How the balls move by themselves: along a curve or at random; by hand they stay where they were put."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...model.home import home_configuration
+from ...model.robot_model import Robot
+from ...motion.tracks import Track, lay_track, random_configuration
+from .balls import Ball
+
+__all__ = ["MOTIONS", "Motion"]
+
+Array = NDArray[np.float64]
+
+MOTIONS = {"hand": "By hand", "curve": "Along a curve", "random": "At random"}
+"""Name → title."""
+
+_PERIOD = 8.0  # [s] once round a curve at speed 1
+_PAUSE = 1.5  # [s] between two random places at speed 1
+
+
+class Motion:
+    """Moves the balls whose mode is "on", step after step; the same seed gives the same places.
+
+    Attributes:
+        kind: "hand", "curve" or "random".
+        curve: A name in `CURVES`.
+        speed: Factor on time.
+    """
+
+    def __init__(self, robot: Robot, seed: int = 0) -> None:
+        self.kind = "hand"
+        self.curve = "eight"
+        self.speed = 1.0
+        self._robot = robot
+        self._seed = seed
+        self._home = home_configuration(robot)
+        self._laid: dict[tuple[str, str], Track] = {}
+        self.restart()
+
+    def restart(self) -> None:
+        """Back to the beginning of the curve and of the random places."""
+        self._phase = 0.0
+        self._since = np.inf
+        self._rng = np.random.default_rng(self._seed)
+
+    def advance(self, balls: Sequence[Ball], seconds: float) -> None:
+        """Move the balls on by a step of `seconds`."""
+        moving = [ball for ball in balls if ball.mode == "on"]
+        if self.kind == "hand" or not moving:
+            return
+        if self.kind == "curve":
+            self._phase = (self._phase + self.speed * seconds / _PERIOD) % 1.0
+            for ball in moving:
+                ball.put(self._track(ball).at(self._phase))
+            return
+        self._since += self.speed * seconds
+        if self._since >= _PAUSE:
+            self._since = 0.0
+            q = random_configuration(self._robot, self._home, self._rng)
+            for ball in moving:
+                ball.put(self._robot.placement(ball.frame, q).translation)
+
+    def path(self, ball: Ball) -> Array:
+        """The points (n, 3) [m] of the curve that a ball follows, closed; none where it follows none."""
+        if self.kind != "curve" or ball.mode != "on":
+            return np.zeros((0, 3))
+        return self._track(ball).path
+
+    def _track(self, ball: Ball) -> Track:
+        """A ball's curve: about its home."""
+        key = (ball.frame, self.curve)
+        if key not in self._laid:
+            self._laid[key] = lay_track(self._robot, ball.frame, self.curve, ball.home)
+        return self._laid[key]

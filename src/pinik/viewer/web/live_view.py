@@ -1,0 +1,273 @@
+"""The handle of a live view: a server in a thread of this process, for scripts, notebooks and the command line."""
+
+from __future__ import annotations
+
+import asyncio
+import concurrent.futures
+import errno
+import html
+import json
+import os
+import secrets
+import socket
+import threading
+import webbrowser
+from collections.abc import Callable
+from concurrent.futures import Future, ThreadPoolExecutor
+from pathlib import Path
+from types import TracebackType
+from typing import Any, TypeVar
+
+import tornado.httpserver
+import tornado.ioloop
+from numpy.typing import ArrayLike, NDArray
+
+from ... import errors
+from ...model.robot_model import Robot
+from ...picture.camera import Camera
+from ...picture.draw import Picture
+from ..simulation.session import STEPS_PER_SECOND, Methods, Session
+from .notebook import as_html, draw_beside
+from .server import later_in_threads, make_application
+from .show import Show
+
+__all__ = ["LiveView"]
+
+T = TypeVar("T")
+
+_PORTS = range(7007, 7027)
+
+
+class LiveView:
+    """A running live view. A context manager: leaving it frees the port.
+
+    In a notebook it shows itself as a frame, and as a picture where the server has gone. What the page can change,
+    `send` can: every row of the table in docs/live-protocol.md is a message, as in
+    `view.send("motion", motion="random")`.
+
+    Attributes:
+        url: Where the page is.
+        port: The port it listens on.
+    """
+
+    def __init__(
+        self,
+        robot: Robot,
+        methods: Methods,
+        *,
+        view: int | None,
+        port: int | None,
+        host: str,
+        motion: str,
+        running: bool,
+        version: str,
+    ) -> None:
+        """Start the server; `pinik.live` explains the arguments."""
+        session = Session(robot, methods, view=view)
+        session.set_motion(motion)
+        session.running = running
+        sockets = _bind(host, port)
+        self.port: int = sockets[0].getsockname()[1]
+        self.url = f"http://{_addressed(host)}:{self.port}/"
+        self._mark = secrets.token_hex(8)
+        self._workers = ThreadPoolExecutor(2, thread_name_prefix="pinik-live-worker")
+        self._closed = threading.Event()
+        ready: Future[tuple[tornado.ioloop.IOLoop, Show]] = Future()
+        arguments = (session, host, sockets, version, ready)
+        self._thread = threading.Thread(target=self._serve, args=arguments, name="pinik-live", daemon=True)
+        self._thread.start()
+        self._loop, self._show = ready.result()
+
+    def _serve(
+        self, session: Session, host: str, sockets: list[socket.socket], version: str, ready: Future[Any]
+    ) -> None:
+        """The thread: everything that touches the session happens here, one thing after another."""
+        asyncio.set_event_loop(asyncio.new_event_loop())
+        loop = tornado.ioloop.IOLoop.current()
+        try:
+            show = Show(session, later_in_threads(loop, self._workers), version)
+            server = tornado.httpserver.HTTPServer(make_application(show, host, self._mark))
+        except BaseException as error:
+            for listening in sockets:
+                listening.close()
+            self._workers.shutdown(wait=False)
+            loop.close()
+            ready.set_exception(error)
+            return
+        server.add_sockets(sockets)
+        clock = tornado.ioloop.PeriodicCallback(show.tick, 1000.0 / STEPS_PER_SECOND)
+        clock.start()
+        loop.add_callback(ready.set_result, (loop, show))
+        loop.start()
+        clock.stop()
+        server.stop()
+        loop.run_sync(server.close_all_connections, timeout=2.0)
+        loop.close(all_fds=True)
+
+    def __repr__(self) -> str:
+        return f"<LiveView of {self._show.session.robot.name!r}: {'closed' if self._closed.is_set() else self.url}>"
+
+    def __enter__(self) -> LiveView:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, where: TracebackType | None
+    ) -> None:
+        self.close()
+
+    def _repr_html_(self) -> str:
+        """What a notebook shows: the page in a frame, or where there is no server the picture of this moment."""
+        if self._closed.is_set():
+            return html.escape(repr(self))
+        methods = [instance["method"] for instance in self.state["instances"]]
+        caption = f"{self.robot.name}, seen by pinik.live"
+        if len(methods) > 1:
+            caption += f"; from left to right: {', '.join(methods)}"
+        return as_html(self.url, self._mark, self.picture(), caption)
+
+    def picture(
+        self, view: str | tuple[float, float] | Camera = "angle", size: tuple[int, int] = (720, 360)
+    ) -> Picture:
+        """The instances that are seen, beside each other as they stand; `view` and `size` are as for `pinik.draw`."""
+
+        def now() -> tuple[Robot, list[NDArray[Any]], list[tuple[NDArray[Any], bool]]]:
+            session = self._show.session
+            balls = [(ball.position.copy(), ball.mode == "pinned") for ball in session.balls if ball.mode != "off"]
+            return session.robot, [instance.q.copy() for instance in session.seen], balls
+
+        return draw_beside(*self._do(now), view=view, size=size)
+
+    def close(self) -> None:
+        """Stop the server and free the port; a second time does nothing."""
+        if self._closed.is_set():
+            return
+        self._closed.set()
+        self._loop.add_callback(self._loop.stop)
+        self._thread.join()
+        self._workers.shutdown(wait=False, cancel_futures=True)
+
+    def wait(self) -> None:
+        """Block until the view is closed, or until Ctrl-C."""
+        self._thread.join()
+
+    def open(self) -> bool:
+        """Show the page in the browser; False where there is none."""
+        return webbrowser.open(self.url)
+
+    def send(self, type: str, **fields: Any) -> None:
+        """Ask what a page could ask, such as `send("method", instance=0, method="ccd")`.
+
+        Raises:
+            InputError, UnknownNameError: As a page would be told.
+        """
+        message = json.loads(json.dumps({"type": type, **fields}, default=_plain))
+        self._do(lambda: self._show.do(message))
+
+    def move_ball(self, position: ArrayLike, index: int = 0) -> None:
+        """Put a ball at a point (3,) [m] of the robot's world; from then on balls move by hand."""
+        self.send("ball", index=index, position=position)
+
+    @property
+    def robot(self) -> Robot:
+        """The robot that is shown."""
+        return self._show.session.robot
+
+    @property
+    def state(self) -> dict[str, Any]:
+        """What `GET /api/state` answers; docs/live-protocol.md explains the fields."""
+        return self._do(self._show.state)
+
+    @property
+    def configurations(self) -> list[NDArray[Any]]:
+        """q (nq,) of each instance that is seen."""
+        return self._do(lambda: [instance.q.copy() for instance in self._show.session.seen])
+
+    def save_animation(self, path: str | os.PathLike[str]) -> None:
+        """Write the last 20 seconds as one HTML file, which plays without a server."""
+        Path(path).write_text(self._do(self._show.animation), "utf-8")
+
+    def _do(self, work: Callable[[], T]) -> T:
+        """Do it in the server's thread, between two steps, and wait for it."""
+        if self._closed.is_set():
+            raise errors.InputError("this live view is closed; pinik.live(...) opens another")
+        if threading.current_thread() is self._thread:  # it would wait for itself
+            raise errors.InputError("a live view cannot be asked from inside a step, such as by a solver that it runs")
+        done: Future[T] = Future()
+
+        def run() -> None:
+            try:
+                done.set_result(work())
+            except BaseException as error:
+                done.set_exception(error)
+
+        self._loop.add_callback(run)
+        while not concurrent.futures.wait([done], timeout=0.5).done:
+            if not self._thread.is_alive():  # it was closed just now, by another thread
+                raise errors.InputError("this live view is closed; pinik.live(...) opens another")
+        return done.result()
+
+
+def _plain(value: Any) -> Any:
+    """Arrays and numpy's numbers as JSON has them."""
+    if hasattr(value, "tolist"):
+        return value.tolist()
+    raise errors.InputError(f"a message holds plain numbers, texts and lists; got {value!r}")
+
+
+def _addressed(host: str) -> str:
+    """How a browser on this machine addresses a server that listens on `host`."""
+    if host in ("", "0.0.0.0", "::"):
+        return "127.0.0.1"
+    return f"[{host}]" if ":" in host else host
+
+
+def _bind(host: str, port: int | None) -> list[socket.socket]:
+    """Listen on a port, or on the first free one of ours when None.
+
+    Raises:
+        InputError: The port is taken, is none, or there is no such address here.
+    """
+    if port is not None and not (type(port) is int and 0 <= port <= 65535):
+        raise errors.InputError(f"a port is a number from 0 to 65535; got {port!r}")
+    if not isinstance(host, str) or not host:
+        raise errors.InputError(f"a host is an address of this machine, such as '127.0.0.1'; got {host!r}")
+    for candidate in (*_PORTS, 0) if port is None else (port,):
+        try:
+            return _listen(host, candidate)
+        except (OSError, UnicodeError) as error:
+            fault = getattr(error, "strerror", None) or str(error)
+    hint = "; leave the port out and pinik finds a free one" if port else ""
+    where = host if port is None else f"{host}, port {port}"
+    raise errors.InputError(f"cannot listen on {where}: {fault}{hint}")
+
+
+def _listen(host: str, port: int) -> list[socket.socket]:
+    """A socket for each address that the host's name stands for, all on one port.
+
+    Tornado's `bind_sockets` does the same, but leaves a socket open where the port is taken.
+    """
+    sockets: list[socket.socket] = []
+    try:
+        found = socket.getaddrinfo(host, port, type=socket.SOCK_STREAM, flags=socket.AI_PASSIVE)
+        for family, kind, protocol, _, address in dict.fromkeys(found):
+            listening = socket.socket(family, kind, protocol)
+            sockets.append(listening)
+            listening.setblocking(False)
+            if os.name != "nt":
+                listening.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+            if family == socket.AF_INET6:
+                listening.setsockopt(socket.IPPROTO_IPV6, socket.IPV6_V6ONLY, 1)
+            port = port or (sockets[0].getsockname()[1] if len(sockets) > 1 else 0)
+            try:
+                listening.bind((address[0], port, *address[2:]))
+            except OSError as error:
+                if error.errno != errno.EADDRNOTAVAIL or len(found) == 1:
+                    raise
+                sockets.pop().close()  # such as ::1 for "localhost", where there is no IPv6
+                continue
+            listening.listen(128)
+    except BaseException:
+        for listening in sockets:
+            listening.close()
+        raise
+    return sockets

@@ -1,0 +1,132 @@
+from __future__ import annotations
+
+import pytest
+
+from pinik.shapes import second_opinion
+from pinik.shapes.second_opinion import ask_yourdfpy
+
+LINKS = '<link name="a"/><link name="b"/>'
+JOINT = (
+    '<joint name="j" type="revolute"><parent link="a"/><child link="b"/><axis xyz="0 0 1"/>'
+    '<limit lower="{lower}" upper="1" effort="1" velocity="1"/></joint>'
+)
+
+
+@pytest.fixture
+def urdf(tmp_path):
+    def write(body: str):
+        file = tmp_path / "robot.urdf"
+        file.write_text(f'<robot name="r">{body}</robot>')
+        return file
+
+    return write
+
+
+def test_a_good_file_loads(run):
+    answer = run("check", "lion", "--json")
+    assert answer.status == 0
+    assert answer.json["loads"]
+    assert answer.json["missing_meshes"] == answer.json["mesh_faults"] == answer.json["faults"] == []
+    assert answer.json["shapes"] > 0
+
+
+def test_a_fault_names_element_and_cause_and_is_status_3(run, urdf):
+    file = urdf(LINKS + JOINT.format(lower=2))
+    answer = run("check", file, "--json")
+    assert answer.status == 3
+    assert answer.json["loads"] is False
+    (fault,) = answer.json["faults"]
+    assert fault["element"] == "joint 'j'"
+    assert str(file) not in fault["message"]
+    person = run("check", file)
+    assert person.status == 3
+    assert f"fault: joint 'j': {fault['message']}" in person.out.splitlines()
+
+
+def test_one_of_a_kind_is_singular(run, urdf):
+    assert run("check", urdf('<link name="a"/>')).out.splitlines()[-1] == "1 link, 0 joints, 0 meshes, 0 shapes"
+
+
+def test_a_file_that_is_a_robot_of_the_catalogue_suggests_it(run):
+    result = run("check", "somewhere/panda.urdf")
+    assert result.status == 3
+    assert "the catalogue has a robot 'panda'" in result.out
+
+
+def test_no_such_file_is_a_fault(run, tmp_path):
+    result = run("check", tmp_path / "none.urdf")
+    assert result.status == 3
+    assert "no such file" in result.out
+
+
+def test_missing_and_unreadable_meshes_are_named(run, urdf, tmp_path):
+    (tmp_path / "broken.stl").write_text("no mesh")
+    shapes = "".join(
+        f'<visual><geometry><mesh filename="{name}"/></geometry></visual>' for name in ("gone.stl", "broken.stl")
+    )
+    file = urdf(f'<link name="a">{shapes}</link>')
+    answer = run("check", file, "--json")
+    assert answer.status == 0
+    assert answer.json["missing_meshes"] == ["gone.stl"]
+    assert len(answer.json["mesh_faults"]) == 1
+    assert (answer.json["meshes"], answer.json["shapes"]) == (2, 0)
+    assert "missing mesh: gone.stl" in run("check", file).out.splitlines()
+
+
+def test_package_dirs_are_searched(run, urdf, tmp_path):
+    mesh = tmp_path / "elsewhere" / "parts" / "gone.obj"
+    mesh.parent.mkdir(parents=True)
+    mesh.write_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n")
+    visual = '<visual><geometry><mesh filename="package://parts/gone.obj"/></geometry></visual>'
+    file = urdf(f'<link name="a">{visual}</link>')
+    assert run("check", file, "--json").json["missing_meshes"] == ["package://parts/gone.obj"]
+    found = run("check", file, "--package-dir", tmp_path / "elsewhere", "--json").json
+    assert found["missing_meshes"] == []
+    assert found["shapes"] == 1
+
+
+def test_what_was_mended_is_a_warning(run, urdf):
+    body = LINKS + JOINT.format(lower=-1).replace('lower="-1" upper="1"', "")
+    answer = run("check", urdf(body), "--json")
+    assert answer.status == 0
+    assert any("j" in words and "limit" in words for words in answer.json["warnings"])
+    assert any(line.startswith("warning: joint 'j'") for line in run("check", urdf(body)).out.splitlines())
+
+
+def test_yourdfpy_gives_a_second_opinion(run):
+    person = run("check", "lion")
+    (line,) = [line for line in person.out.splitlines() if "yourdfpy" in line]
+    assert line.startswith("yourdfpy agrees: 54 links at 3 configurations, at most ")
+    opinion = run("check", "lion", "--json").json["second_opinion"]
+    assert opinion["agrees"]
+    assert (opinion["links"], opinion["disagreeing"], opinion["unread"]) == (54, [], None)
+
+
+def test_what_yourdfpy_cannot_read_is_a_warning_and_no_failure(run, urdf):
+    file = urdf(LINKS + JOINT.format(lower=-1))
+    file.write_text(file.read_text().replace(' name="r"', ""))
+    person = run("check", file)
+    assert (person.status, person.err) == (0, "")
+    assert any(line.startswith("warning: yourdfpy gives no second opinion: ") for line in person.out.splitlines())
+    opinion = run("check", file, "--json").json["second_opinion"]
+    assert opinion["agrees"] is False
+    assert "KeyError" in opinion["unread"]
+
+
+def test_a_disagreement_is_a_warning_and_no_failure(run, urdf, monkeypatch):
+    file = urdf(LINKS + JOINT.format(lower=-1))
+    other = file.with_name("other.urdf")
+    other.write_text(file.read_text().replace("<axis", '<origin xyz="0 0 nan"/><axis'))
+    monkeypatch.setattr(second_opinion, "ask_yourdfpy", lambda robot, path: ask_yourdfpy(robot, other))
+    person = run("check", file)
+    assert person.status == 0
+    assert any(line.startswith("warning: yourdfpy disagrees about 'b': ") for line in person.out.splitlines())
+    opinion = run("check", file, "--json").json["second_opinion"]
+    assert opinion["disagreeing"] == ["b"]
+    assert opinion["position_difference_m"] is None
+
+
+def test_there_is_no_second_opinion_on_what_cannot_be_loaded(run, urdf):
+    file = urdf(LINKS + JOINT.format(lower=2))
+    assert run("check", file, "--json").json["second_opinion"] is None
+    assert "yourdfpy" not in run("check", file).out

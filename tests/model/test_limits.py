@@ -1,0 +1,206 @@
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from by_hand import ZOO, axis, limit, mimic, two_hinges
+from pinik.model.limits import Limits
+from robots import load_quietly
+from urdf_texts import joint, link, robot
+
+TURN = 2 * math.pi
+
+
+def hinge(low: float, high: float) -> Limits:
+    """The limits of one hinge."""
+    text = robot(link("a"), link("b"), joint("j", "a", "b", axis(0, 0, 1), limit=limit(low, high)))
+    return Limits.of(load_quietly(text))
+
+
+def outside(angle: float, low: float, high: float) -> float:
+    """How far an angle lies outside [low, high]."""
+    return max(low - angle, angle - high, 0.0)
+
+
+HINGES_AND_A_SLIDE = robot(
+    *map(link, ("base", "a", "b", "c", "d")),
+    joint("hinge", "base", "a", axis(0, 0, 1), limit=limit(-2, 1.5)),
+    joint("leader", "a", "b", axis(0, 0, 1), limit=limit(-1, 1)),
+    joint("slide", "b", "c", axis(0, 0, 1), kind="prismatic", limit=limit(-0.2, 0.6)),
+    joint("z_follower", "c", "d", axis(0, 0, 1), mimic("leader", 0.5), limit=limit(-1, 1)),
+)
+
+
+class TestWrap:
+    @given(
+        low=st.floats(-8, 8).map(lambda x: round(x, 2)),
+        width=st.floats(0, 8).map(lambda x: round(x, 2)),
+        angle=st.floats(-30, 30),
+    )
+    def test_turns_an_angle_by_whole_turns_inside_or_as_near_as_they_get(self, low, width, angle):
+        limits = hinge(low, low + width)
+        low, high = float(limits.lower[0]), float(limits.upper[0])
+        wrapped = limits.wrap(np.array([angle]))[0]
+        turns = (wrapped - angle) / TURN
+        assert turns == pytest.approx(round(turns), abs=1e-9)
+        nearest = min(outside(angle + k * TURN, low, high) for k in range(-12, 13))
+        assert outside(wrapped, low, high) == pytest.approx(nearest, abs=1e-9)
+
+    @pytest.mark.parametrize(
+        ("low", "high", "angle", "expected"),
+        [
+            (-1.0, 1.0, 0.5, 0.5),
+            (-1.0, 1.0, 0.5 + TURN, 0.5),
+            (-1.0, 1.0, 0.5 - 3 * TURN, 0.5),
+            (3.0, 4.0, 3.5 - TURN, 3.5),
+            (-1.0, 1.0, 1.2, 1.2),
+            (-1.0, 1.0, 1.2 + TURN, 1.2),
+            (-1.0, 1.0, TURN - 1.2, -1.2),
+            (-0.1, 7.0, -0.2, TURN - 0.2),
+            (-1.0, 8.0, 3.0 - TURN, 3.0),
+        ],
+    )
+    def test_of_chosen_angles(self, low, high, angle, expected):
+        assert hinge(low, high).wrap(np.array([angle]))[0] == pytest.approx(expected)
+
+    @given(seed=st.integers(0, 2**32 - 1))
+    def test_leaves_what_is_inside_and_what_does_not_turn_to_the_last_bit(self, seed):
+        loaded = load_quietly(HINGES_AND_A_SLIDE)
+        limits = Limits.of(loaded)
+        rng = np.random.default_rng(seed)
+        q = loaded.random(rng)
+        assert (limits.wrap(q) == q).all()
+        hinge_, slide = loaded.joint("hinge").idx_q, loaded.joint("slide").idx_q
+        q[loaded.joint("leader").idx_q] += TURN  # its follower would turn by half as much: another configuration
+        q[hinge_] += rng.choice([-2, -1, 1, 2]) * TURN
+        q[slide] += rng.choice([-TURN, TURN])
+        kept = q.copy()
+        wrapped = limits.wrap(q)
+        assert (q == kept).all()
+        others = np.delete(np.arange(len(q)), hinge_)
+        assert (wrapped[others] == q[others]).all()
+        assert limits.lower[hinge_] <= wrapped[hinge_] <= limits.upper[hinge_]
+
+    def test_switched_off_leaves_everything(self):
+        loaded = load_quietly(two_hinges(1, 1))
+        q = np.array([1.0, 0.0, 100.0])
+        assert (Limits.of(loaded, False).wrap(q) == q).all()
+
+
+class TestBox:
+    def test_holds_one_axis_joints_and_no_circles(self):
+        loaded = load_quietly(ZOO, root="free_flyer")
+        limits = Limits.of(loaded)
+        bounded = {joint_.name for joint_ in loaded.joints if joint_.nq and limits.entry[joint_.idx_v] >= 0}
+        assert bounded == {"l_hinge", "m_slide"}
+        for name in bounded:
+            assert limits.entry[loaded.joint(name).idx_v] == loaded.joint(name).idx_q
+        assert np.isfinite(limits.lower).sum() == np.isfinite(limits.upper).sum() == 2
+        assert not limits.turning.any()  # its hinge leads others
+        plain = load_quietly(HINGES_AND_A_SLIDE)
+        assert np.flatnonzero(Limits.of(plain).turning).tolist() == [plain.joint("hinge").idx_q]
+
+    def test_loosened_holds_only_joints_of_a_single_value(self):
+        loaded = load_quietly(
+            robot(
+                *map(link, ("base", "a", "b")),
+                joint("dead", "base", "a", axis(0, 0, 1), limit=limit(0.0, 0.0)),
+                joint("live", "a", "b", axis(0, 0, 1), limit=limit(-1.0, 1.0)),
+            )
+        )
+        loose = Limits.of(loaded).loosened()
+        assert loose.lower.tolist() == [0.0, -np.inf]
+        assert loose.upper.tolist() == [0.0, np.inf]
+        assert not Limits.of(load_quietly(HINGES_AND_A_SLIDE)).loosened().enabled
+
+    def test_clips_entry_by_entry_into_itself(self, panda):
+        limits = Limits.of(panda)
+        q = np.linspace(-9, 9, panda.model.nq)
+        inside = limits.clip(q)
+        assert (inside >= panda.lower).all()
+        assert (inside <= panda.upper).all()
+        within = (q >= panda.lower) & (q <= panda.upper)
+        assert (inside[within] == q[within]).all()
+        assert ((inside == panda.lower) | (inside == panda.upper))[~within].all()
+
+    def test_contains_what_lies_inside_with_the_ends(self, panda):
+        limits = Limits.of(panda)
+        for q in (panda.lower, panda.upper, 0.5 * (panda.lower + panda.upper)):
+            assert limits.contains(q)
+        for i in range(panda.model.nq):
+            q = panda.upper.copy()
+            q[i] = np.nextafter(q[i], math.inf)
+            assert not limits.contains(q)
+
+    def test_switched_off_holds_nothing(self, panda):
+        limits = Limits.of(panda, False)
+        q = np.full(panda.model.nq, 1e6)
+        assert limits.contains(q)
+        assert (limits.clip(q) == q).all()
+        assert limits.active(q) == {}
+        assert not limits.blocked(q, q + 1, limits.clip(q + 1)).any()
+
+    def test_of_a_leader_is_cut_by_its_follower(self):
+        text = robot(
+            *(link(name) for name in "abc"),
+            joint("lead", "a", "b", limit=limit(-2, 2)),
+            joint("tail", "b", "c", mimic("lead", -2.0), limit=limit(-1, 3)),
+        )
+        limits = Limits.of(load_quietly(text))
+        assert (limits.lower[0], limits.upper[0]) == (-1.5, 0.5)
+
+
+class TestBlocked:
+    def test_are_joints_at_a_limit_that_would_leave_it(self):
+        loaded = load_quietly(ZOO, root="planar")
+        limits = Limits.of(loaded)
+        slide = loaded.joint("m_slide")
+        for value, change, expected in (
+            (0.6, 0.1, True), (0.6, -0.1, False), (0.5, 0.3, False), (-0.2, -0.1, True), (-0.2, 0.1, False),
+            (0.6, 0.0, False),
+        ):  # fmt: skip
+            q = loaded.random(1)
+            q[slide.idx_q] = value
+            wanted = q.copy()
+            wanted[slide.idx_q] += change
+            blocked = limits.blocked(q, wanted, limits.clip(wanted))
+            assert blocked[slide.idx_v] == expected
+            assert blocked.sum() == expected
+
+    def test_are_never_coordinates_without_limits(self):
+        loaded = load_quietly("lion", root="free_flyer")  # whose last entry of q is a bounded one
+        limits = Limits.of(loaded)
+        q = loaded.neutral()
+        q[7:] = loaded.upper
+        wanted = q.copy()
+        wanted[7:] += 1.0
+        blocked = limits.blocked(q, wanted, limits.clip(wanted))
+        assert not blocked[:6].any()
+        assert blocked[6:].all()
+
+    def test_are_one_each_for_the_tangent_coordinates(self, lion):
+        limits = Limits.of(lion)
+        wanted = lion.upper_q + 1
+        assert limits.blocked(lion.upper_q, wanted, limits.clip(wanted)).tolist() == [True] * lion.model.nv
+
+
+class TestActive:
+    def test_names_the_joints_at_a_limit_and_the_side(self, panda):
+        limits = Limits.of(panda)
+        q = 0.5 * (panda.lower + panda.upper)
+        assert limits.active(q) == {}
+        q[0], q[3], q[7] = panda.lower[0], panda.upper[3], panda.upper[7] - 1e-7
+        q[5] = panda.lower[5] + 1e-5
+        assert limits.active(q) == {"panda_joint1": "lower", "panda_joint4": "upper", "panda_finger_joint1": "upper"}
+
+    def test_calls_a_joint_without_room_at_both(self):
+        assert hinge(0.3, 0.3).active(np.array([0.3])) == {"j": "both"}
+
+    def test_never_names_continuous_and_free_joints(self):
+        loaded = load_quietly(ZOO, root="free_flyer")
+        q = loaded.configuration({"l_hinge": 1.5, "m_slide": -0.2})
+        assert Limits.of(loaded).active(q) == {"l_hinge": "upper", "m_slide": "lower"}

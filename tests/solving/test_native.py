@@ -1,0 +1,264 @@
+"""The compiled engine: its stub, when it is not there, threads, time, and answers checked by plain Pinocchio."""
+
+from __future__ import annotations
+
+import ast
+import importlib.util
+import os
+import subprocess
+import sys
+import threading
+import time
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+import pinocchio
+import pytest
+
+import pinik
+from engines import REQUIRED, WHY_NOT, needs_native
+from pinik import Status, Target
+from pinik.solving import native
+
+METHODS = ["ccd", "jt", "pinv", "dls"]
+
+
+@pytest.fixture
+def reload_engine():
+    """`native` looks for the module anew in this test and after it."""
+    native._load.cache_clear()
+    yield
+    native._load.cache_clear()
+
+
+@pytest.fixture
+def no_module(monkeypatch, reload_engine):
+    monkeypatch.setitem(sys.modules, "pinik._native", None)
+    monkeypatch.delattr(pinik, "_native", raising=False)
+
+
+@pytest.fixture
+def another_pinocchio(monkeypatch, reload_engine):
+    monkeypatch.setattr(pinocchio, "__version__", "99.1.0")
+
+
+def test_the_engine_is_there_where_it_is_required():
+    """With PINIK_REQUIRE_NATIVE set nothing is skipped for want of an engine."""
+    if REQUIRED:
+        assert WHY_NOT is None
+    assert needs_native.args == (WHY_NOT is not None and not REQUIRED,)
+
+
+@needs_native
+def test_the_stub_is_what_nanobind_writes_for_the_module():
+    from nanobind.stubgen import StubGen
+
+    from pinik import _native
+
+    generator = StubGen(_native)
+    generator.put(_native)
+    committed = importlib.util.find_spec("pinik").origin
+    stub = Path(committed).with_name("_native.pyi")
+    assert shape_of(stub.read_text()) == shape_of(generator.get())
+
+
+def shape_of(stub: str) -> str:
+    """A stub without docstrings and formatting."""
+    tree = ast.parse(stub)
+    for node in ast.walk(tree):
+        body = getattr(node, "body", None)
+        if isinstance(body, list) and body and isinstance(body[0], ast.Expr):
+            value = body[0].value
+            if isinstance(value, ast.Constant) and isinstance(value.value, str):
+                body[0] = ast.Expr(ast.Constant(...))
+                if len(body) > 1:
+                    del body[0]
+    return ast.dump(tree, indent=1)
+
+
+def test_without_the_module_python_computes_and_says_why(no_module, panda):
+    assert "not built" in native.why_not()
+    s = panda.solve("panda_hand_tcp", [0.4, 0.1, 0.5], seed=101)
+    assert s.success
+    assert s.engine == "python"
+    with pytest.raises(pinik.EngineError, match=r"cannot be used: it was not built.*engine='auto' or 'python'"):
+        panda.solve("panda_hand_tcp", [0.4, 0.1, 0.5], engine="native", seed=102)
+
+
+@needs_native
+def test_an_engine_for_another_pinocchio_refuses(another_pinocchio, panda):
+    built = pinocchio_of_the_module()
+    assert native.why_not() == (f"it was built against Pinocchio {built}, and 99.1.0 is installed; install pinik again")
+    assert panda.solve("panda_hand_tcp", [0.4, 0.1, 0.5], seed=103).engine == "python"
+    with pytest.raises(pinik.EngineError, match=r"99\.1\.0 is installed"):
+        panda.solve("panda_hand_tcp", [0.4, 0.1, 0.5], engine="native", seed=104)
+
+
+def pinocchio_of_the_module() -> str:
+    from pinik import _native
+
+    return _native.pinocchio_version
+
+
+@dataclass(frozen=True, kw_only=True)
+class Marquardt(pinik.JacobianSolver):
+    """A user's own, as CONTRIBUTING.md has it."""
+
+    name = "marquardt"
+    damping: float = pinik.parameter(0.01, "μ", low=1e-9)
+
+    def direction(self, J, e):
+        A = J.T @ J
+        return np.linalg.solve(A + self.damping * np.diag(A.diagonal() + 1e-9), J.T @ e)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Halved(pinik.DampedLeastSquares):
+    """Derived from one that is compiled; its own step must not be passed over."""
+
+    name = "halved"
+
+    def direction(self, J, e, residual=None):
+        return 0.5 * super().direction(J, e, residual)
+
+
+@pytest.mark.parametrize("method", [Marquardt, Marquardt(damping=0.1), Halved])
+def test_a_users_own_method_runs_in_python(method, panda):
+    s = panda.solve("panda_hand_tcp", [0.4, 0.1, 0.5], method=method)
+    assert s.success
+    assert s.engine == "python"
+    with pytest.raises(pinik.EngineError, match=r"the method '(marquardt|halved)' is written in Python|not built"):
+        panda.solve("panda_hand_tcp", [0.4, 0.1, 0.5], method=method, engine="native")
+
+
+@needs_native
+def test_auto_takes_the_compiled_engine_for_the_four_methods(panda):
+    for method in METHODS:
+        assert panda.solve("panda_hand_tcp", [0.4, 0.1, 0.5], method=method).engine == "native"
+        assert panda.solve("panda_hand_tcp", [0.4, 0.1, 0.5], method=method, engine="python").engine == "python"
+
+
+@needs_native
+@pytest.mark.parametrize("method", METHODS)
+def test_a_success_is_one_by_plain_pinocchio(method, panda, arm, kinova, tiago):
+    """Of 300 random questions: each answer's errors, verdict and limits, judged by Pinocchio alone."""
+    rng = np.random.default_rng(5)
+    solved = 0
+    hands = ("panda_hand_tcp", "tip", "j2s6s200_end_effector", "arm_tool_link")
+    for robot, frame in zip((panda, arm, kinova, tiago), hands, strict=True):
+        model = robot.model
+        data, number = model.createData(), model.getFrameId(frame)
+        for _ in range(19):
+            wanted = placement(model, data, number, robot.random(rng))
+            wanted.translation = wanted.translation + rng.choice([0.0, 0.0, 0.5]) * rng.normal(size=3)
+            s = robot.solve(frame, placement=wanted, method=method, engine="native", restarts=8, q0=robot.random(rng))
+            got = placement(model, data, number, s.q)
+            off = np.linalg.norm(wanted.translation - got.translation)
+            turned = np.linalg.norm(pinocchio.log3(wanted.rotation @ got.rotation.T))
+            assert s.success == (off <= 1e-4 and turned <= 1e-3)
+            assert s.position_error == pytest.approx(off, abs=1e-12)
+            assert s.orientation_error == pytest.approx(turned, abs=1e-9)
+            for joint in robot.joints:
+                if joint.has_one_axis and joint.nq == 1:
+                    assert joint.lower <= s.q[joint.idx_q] <= joint.upper
+            solved += s.success
+    assert solved > 30
+
+
+def placement(model, data, number, q):
+    pinocchio.forwardKinematics(model, data, q)
+    return pinocchio.updateFramePlacement(model, data, number).copy()
+
+
+@needs_native
+def test_threads_get_the_answers_that_they_get_alone(panda):
+    rng = np.random.default_rng(8)
+    asked = [(panda.placement("panda_hand_tcp", panda.random(rng)), panda.random(rng)) for _ in range(60)]
+
+    def answers():
+        return [panda.solve("panda_hand_tcp", placement=M, q0=q0, engine="native").q for M, q0 in asked]
+
+    alone, together = answers(), {}
+    shared = pinik.prepare(panda, Target("panda_hand_tcp", placement=np.eye(4)), engine="native").native
+    goals = [native.goals_of((Target("panda_hand_tcp", placement=M),)) for M, _ in asked]
+
+    def work(k):
+        mine = answers()
+        directly = [shared.solve(q0, goal, False).q for goal, (_, q0) in zip(goals, asked, strict=True)]
+        together[k] = mine, directly
+
+    threads = [threading.Thread(target=work, args=(k,)) for k in range(8)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    assert sorted(together) == list(range(8))
+    for mine, directly in together.values():
+        np.testing.assert_array_equal(mine, alone)
+        np.testing.assert_array_equal(directly, alone)
+
+
+@needs_native
+@pytest.mark.parametrize("method", METHODS)
+def test_the_interpreter_runs_on_during_a_long_solve(method, panda):
+    """A thread that counts gets its turns; with the interpreter's lock held it would get none."""
+    opposed = [Target("panda_hand_tcp", [0.4, y, 0.5]) for y in (-0.2, 0.2)]
+    counted, running = 0, threading.Event()
+    running.set()
+
+    def count():
+        nonlocal counted
+        while running.is_set():
+            counted += 1
+            time.sleep(1e-3)
+
+    thread = threading.Thread(target=count)
+    thread.start()
+    before = counted
+    try:
+        s = pinik.solve(panda, opposed, method, engine="native", restarts=10**6, time_limit=0.5)
+        during = counted - before
+    finally:
+        running.clear()
+        thread.join()
+    assert s.status is Status.TIME_LIMIT
+    assert during > 20
+
+
+@needs_native
+@pytest.mark.parametrize("method", METHODS)
+def test_the_time_limit_ends_a_hopeless_solve(method, panda, lion):
+    for robot, frame in ((panda, "panda_hand_tcp"), (lion, "nose")):
+        opposed = [Target(frame, [0.4, y, 0.5]) for y in (-0.2, 0.2)]
+        took = []
+        for _ in range(3):  # a busy machine may hold one up
+            began = time.perf_counter()
+            s = pinik.solve(robot, opposed, method, engine="native", restarts=10**9, time_limit=0.1)
+            took.append(time.perf_counter() - began)
+            assert s.status is Status.TIME_LIMIT
+            assert s.message.startswith("out of time")
+            assert s.time >= 0.1
+        assert min(took) < 0.2
+
+
+def stacks_can_grow() -> bool:
+    return subprocess.run(["sh", "-c", "ulimit -s 524288"], capture_output=True, check=False).returncode == 0
+
+
+@needs_native
+def test_more_threads_than_the_system_gives_do_the_work_all_the_same():
+    code = (
+        "import resource, numpy as np, pinik\n"
+        "panda = pinik.load('panda')\n"
+        "places = np.tile([0.4, 0.1, 0.5], (3000, 1))\n"
+        "pinik.solve_many(panda, 'panda_hand_tcp', places[:2])\n"
+        "used = int(open('/proc/self/statm').read().split()[0]) * resource.getpagesize()\n"
+        "resource.setrlimit(resource.RLIMIT_AS, (used + 5 * 2**28,) * 2)\n"
+        "print(pinik.solve_many(panda, 'panda_hand_tcp', places, threads=1000).success.all())"
+    )
+    if not os.path.exists("/proc/self/statm") or not stacks_can_grow():
+        pytest.skip("needs Linux, where a process can limit its memory and enlarge its stacks")
+    large_stacks = ["sh", "-c", 'ulimit -s 524288 && exec "$0" -W ignore -c "$1"', sys.executable, code]
+    done = subprocess.run(large_stacks, capture_output=True, text=True, check=False)
+    assert done.stdout.split() == ["True"], done.stderr
