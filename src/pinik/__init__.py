@@ -10,20 +10,21 @@ from .description.catalog import catalog
 from .errors import EngineError, InputError, PinikError, RobotLoadError, SolveError, UnknownNameError, UrdfWarning
 from .loading import load
 from .model.joint import Joint
-from .model.robot_model import Robot
 from .picture.draw import Picture, draw
 from .problem.kinematics import Kinematics, Linearization
 from .problem.targets import Target, TargetError, Tolerance
-from .solvers.base import JacobianSolver, Patience, Solver, SweepingSolver, parameter
+from .robot import Robot
+from .solvers.base import JacobianSolver, Patience, Solver, SweepingSolver
 from .solvers.ccd import CCD
 from .solvers.damped_least_squares import DampedLeastSquares
+from .solvers.parameter import parameter
 from .solvers.pseudo_inverse import PseudoInverse
 from .solvers.registry import CLOSED_FORMS, SOLVERS
 from .solvers.transpose import JacobianTranspose
 from .solvers.two_bone import TwoBoneSolver
-from .solving.front import iterate, solve
+from .solving.front import iterate, prepare, solve
 from .solving.many import Solutions, solve_many
-from .solving.prepared import Prepared, prepare
+from .solving.prepared import Prepared
 from .solving.solution import Solution
 from .solving.state import State, Status
 from .version import __version__ as __version__

@@ -11,7 +11,7 @@ from .description import catalog as robot_catalog
 from .description import packages
 from .description import reader as urdf
 from .errors import InputError, RobotLoadError, UrdfWarning
-from .model.robot_model import Robot
+from .robot import Robot
 
 __all__ = ["load", "load_in_silence", "locate"]
 

@@ -15,7 +15,7 @@ from ..checks import as_point, as_points
 from ..errors import InputError
 from ..model.joint import Joint
 from ..model.limits import Limits
-from ..model.robot_model import Robot
+from ..model.robot_model import RobotModel
 from ..problem.targets import Target
 from .planar_arm import ROUNDING, PlanarArm, turn
 from .two_bone import ELBOWS
@@ -94,7 +94,7 @@ class TwoBone:
         relative_to: The frame in whose axes positions, `origin` and `axes` are; None for the world.
     """
 
-    robot: Robot
+    robot: RobotModel
     frame: str
     joints: tuple[Joint, Joint]
     l1: float
@@ -110,7 +110,7 @@ class TwoBone:
     @classmethod
     def of(
         cls,
-        robot: Robot,
+        robot: RobotModel,
         frame: str,
         *,
         tool: pinocchio.SE3 | ArrayLike | None = None,
@@ -128,7 +128,7 @@ class TwoBone:
             UnknownNameError: No such frame.
             InputError: It is not moved by two parallel hinges; the message says which joint is what.
         """
-        if not isinstance(robot, Robot):
+        if not isinstance(robot, RobotModel):
             raise InputError(f"robot is what pinik.load returns; got {robot!r}")
         asked = Target(frame, (0.0, 0.0, 0.0), tool=tool, relative_to=relative_to)
         first, second = joints = _two_hinges(robot, frame, relative_to)
@@ -283,7 +283,7 @@ class TwoBone:
         return float(np.linalg.norm(self.position(q) - position))
 
 
-def _two_hinges(robot: Robot, frame: str, relative_to: str | None) -> tuple[Joint, Joint]:
+def _two_hinges(robot: RobotModel, frame: str, relative_to: str | None) -> tuple[Joint, Joint]:
     """The two hinges, base first, that move a frame.
 
     Raises:

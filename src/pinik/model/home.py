@@ -6,8 +6,9 @@ import numpy as np
 import pinocchio
 from numpy.typing import NDArray
 
+from .chains import chain_of
 from .limits import Limits
-from .robot_model import Robot
+from .robot_model import RobotModel
 
 __all__ = ["home_configuration", "lowest_point", "robot_size"]
 
@@ -18,7 +19,7 @@ _HOME_POSES = ("relaxed", "home", "standing", "default", "half_sitting")
 _BEND = 0.4  # [rad] what hinges of a robot without poses are bent by, so that it does not stand stretched out
 
 
-def home_configuration(robot: Robot) -> Array:
+def home_configuration(robot: RobotModel) -> Array:
     """Where a robot stands when nothing was said (nq,): in its resting pose, else slightly bent, inside the limits."""
     poses = robot.poses
     limits = Limits.of(robot)
@@ -34,26 +35,19 @@ def home_configuration(robot: Robot) -> Array:
     return limits.clip(limits.wrap(q))
 
 
-def lowest_point(robot: Robot, q: Array) -> float:
+def lowest_point(robot: RobotModel, q: Array) -> float:
     """The height [m] of the lowest frame at `q` (nq,): about where a robot's ground is."""
     data = robot.model.createData()
     pinocchio.framesForwardKinematics(robot.model, data, q)
     return float(min(placement.translation[2] for placement in data.oMf))
 
 
-def robot_size(robot: Robot) -> float:
-    """The longest way [m] from the root's origin to a link's along the joints between them; 1 where that is nothing.
-
-    Sliding joints are drawn out.
-    """
+def robot_size(robot: RobotModel) -> float:
+    """The length of a robot's longest chain [m]; where nothing moves, how far its links lie apart; 1 if that is 0."""
     model = robot.model
-    by_id = {joint.id: joint for joint in robot.joints}
-    away = [0.0]  # [m] from the root's origin to each joint's
-    for joint_id in range(1, model.njoints):
-        joint = by_id[joint_id]
-        ends = joint.range_to_draw_from(joint.lower, joint.upper) if joint.kind == "prismatic" else (0.0,)
-        step = float(np.linalg.norm(model.jointPlacements[joint_id].translation)) + max(map(abs, ends))
-        away.append(away[model.parents[joint_id]] + step)
-    links = [model.frames[robot.frame_id(name)] for name in robot.description.links]
-    size = max(away[link.parentJoint] + float(np.linalg.norm(link.placement.translation)) for link in links)
-    return size or 1.0
+    links = [robot.frame_id(name) for name in robot.description.links]
+    longest = max(chain_of(model, robot.joints, link).length() for link in links)
+    if longest == 0.0:
+        places = np.array([model.frames[link].placement.translation for link in links])
+        longest = float(np.ptp(places, axis=0).max())
+    return longest or 1.0

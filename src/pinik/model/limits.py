@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from .robot_model import Robot
+from .robot_model import RobotModel
 
 __all__ = ["Limits"]
 
@@ -30,7 +30,7 @@ class Limits:
         turning: (nq,) which entries are hinge angles, equal when 2π apart; not so for what others mimic.
     """
 
-    robot: Robot
+    robot: RobotModel
     enabled: bool
     lower: Array
     upper: Array
@@ -38,7 +38,7 @@ class Limits:
     turning: NDArray[np.bool_]
 
     @classmethod
-    def of(cls, robot: Robot, enabled: bool = True) -> Limits:
+    def of(cls, robot: RobotModel, enabled: bool = True) -> Limits:
         """The limits of a robot, all infinite unless `enabled`."""
         entry = np.full(robot.model.nv, -1, dtype=np.intp)
         turning = np.zeros(robot.model.nq, dtype=bool)

@@ -5,10 +5,10 @@ from __future__ import annotations
 import math
 import os
 import threading
-from collections.abc import Callable, Mapping, Sequence
-from functools import cache, cached_property, partial
+from collections.abc import Mapping, Sequence
+from functools import cached_property, partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any, Self
 
 import numpy as np
 import pinocchio
@@ -21,12 +21,7 @@ from .build import build_model
 from .joint import Joint, joints_of, limits_cut_by_followers
 from .poses import read_poses
 
-if TYPE_CHECKING:
-    from ..problem.targets import Target
-    from ..solvers.base import Solver
-    from ..solving.solution import Solution
-
-__all__ = ["Robot"]
+__all__ = ["RobotModel"]
 
 Array = NDArray[np.float64]
 
@@ -37,7 +32,7 @@ _AXES = {
 }
 
 
-class Robot:
+class RobotModel:
     """A Pinocchio model that speaks in names.
 
     Made by `pinik.load`. Configurations `q` are Pinocchio's own vectors; people and files use *angles*, one scalar
@@ -90,19 +85,18 @@ class Robot:
             limits.setflags(write=False)
 
     def __repr__(self) -> str:
-        return (
-            f"<Robot {self.name!r}: {len(self.joint_names)} joints, {len(self.frame_names)} frames, {self.root} root>"
-        )
+        counts = f"{len(self.joint_names)} joints, {len(self.frame_names)} frames"
+        return f"<{type(self).__name__} {self.name!r}: {counts}, {self.root} root>"
 
     def __reduce__(self) -> tuple[Any, ...]:
         # Built anew: a serialized Pinocchio 4.1.0 model with mimic joints crashes when it is used.
-        build = partial(Robot, name=self.name, root=self.root, package_dirs=self.package_dirs)
+        build = partial(type(self), name=self.name, root=self.root, package_dirs=self.package_dirs)
         return partial(build, mimic=self._mimic, srdf=self._srdf), (self.description,), {"warnings": self.warnings}
 
-    def with_root(self, root: str) -> Robot:
+    def with_root(self, root: str) -> Self:
         """The same robot, hung in the world otherwise: "fixed", "free_flyer" or "planar"."""
         settings: dict[str, Any] = {"package_dirs": self.package_dirs, "mimic": self._mimic, "srdf": self._srdf}
-        return Robot(self.description, name=self.name, root=root, **settings)
+        return type(self)(self.description, name=self.name, root=root, **settings)
 
     @property
     def data(self) -> Any:
@@ -112,13 +106,9 @@ class Robot:
         return self._local.data
 
     @property
-    def kept(self) -> dict[Any, Any]:
-        """This thread's own store for what others compiled for this robot."""
-        try:
-            kept: dict[Any, Any] = self._local.kept
-        except AttributeError:
-            kept = self._local.kept = {}
-        return kept
+    def local(self) -> threading.local:
+        """This thread's own storage, for this class and for what others keep with a robot."""
+        return self._local
 
     @property
     def poses(self) -> dict[str, Array]:
@@ -353,25 +343,6 @@ class Robot:
             return np.array(rMf.toActionMatrix() @ J)
         return np.vstack([rMf.rotation @ J[:3], rMf.rotation @ J[3:]])
 
-    def solve(
-        self,
-        targets: str | Target | Sequence[Target],
-        position: ArrayLike | None = None,
-        *,
-        method: str | type[Solver] | Solver = "dls",
-        **options: Any,
-    ) -> Solution:
-        """Joint values that put frames where the targets want them; see `pinik.solve` for every option.
-
-        Args:
-            targets: A frame's name, followed by `Target`'s keywords (position, rotation, axis, …); or one Target,
-                or several.
-            position: Target position (3,) [m] when `targets` is a frame's name.
-            method: A solver's name, class or instance.
-            **options: `Target`'s keywords, `pinik.solve`'s options and the solver's parameters.
-        """
-        return _solve_from_keywords()(self, targets, position, method, options)
-
     def _joint_limits(self) -> tuple[Array, Array]:
         cut = [limits_cut_by_followers(joint, self.joints) for joint in self._settable]
         for joint, (lower, upper) in zip(self._settable, cut, strict=True):
@@ -392,14 +363,6 @@ class Robot:
             if joint.nq == 1:
                 lower[joint.idx_q], upper[joint.idx_q] = low, high
         return lower, upper
-
-
-@cache
-def _solve_from_keywords() -> Callable[..., Solution]:
-    """The loop's front, which stands below in the order of modules; looked up once, as that takes a microsecond."""
-    from ..solving.front import solve_from_keywords
-
-    return solve_from_keywords
 
 
 def _frames_by_name(model: pinocchio.Model) -> dict[str, int]:

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import re
-from typing import NamedTuple
 
 import numpy as np
 
+from ..model.chains import chain_of
 from ..model.home import home_configuration
-from ..model.robot_model import Robot
+from ..robot import Robot
 
 __all__ = ["principal_frames"]
 
@@ -35,35 +35,16 @@ def principal_frames(robot: Robot) -> list[str]:
     ends = [link for link in ends if not re.search(_NO_ENDS, link.lower())] or ends
     q = home_configuration(robot)
     places = {link: robot.placement(link, q).translation for link in ends}
-    chains = {link: _chain(robot, link) for link in ends}
+    chains = {link: chain_of(robot.model, robot.joints, robot.frame_id(link)) for link in ends}
     moved = [link for link in ends if chains[link].joints]
-    moved.sort(key=lambda link: (_rank(link), -chains[link].joints, -chains[link].length))
-    apart = _APART * max((chains[link].length for link in moved), default=0.0)
+    lengths = {link: chains[link].length() for link in moved}
+    moved.sort(key=lambda link: (_rank(link), -len(chains[link].joints), -lengths[link]))
+    apart = _APART * max(lengths.values(), default=0.0)
     chosen: list[str] = []
     for link in moved:
         if all(np.linalg.norm(places[link] - places[other]) >= apart for other in chosen):
             chosen.append(link)
     return chosen[:_MOST] or list(robot.frame_names[-1:])
-
-
-class _Chain(NamedTuple):
-    """What moves a frame.
-
-    Attributes:
-        joints: How many.
-        length: Sum of the distances between their origins, the frame's included [m].
-    """
-
-    joints: int
-    length: float
-
-
-def _chain(robot: Robot, frame: str) -> _Chain:
-    model = robot.model
-    at = model.frames[robot.frame_id(frame)]
-    joints = [joint_id for joint_id in model.supports[at.parentJoint] if joint_id > 0]
-    offsets = [at.placement.translation, *(model.jointPlacements[joint_id].translation for joint_id in joints[1:])]
-    return _Chain(len(joints), sum(float(np.linalg.norm(offset)) for offset in offsets))
 
 
 def _rank(name: str) -> int:

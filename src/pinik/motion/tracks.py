@@ -8,9 +8,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..model.home import home_configuration, lowest_point
-from ..model.robot_model import Robot
 from ..problem.kinematics import Kinematics
 from ..problem.targets import Target
+from ..robot import Robot
 from ..solving.front import iterate
 from ..solving.state import Status
 from .curves import CURVES, Curve, polyline
@@ -60,10 +60,11 @@ def curve_axes(robot: Robot, frame: str, q: Array, center: Array, curve: Curve) 
     own axes. The size starts at a quarter of the chain's length and shrinks while the chain cannot follow.
     """
     kinematics = Kinematics(robot, Target(frame, center))
-    axes = np.roll(np.eye(3), -1, axis=0) * (0.25 * kinematics.size_of_chain)
+    size = 0.25 * kinematics.problem.size_of_chain
+    axes = np.roll(np.eye(3), -1, axis=0) * size
     plane = _plane(kinematics, robot, q)
     if plane is not None:
-        axes = plane * (0.25 * kinematics.size_of_chain)
+        axes = plane * size
     for _ in range(4):
         if _follows(robot, frame, q, polyline(curve, center, axes, count=8)):
             break

@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 from ..checks import as_array, as_finite_number, as_point, as_points, as_vector
 from ..errors import InputError, UnknownNameError
 from ..model.home import home_configuration
-from ..model.robot_model import Robot
+from ..robot import Robot
 
 __all__ = [
     "SMALLEST",

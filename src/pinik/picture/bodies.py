@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from ..errors import UrdfWarning
 from ..model.home import robot_size
-from ..model.robot_model import Robot
+from ..robot import Robot
 from .solids import Solid, ball, rod
 
 __all__ = ["Body", "bodies_of"]

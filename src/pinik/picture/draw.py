@@ -15,7 +15,7 @@ from numpy.typing import ArrayLike, NDArray
 from ..checks import as_length
 from ..errors import InputError
 from ..model.home import robot_size
-from ..model.robot_model import Robot
+from ..robot import Robot
 from .arguments import (
     SMALLEST,
     as_any_points,

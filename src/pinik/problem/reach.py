@@ -7,13 +7,14 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
-import pinocchio
 from numpy.typing import NDArray
 
+from ..model.chains import Chain
 from ..model.joint import Joint
 from ..model.limits import Limits
-from .kinematics import Kinematics
-from .term import TargetTerm
+from .problem import Problem
+from .targets import Target
+from .term import Term
 
 __all__ = ["Bounds", "Shortfall", "bounds_of", "reach_bounds", "shortfall"]
 
@@ -56,31 +57,27 @@ class _Span(NamedTuple):
     distance: _Range
 
 
-def shortfall(
-    kinematics: Kinematics, limits: Limits, slack: float = 0.0, bounds: Sequence[Bounds | None] | None = None
-) -> Shortfall | None:
+def shortfall(targets: Sequence[Target], bounds: Sequence[Bounds | None], slack: float = 0.0) -> Shortfall | None:
     """The target that lies furthest outside its chain's reach, if one does by more than `slack` [m].
 
-    The bounds hold for any values of the joints. A chain is cut into spans: from one joint's origin to the next, or
-    to the one after it as the joint between them turns through its limits. The longest these get add up to the
-    reach at most; what is left of the shortest that one of them gets, when all others fold back, is the least. Who
-    asks often hands over what `bounds_of` gave.
+    Args:
+        targets: What is asked for.
+        bounds: Each target's, from `bounds_of`.
+        slack: What still counts as reached [m].
     """
     worst = None
-    for index, (term, own) in enumerate(
-        zip(kinematics.terms, bounds_of(kinematics, limits) if bounds is None else bounds, strict=True)
-    ):
-        found = _term_shortfall(index, term, own)
+    for index, (target, own) in enumerate(zip(targets, bounds, strict=True)):
+        found = _shortfall(index, target, own)
         if found is not None and (worst is None or found.distance > worst.distance):
             worst = found
     return None if worst is None or worst.distance <= slack else worst
 
 
-def _term_shortfall(index: int, term: TargetTerm, bounds: Bounds | None) -> Shortfall | None:
-    position = term.target.position
-    if position is None or bounds is None:
+def _shortfall(index: int, target: Target, bounds: Bounds | None) -> Shortfall | None:
+    if target.position is None or bounds is None:
         return None
     base, reach, hole = bounds
+    position = target.position
     distance = float(np.linalg.norm(position - base))
     slack = _ROUNDING * (reach + float(np.linalg.norm(position)) + float(np.linalg.norm(base)))
     if distance > reach + slack:
@@ -104,22 +101,27 @@ class Bounds(NamedTuple):
     hole: float
 
 
-def bounds_of(kinematics: Kinematics, limits: Limits) -> list[Bounds | None]:
-    """The bounds of every target's chain, wherever the targets are."""
-    return [reach_bounds(term, kinematics.model, limits) for term in kinematics.terms]
+def bounds_of(problem: Problem, limits: Limits) -> list[Bounds | None]:
+    """The bounds of every target's chain; they hold for any values of the joints, wherever the targets are.
+
+    A chain is cut into spans: from one joint's origin to the next, or to the one after it while the joint between them
+    turns through its limits. The largest lengths of the spans add up to a bound on the reach. The smallest length of
+    one span, less the largest of all others folded back, is a bound on how near the frame can come.
+    """
+    return [reach_bounds(term, limits) for term in problem.terms]
 
 
-def reach_bounds(term: TargetTerm, model: pinocchio.Model, limits: Limits) -> Bounds | None:
+def reach_bounds(term: Term, limits: Limits) -> Bounds | None:
     """The bounds of a target's chain; None where it has none."""
-    # A reference that moves makes the chain go down one branch and up another; that one gets no bound.
-    if not term.movers or any(j.id in term.reference_support for j in term.movers):
+    chain = term.chain
+    if not chain.joints or not chain.is_one_branch:
         return None
-    if any(not joint.has_one_axis for joint in term.movers):
+    if any(not joint.has_one_axis for joint in chain.joints):
         return None
-    base = model.jointPlacements[term.movers[0].id].translation
-    if term.reference_placement is not None:
-        base = term.reference_placement.actInv(base)
-    reach, hole = _bounds(_spans(term, model, limits), len(term.movers) + 1)
+    base = chain.model.jointPlacements[chain.joints[0].id].translation
+    if chain.reference_placement is not None:
+        base = chain.reference_placement.actInv(base)
+    reach, hole = _bounds(_spans(chain, limits), len(chain.joints) + 1)
     return Bounds(np.array(base), reach, hole) if math.isfinite(reach) else None
 
 
@@ -134,13 +136,13 @@ def _bounds(spans: list[_Span], end: int) -> tuple[float, float]:
     return before[end], max(span.distance.low - before[span.start] - after[span.end] for span in spans)
 
 
-def _spans(term: TargetTerm, model: pinocchio.Model, limits: Limits) -> list[_Span]:
-    """The spans of a term's chain, in the order of their ends."""
-    joints = term.movers
-    placements = [model.jointPlacements[joint.id] for joint in joints]
+def _spans(chain: Chain, limits: Limits) -> list[_Span]:
+    """The spans of a chain, in the order of their ends."""
+    joints = chain.joints
+    placements = [chain.model.jointPlacements[joint.id] for joint in joints]
     translations: list[Vector] = [placement.translation.tolist() for placement in placements]
     translations[0] = [0.0, 0.0, 0.0]  # the chain begins where its first joint sits
-    translations.append(term.frame_placement.translation.tolist())
+    translations.append(chain.frame_placement.translation.tolist())
     spans = []
     for k, offset in enumerate(translations):
         joint = joints[k] if k < len(joints) else None

@@ -1,9 +1,10 @@
-"""What a solve is asked for: targets, and how near is near enough."""
+"""What a solve is asked for: targets, and how near to them is near enough."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -42,7 +43,7 @@ class Tolerance(NamedTuple):
             return cls()
         pair = as_vector(value, 2, "tolerance", "metres, radians")
         if (pair <= 0.0).any():
-            raise InputError(f"tolerance takes two positive numbers (metres, radians); got {pair.tolist()}")
+            raise InputError(f"tolerance must be two positive numbers (metres, radians); got {pair.tolist()}")
         return cls(float(pair[0]), float(pair[1]))
 
 
@@ -75,21 +76,20 @@ def largest_of(errors: Iterable[TargetError]) -> TargetError:
 
 @dataclass(frozen=True, eq=False, init=False)
 class Target:
-    """A frame, and where it should be.
+    """A frame, and where it should be. Immutable; equal where the same is asked.
 
-    At most one way to give the orientation: `rotation`, `rpy`, `quat_xyzw`, `quat_wxyz`, `placement` (which gives the
+    Give the orientation in at most one way: `rotation`, `rpy`, `quat_xyzw`, `quat_wxyz`, `placement` (which gives the
     position as well), or `axis` with `direction` or `at`, which leaves the spin about that axis free.
 
     Attributes:
-        frame: The frame that should move, by name.
-        position: Wanted position (3,) of the frame's origin, or of `tool`'s [m]; None leaves it free.
-        rotation: Wanted orientation (3, 3); None leaves it free or to `axis`.
-        axis: A unit vector (3,) fixed in the frame (in `tool`, when given).
+        frame: The name of the frame to move.
+        position: The position wanted for the frame's origin, or for `tool`'s (3,) [m]; None where it is free.
+        rotation: The orientation wanted (3, 3); None where it is free or given by `axis`.
+        axis: A unit vector (3,) fixed in the frame (in `tool` where one is given).
         direction: The unit vector (3,) that `axis` should point along.
         at: The point (3,) [m] that `axis` should point at.
-        tool: SE3 of the point meant, in the frame.
         relative_to: The frame, moving or not, in which all of the above is expressed; the world when None.
-        weight: Scales this target's residual in the step, never in the verdict.
+        weight: A factor on this target's residual in the step; it never changes the verdict.
     """
 
     frame: str
@@ -98,9 +98,9 @@ class Target:
     axis: Array | None
     direction: Array | None
     at: Array | None
-    tool: pinocchio.SE3 | None
     relative_to: str | None
     weight: float
+    _tool: pinocchio.SE3 | None
 
     def __init__(
         self,
@@ -122,7 +122,7 @@ class Target:
         """Check and normalise.
 
         Args:
-            frame: The frame that should move.
+            frame: The frame to move.
             position: Where its origin should be (3,) [m].
             rotation: Rotation matrix (3, 3).
             rpy: Fixed-axis roll, pitch, yaw (3,) [rad]: Rz(yaw) Ry(pitch) Rx(roll).
@@ -130,75 +130,76 @@ class Target:
             quat_wxyz: Quaternion, scalar first; scaled to unit length.
             placement: SE3 or 4×4 matrix: position and orientation at once.
             axis: "x", "y", "z", "-x", "-y", "-z" or a vector (3,) in the frame.
-            direction: Vector (3,) for `axis` to point along; scaled to unit length.
-            at: Point (3,) [m] for `axis` to point at.
+            direction: The vector (3,) that `axis` should point along; scaled to unit length.
+            at: The point (3,) [m] that `axis` should point at.
             tool: SE3 (or 4×4) of the point meant, in the frame; or just its position (3,) [m].
-            relative_to: Frame in which the target is expressed.
-            weight: Factor from 0.001 to 1000.
+            relative_to: The frame in which the target is expressed.
+            weight: A factor from 0.001 to 1000.
 
         Raises:
-            InputError: Nothing asked for, contradictory, not finite, of the wrong shape; a zero direction or
-                quaternion; a weight out of its range.
+            InputError: Nothing is asked for, something is contradictory, not finite or of the wrong shape; a direction
+                or quaternion is zero; the weight is out of its range.
         """
-        if not isinstance(frame, str):
-            raise InputError(f"a target's frame is a name; got {frame!r}")
-        if not isinstance(relative_to, (str, type(None))):
-            raise InputError(f"target {frame!r}: relative_to is the name of a frame; got {relative_to!r}")
-        orientations = {
-            "rotation": rotation, "rpy": rpy, "quat_xyzw": quat_xyzw, "quat_wxyz": quat_wxyz,
-            "placement": placement, "axis": axis,
-        }  # fmt: skip
-        given = [name for name, value in orientations.items() if value is not None]
-        what = f"target {frame!r}: "
-        if len(given) > 1:
-            raise InputError(f"{what}give the orientation once; got {' and '.join(given)}")
-        if (axis is None) != (direction is None and at is None):
-            raise InputError(f"{what}axis goes with direction= or at=, and these with axis=")
-        if direction is not None and at is not None:
-            raise InputError(f"{what}give direction= or at=, not both")
-        if placement is not None:
-            if position is not None:
-                raise InputError(f"{what}placement gives the position already; leave out position=")
-            pose = as_se3(placement, f"{what}placement")
-            position, rotation = pose.translation, pose.rotation
-        if position is None and not given:
-            raise InputError(f"{what}nothing is asked for; give position=, an orientation, or placement=")
+        what = _named(frame, relative_to)
+        _check_combination(what, position, rotation, rpy, quat_xyzw, quat_wxyz, placement, axis, direction, at)
         if not _LIGHTEST <= as_finite_number(weight, f"{what}weight") <= _HEAVIEST:
             raise InputError(
-                f"{what}weight is a number from {_LIGHTEST:g} to {_HEAVIEST:g}; got {weight!r}; "
+                f"{what}weight must be a number from {_LIGHTEST:g} to {_HEAVIEST:g}; got {weight!r}; "
                 "leave the target out to switch it off"
             )
+        if placement is not None:
+            pose = as_se3(placement, f"{what}placement")
+            position, rotation = pose.translation, pose.rotation
+        self._keep(
+            frame=frame,
+            position=None if position is None else as_point(position, f"{what}position"),
+            rotation=_rotation(what, rotation, rpy, quat_xyzw, quat_wxyz),
+            axis=None if axis is None else _axis(axis, f"{what}axis"),
+            direction=None if direction is None else as_unit_vector(direction, f"{what}direction"),
+            at=None if at is None else as_point(at, f"{what}at"),
+            relative_to=relative_to,
+            weight=float(weight),
+            _tool=None if tool is None else _tool(tool, f"{what}tool"),
+        )
 
-        def keep(name: str, value: Any) -> None:
+    def _keep(self, **fields: Any) -> None:
+        for value in fields.values():
             if isinstance(value, np.ndarray):
                 value.setflags(write=False)
-            object.__setattr__(self, name, value)
+        vars(self).update(fields)
 
-        keep("frame", frame)
-        keep("position", None if position is None else as_point(position, f"{what}position"))
-        keep("rotation", _rotation(what, rotation, rpy, quat_xyzw, quat_wxyz))
-        keep("axis", None if axis is None else _axis(axis, f"{what}axis"))
-        keep("direction", None if direction is None else as_unit_vector(direction, f"{what}direction"))
-        keep("at", None if at is None else as_point(at, f"{what}at"))
-        keep("tool", None if tool is None else _tool(tool, f"{what}tool"))
-        keep("relative_to", relative_to)
-        keep("weight", float(weight))
+    @property
+    def tool(self) -> pinocchio.SE3 | None:
+        """A copy of the SE3 of the point meant, in the frame; None where that is the frame's origin."""
+        return None if self._tool is None else self._tool.copy()
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, Target) and self._key == other._key
+
+    def __hash__(self) -> int:
+        return hash(self._key)
+
+    @cached_property
+    def _key(self) -> tuple[object, ...]:
+        """All that is asked, as something that can be compared."""
+        numbers = (self.position, self.rotation, self.direction, self.at)
+        return self.shape, tuple([None if value is None else tuple((value + 0.0).flat) for value in numbers])
 
     @property
     def asks_orientation(self) -> bool:
         """Whether a rotation, or an axis's direction, is wanted."""
         return self.rotation is not None or self.axis is not None
 
-    @property
+    @cached_property
     def shape(self) -> tuple[object, ...]:
-        """What is asked of which frame, without the numbers that say where: equal where only these differ."""
+        """What is asked of which frame, without the numbers that say where. It is equal where only these differ."""
         axis = None if self.axis is None else tuple(self.axis.tolist())
         parts = (self.position is not None, self.rotation is not None, axis, self.at is not None)
-        tool = None if self.tool is None else self.tool.homogeneous.tobytes()
+        tool = None if self._tool is None else self._tool.homogeneous.tobytes()
         return self.frame, self.relative_to, self.weight, tool, parts
 
     def moved_to(self, place: pinocchio.SE3 | ArrayLike) -> Target:
-        """The same target elsewhere.
+        """The same target at another place.
 
         Args:
             place: An SE3 or 4×4 matrix where position and rotation are asked for, the parts that are asked for taken
@@ -220,15 +221,23 @@ class Target:
     def with_numbers(
         self, position: Array, rotation: Array, direction: Array | None = None, at: Array | None = None
     ) -> Target:
-        """The same target with other numbers, which are right: those that it does not ask for are not read."""
+        """The same target with other numbers, taken as they are; those that it does not ask for are ignored."""
         moved = object.__new__(Target)
-        fields = dict(vars(self))
-        for name, value in (("position", position), ("rotation", rotation), ("direction", direction), ("at", at)):
-            if fields[name] is not None and value is not None:
-                fields[name] = value.copy()
-                fields[name].setflags(write=False)
-        vars(moved).update(fields)
+        vars(moved).update(vars(self))
+        vars(moved).pop("_key", None)
+        given = {"position": position, "rotation": rotation, "direction": direction, "at": at}
+        moved._keep(
+            **{
+                name: value.copy()
+                for name, value in given.items()
+                if value is not None and getattr(self, name) is not None
+            }
+        )
         return moved
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        fields = {name: value for name, value in vars(self).items() if name not in ("_key", "shape")}
+        return _restored, (fields,)
 
     @classmethod
     def from_dict(cls, fields: Mapping[str, Any]) -> Target:
@@ -239,13 +248,15 @@ class Target:
             UnknownNameError: A key that is not one of the keywords.
         """
         if not isinstance(fields, Mapping):
-            raise InputError(f'a target is an object such as {{"frame": …, "position": [x, y, z]}}; got {fields!r}')
+            raise InputError(
+                f'a target must be an object such as {{"frame": …, "position": [x, y, z]}}; got {fields!r}'
+            )
         keywords = ("frame", "position", *TARGET_KEYWORDS)
         for key in fields:
             if key not in keywords:
                 raise UnknownNameError("target keyword", key, keywords)
         if "frame" not in fields:
-            raise InputError(f"a target names its frame; got only {', '.join(fields) or 'nothing'}")
+            raise InputError(f"a target must name its frame; got only {', '.join(fields) or 'nothing'}")
         return cls(**fields)
 
     def to_dict(self) -> dict[str, Any]:
@@ -255,8 +266,8 @@ class Target:
             value = getattr(self, name)
             if value is not None:
                 fields[name] = value.tolist()
-        if self.tool is not None:
-            fields["tool"] = self.tool.homogeneous.tolist()
+        if self._tool is not None:
+            fields["tool"] = self._tool.homogeneous.tolist()
         if self.relative_to is not None:
             fields["relative_to"] = self.relative_to
         if self.weight != 1.0:
@@ -273,11 +284,11 @@ def as_targets(targets: Target | Iterable[Target]) -> tuple[Target, ...]:
     if isinstance(targets, Target):
         return (targets,)
     if isinstance(targets, str) or not isinstance(targets, Iterable):
-        raise InputError(f"targets are Target objects; got {targets!r}")
+        raise InputError(f"targets must be Target objects; got {targets!r}")
     checked = tuple(targets)
     for target in checked:
         if not isinstance(target, Target):
-            raise InputError(f"targets are Target objects; got {target!r}")
+            raise InputError(f"targets must be Target objects; got {target!r}")
     if not checked:
         raise InputError("there is nothing to solve: give at least one target")
     return checked
@@ -288,6 +299,44 @@ TARGET_KEYWORDS = (
     "weight",
 )  # fmt: skip
 """What `Target` takes beside frame and position."""
+
+
+def _restored(fields: dict[str, Any]) -> Target:
+    """A target from a pickle."""
+    target = object.__new__(Target)
+    target._keep(**fields)
+    return target
+
+
+def _named(frame: object, relative_to: object) -> str:
+    """How errors begin that are about a target, once its frames are names."""
+    if not isinstance(frame, str):
+        raise InputError(f"a target's frame must be a name; got {frame!r}")
+    if not isinstance(relative_to, (str, type(None))):
+        raise InputError(f"target {frame!r}: relative_to must be the name of a frame; got {relative_to!r}")
+    return f"target {frame!r}: "
+
+
+def _check_combination(
+    what: str, position: object, rotation: object, rpy: object, quat_xyzw: object, quat_wxyz: object,
+    placement: object, axis: object, direction: object, at: object,
+) -> None:  # fmt: skip
+    """See that the keywords ask for something, and nothing twice."""
+    orientations = {
+        "rotation": rotation, "rpy": rpy, "quat_xyzw": quat_xyzw, "quat_wxyz": quat_wxyz,
+        "placement": placement, "axis": axis,
+    }  # fmt: skip
+    given = [name for name, value in orientations.items() if value is not None]
+    if len(given) > 1:
+        raise InputError(f"{what}give the orientation once; got {' and '.join(given)}")
+    if (axis is None) != (direction is None and at is None):
+        raise InputError(f"{what}axis= needs direction= or at=, and these need axis=")
+    if direction is not None and at is not None:
+        raise InputError(f"{what}give direction= or at=, not both")
+    if placement is not None and position is not None:
+        raise InputError(f"{what}placement gives the position already; leave out position=")
+    if position is None and not given:
+        raise InputError(f"{what}nothing is asked for; give position=, an orientation, or placement=")
 
 
 def _rotation(
@@ -311,7 +360,7 @@ def _rotation(
     quaternion = np.array([x, y, z, w])
     largest = np.abs(quaternion).max()
     if largest < 1e-9:
-        raise InputError(f"{what}a quaternion has a length; got {quaternion.tolist()} (x, y, z, w)")
+        raise InputError(f"{what}a quaternion must not be zero; got {quaternion.tolist()} (x, y, z, w)")
     quaternion = quaternion / largest  # first, so that no square overflows
     return np.array(pinocchio.Quaternion(quaternion / np.linalg.norm(quaternion)).toRotationMatrix())
 
@@ -319,7 +368,7 @@ def _rotation(
 def _axis(axis: str | ArrayLike, what: str) -> Array:
     if isinstance(axis, str):
         if axis not in _NAMED_AXES:
-            raise InputError(f"{what} is one of {', '.join(_NAMED_AXES)} or three numbers; got {axis!r}")
+            raise InputError(f"{what} must be one of {', '.join(_NAMED_AXES)} or three numbers; got {axis!r}")
         return np.array(_NAMED_AXES[axis])
     return as_unit_vector(axis, what)
 

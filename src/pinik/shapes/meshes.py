@@ -19,7 +19,7 @@ from ..description import reader as urdf
 from ..description.packages import resolve
 from ..description.xml import Element, parse
 from ..errors import InputError
-from ..model.robot_model import Robot
+from ..model.robot_model import RobotModel
 
 __all__ = ["Color", "Shape", "load_shapes"]
 
@@ -50,7 +50,7 @@ class Shape:
 
 
 def load_shapes(
-    robot_or_urdf: Robot | str | os.PathLike[str], package_dirs: Iterable[str | os.PathLike[str]] = ()
+    robot_or_urdf: RobotModel | str | os.PathLike[str], package_dirs: Iterable[str | os.PathLike[str]] = ()
 ) -> tuple[list[Shape], list[str]]:
     """Read the visual shapes of a robot.
 
@@ -68,13 +68,13 @@ def load_shapes(
     if isinstance(package_dirs, (str, os.PathLike)) or not isinstance(package_dirs, Iterable):
         raise InputError(f"package_dirs takes a list of folders; got {package_dirs!r}")
     folders = [Path(folder) for folder in package_dirs]
-    if isinstance(robot_or_urdf, Robot):
+    if isinstance(robot_or_urdf, RobotModel):
         description = robot_or_urdf.description
         folders.extend(robot_or_urdf.package_dirs)
     elif isinstance(robot_or_urdf, (str, os.PathLike)):
         description = urdf.read(robot_or_urdf)
     else:
-        raise InputError(f"shapes belong to a Robot, a path or URDF text; got {robot_or_urdf!r}")
+        raise InputError(f"shapes belong to a RobotModel, a path or URDF text; got {robot_or_urdf!r}")
     robot = parse(description.document, None if description.path else "utf-8")
     named = {
         material.attributes.get("name", ""): color

@@ -21,7 +21,7 @@ import pinocchio
 import yourdfpy
 from numpy.typing import NDArray
 
-from ..model.robot_model import Robot
+from ..model.robot_model import RobotModel
 
 __all__ = ["SecondOpinion", "ask_yourdfpy"]
 
@@ -73,7 +73,7 @@ class SecondOpinion:
         return f"yourdfpy {verdict}: {compared}, {apart}{unmoved}"
 
 
-def ask_yourdfpy(robot: Robot, path: str | Path) -> SecondOpinion:
+def ask_yourdfpy(robot: RobotModel, path: str | Path) -> SecondOpinion:
     """Compare a robot with what yourdfpy reads in a file.
 
     The placements are those in the root link, at the neutral and at two random configurations, always the same.
@@ -110,7 +110,7 @@ def _listed(names: Sequence[str]) -> str:
     return shown if len(names) <= 6 else f"{shown} and {len(names) - 6} more"
 
 
-def _with_neutral_placements(robot: Robot, q: Array) -> Array:
+def _with_neutral_placements(robot: RobotModel, q: Array) -> Array:
     """The configuration with the angles of `q` whose floating and planar joints are neutral."""
     angles = robot.angles(q)
     return robot.configuration({name: angles[name] for name in robot.joint_names})
@@ -151,7 +151,7 @@ def _read(path: Path) -> tuple[yourdfpy.URDF, dict[str, Any]]:
     return yourdfpy.URDF(robot=read, load_meshes=False, build_scene_graph=True), mimics
 
 
-def _their_links(reader: yourdfpy.URDF, mimics: Mapping[str, Any], robot: Robot, q: Array) -> dict[str, Array]:
+def _their_links(reader: yourdfpy.URDF, mimics: Mapping[str, Any], robot: RobotModel, q: Array) -> dict[str, Array]:
     """Link → its placement (4, 4) in the root link, by yourdfpy.
 
     What it says of single joints is multiplied here: asked for a whole chain, it looks for the path anew each time,
@@ -181,7 +181,7 @@ def _their_links(reader: yourdfpy.URDF, mimics: Mapping[str, Any], robot: Robot,
     return placed
 
 
-def _our_links(robot: Robot, q: Array) -> dict[str, Array]:
+def _our_links(robot: RobotModel, q: Array) -> dict[str, Array]:
     """Link → its placement (4, 4) in the root link, by Pinocchio."""
     data = robot.data
     pinocchio.framesForwardKinematics(robot.model, data, q)
@@ -190,7 +190,7 @@ def _our_links(robot: Robot, q: Array) -> dict[str, Array]:
 
 
 def _compared(
-    robot: Robot, ours: Sequence[Mapping[str, Array]], theirs: Sequence[Mapping[str, Array]]
+    robot: RobotModel, ours: Sequence[Mapping[str, Array]], theirs: Sequence[Mapping[str, Array]]
 ) -> SecondOpinion:
     names = [name for name in robot.description.links if name in theirs[0]]
     a, b = (np.array([[links[name] for name in names] for links in side]) for side in (ours, theirs))  # (k, n, 4, 4)

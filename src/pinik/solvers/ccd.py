@@ -10,22 +10,24 @@ from typing import TYPE_CHECKING
 import numpy as np
 import pinocchio
 
-from .base import Array, Patience, SweepingSolver, parameter, stiffness_parameter, without_motion
+from .base import Array, Patience, SweepingSolver, without_motion
 from .chaser import Chaser
+from .parameter import parameter, stiffness_parameter
 
 if TYPE_CHECKING:
     from ..model.joint import Joint
     from ..model.limits import Limits
     from ..problem.coordinates import Coordinate
     from ..problem.kinematics import Kinematics
+    from ..problem.problem import Problem
     from ..problem.targets import Tolerance
 
 __all__ = ["CCD"]
 
-_ROUNDING = 1e-14  # of coordinates and unit axes behind a chain of joints; a joint that would follow it alone stays
-_SUSPECT = 1e-6  # across a joint's axis so much less than along it that rounding may be all there is
-_NO_COLUMN = 1e-12  # of a Jacobian [m or rad]
-_HALVINGS = 12
+ROUNDING = 1e-14  # relative error of points and unit axes at the end of a chain; a joint does not move for less
+SUSPECT = 1e-6  # what lies across a joint's axis, as a part of what lies along it, may be rounding alone below this
+NO_COLUMN = 1e-12  # length of a Jacobian's column, as a part of the chain's length
+HALVINGS = 12
 _NOTHING = np.zeros((3, 3))
 _RELAXATION_OF_POSES = 1.7
 
@@ -82,9 +84,9 @@ class CCD(SweepingSolver):
         model, data = kinematics.model, kinematics.data
         q = q.copy()
         chasers = self._chasers(q, kinematics)
-        relaxation = self.relaxation_for(kinematics)
+        relaxation = self.relaxation_for(kinematics.problem)
         updates = 0
-        for coordinate in kinematics.coordinates:
+        for coordinate in kinematics.problem.coordinates:
             if all([chaser.within(tolerance) for chaser in chasers]):
                 break
             updates += 1
@@ -107,20 +109,20 @@ class CCD(SweepingSolver):
     def _chasers(self, q: Array, kinematics: Kinematics) -> list[Chaser]:
         pinocchio.forwardKinematics(kinematics.model, kinematics.data, q)
         kinematics.evaluations += 1
-        size = kinematics.size_of_chain
+        size = kinematics.problem.size_of_chain
         alpha = self.position_weight / (size if self.scaling == "printed" else size * size)
-        return [Chaser(term, alpha, self.max_residual) for term in kinematics.terms]
+        return [Chaser(rows, alpha, self.max_residual) for rows in kinematics.rows]
 
     @property
     def held(self) -> tuple[str, ...]:
         """Joints of stiffness 0."""
         return without_motion(self.stiffness)
 
-    def relaxation_for(self, kinematics: Kinematics) -> float:
-        """The relaxation, or what it is for these targets where it is None."""
+    def relaxation_for(self, problem: Problem) -> float:
+        """The relaxation; where it is None, the default for what is asked."""
         if self.relaxation is not None:
             return self.relaxation
-        return _RELAXATION_OF_POSES if any(t.asks_orientation for t in kinematics.targets) else 1.0
+        return _RELAXATION_OF_POSES if any(target.asks_orientation for target in problem.targets) else 1.0
 
     def _best_change(
         self,
@@ -142,7 +144,7 @@ class CCD(SweepingSolver):
         else:
             M = sum([chaser.correlation(mover, origin) for chaser in chasers], _NOTHING)
             cosine, sine, along = _coefficients(M, axis)
-            if math.hypot(cosine, sine) <= _SUSPECT * along:
+            if math.hypot(cosine, sine) <= SUSPECT * along:
                 cosine, sine = _measured_across(axis, origin, mover, chasers)
             change = _best_turn(cosine, sine, low, high, shortest=scale < 1.0 or self.max_step < math.pi)
         if scale > 1.0 and not coordinate.slides and abs(change) > math.pi:
@@ -162,12 +164,15 @@ class CCD(SweepingSolver):
         at = kinematics.linearize(q)
         J = at.J[:, column]
         squared = float(J.dot(J))
-        if squared <= (_NO_COLUMN * kinematics.lightest) ** 2:  # its followers cancel it, but for rounding
+        problem = kinematics.problem
+        if (
+            squared <= (NO_COLUMN * problem.lightest * problem.size_of_chain) ** 2
+        ):  # its followers cancel it to rounding
             return 0.0
         low, high = coordinate.room(q, limits)
         change = min(max(part * float(J.dot(at.e)) / squared, low, -self.max_step), high, self.max_step)
         before = float(at.e.dot(at.e))
-        for _ in range(_HALVINGS):
+        for _ in range(HALVINGS):
             moved = q.copy()
             coordinate.advance(moved, change, kinematics.model, limits)
             e = kinematics.linearize(moved).e
@@ -190,7 +195,7 @@ def _best_slide(axis: Array, origin: Array, mover: Joint, chasers: list[Chaser])
     """Σ w (d − c)·a / Σ w over the pairs that the mover changes [m]; eq. 4.24 for one."""
     pull, weight = 0.0, 0.0
     for chaser in chasers:
-        sign = 1.0 if mover.id in chaser.term.frame_support else -1.0
+        sign = 1.0 if chaser.moves_frame(mover) else -1.0
         for c, d, w in chaser.point_pairs(origin):
             pull += sign * chaser.weight * w * float((d - c).dot(axis))
             weight += chaser.weight * w
@@ -212,7 +217,7 @@ def _measured_across(axis: Array, origin: Array, mover: Joint, chasers: list[Cha
     So it is where the effector lies on the joint's axis, or the axis that it should turn is the joint's own.
     """
     cosine, sine, blur = (sum(parts) for parts in zip(*(c.across(axis, origin, mover) for c in chasers), strict=True))
-    return (cosine, sine) if math.hypot(cosine, sine) > _ROUNDING * blur else (0.0, 0.0)
+    return (cosine, sine) if math.hypot(cosine, sine) > ROUNDING * blur else (0.0, 0.0)
 
 
 def _best_turn(cosine: float, sine: float, low: float, high: float, *, shortest: bool) -> float:

@@ -13,8 +13,8 @@ from .base import Array
 
 if TYPE_CHECKING:
     from ..model.joint import Joint
+    from ..problem.rows import Rows
     from ..problem.targets import Tolerance
-    from ..problem.term import TargetTerm
 
 __all__ = ["Chaser"]
 
@@ -26,13 +26,13 @@ class Chaser:
     where they should be, None where that is free, and `at` (3,) is the point that U's only column should point at.
     """
 
-    def __init__(self, term: TargetTerm, alpha: float, max_residual: float) -> None:
-        self.term = term
-        term.update_placements()
-        target, p, R = term.target, term.p, term.R
-        self.weight = term.weight * term.weight
-        self.p = p.copy()
-        self.goal, rotation, direction, self.at = term.wanted()
+    def __init__(self, rows: Rows, alpha: float, max_residual: float) -> None:
+        rows.update_placements()
+        target, R = rows.target, rows.R
+        self._chain = rows.term.chain
+        self.weight = rows.term.weight * rows.term.weight
+        self.p = rows.p.copy()
+        self.goal, rotation, direction, self.at = rows.wanted()
         self.U: Array | None = None
         self.V: Array | None = None
         if rotation is not None:
@@ -45,7 +45,15 @@ class Chaser:
 
     def moved_by(self, mover: Joint) -> bool:
         """Whether the mover moves effector and goal against each other."""
-        return (mover.id in self.term.frame_support) != (mover.id in self.term.reference_support)
+        return self.moves_frame(mover) != self.moves_reference(mover)
+
+    def moves_frame(self, mover: Joint) -> bool:
+        """Whether the mover carries the effector."""
+        return mover.id in self._chain.frame_support
+
+    def moves_reference(self, mover: Joint) -> bool:
+        """Whether the mover carries the frame in which the goal is given."""
+        return mover.id in self._chain.reference_support
 
     def within(self, tolerance: Tolerance) -> bool:
         """Whether effector and goal agree."""
@@ -89,7 +97,7 @@ class Chaser:
             M += (w * (c - origin))[:, None] * (d - origin)
         if self.weight != 1.0:
             M *= self.weight
-        return M if mover.id in self.term.frame_support else M.T
+        return M if self.moves_frame(mover) else M.T
 
     def across(self, axis: Array, origin: Array, mover: Joint) -> tuple[float, float, float]:
         """What `correlation` holds across a joint's axis: Σ w c·d, Σ w a·(c × d), and how exact they are.
@@ -116,7 +124,7 @@ class Chaser:
             cosine += w * float(c.dot(d))
             sine += w * float(axis.dot(np.cross(c, d)))
             blur += w * size * float(np.linalg.norm(c) + np.linalg.norm(d))
-        sign = 1.0 if mover.id in self.term.frame_support else -1.0
+        sign = 1.0 if self.moves_frame(mover) else -1.0
         return self.weight * cosine, self.weight * sign * sine, self.weight * blur
 
     def carry(self, mover: Joint, origin: Array, R: Array | None, shift: Array) -> None:
@@ -125,11 +133,11 @@ class Chaser:
         def moved(point: Array) -> Array:
             return point + shift if R is None else origin + R.dot(point - origin)
 
-        if mover.id in self.term.frame_support:
+        if self.moves_frame(mover):
             self.p = moved(self.p)
             if self.U is not None and R is not None:
                 self.U = R.dot(self.U)
-        if mover.id in self.term.reference_support:
+        if self.moves_reference(mover):
             self.goal = None if self.goal is None else moved(self.goal)
             self.at = None if self.at is None else moved(self.at)
             if self.V is not None and R is not None:

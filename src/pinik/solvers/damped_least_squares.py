@@ -9,15 +9,16 @@ from typing import TYPE_CHECKING
 import eigenpy
 import numpy as np
 
-from .base import Array, JacobianSolver, Patience, parameter
+from .base import Array, JacobianSolver, Patience
+from .parameter import parameter
 
 if TYPE_CHECKING:
     from ..problem.kinematics import Kinematics, Linearization
 
-__all__ = ["DampedLeastSquares"]
+__all__ = ["SMALLEST_DAMPING_SQUARED", "DampedLeastSquares"]
 
-# Keeps JJᵀ + λ²I positive definite where rows depend on each other and the damping has faded with the residual.
-_SMALLEST_DAMPING_SQUARED = 1e-15
+SMALLEST_DAMPING_SQUARED = 1e-15
+"""Of the trace of JJᵀ: keeps JJᵀ + λ²I positive definite where rows depend on each other and the damping has faded."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -33,8 +34,8 @@ class DampedLeastSquares(JacobianSolver):
     * "manipulability" (Nakamura and Hanafusa 1986): λ² = damping² (1 − w/w₀)² where w = √det JJᵀ is below w₀; that
       is everywhere where rows of J always depend on each other, as those of a planar chain do.
 
-    In a solve ‖e‖ stands for `Linearization.distance`: metres, and a radian for 0.3 m. Of attempts behind which others
-    wait, only √0.1 of it counts: they swing rather than crawl, and the next start is cheap.
+    In a solve, `Linearization.distance` takes the place of ‖e‖; there a radian counts as 0.3 of the chain's length. An
+    attempt that others can follow uses only √0.1 of it: it takes bolder steps, as another start is cheap.
 
     Source: thesis, §3.3–3.4, eqs. 3.3.6 and 3.4.9 (Wampler 1986; Nakamura and Hanafusa 1986).
     """
@@ -47,18 +48,18 @@ class DampedLeastSquares(JacobianSolver):
     patience = Patience(3, 0.2)
 
     damping: float = parameter(
-        math.sqrt(0.5), "λ, or what the rule makes λ from", low=1e-9, high=100.0, slider=(1e-3, 10.0)
+        math.sqrt(0.5), "λ, or the number from which the rule computes λ", low=1e-9, high=100.0, slider=(1e-3, 10.0)
     )
     rule: str = parameter(
         "residual",
-        "how λ follows the situation",
+        "how λ is chosen in each step",
         choices=("constant", "residual", "sugihara", "manipulability"),
     )
     manipulability: float = parameter(0.05, "w₀ of the manipulability rule", low=1e-9, slider=(1e-3, 1.0))
     factorization: str = parameter("ldlt", "how the system is solved", choices=("ldlt", "svd"))
 
     def direction(self, J: Array, e: Array, residual: float | None = None) -> Array:
-        """Jᵀ(JJᵀ + λ²I)⁻¹e; the rules go by `residual` instead of ‖e‖ where that is given."""
+        """Jᵀ(JJᵀ + λ²I)⁻¹e. The rules use `residual` [m] in place of ‖e‖ where it is given."""
         damping_squared = self.damping_squared(J, math.sqrt(e.dot(e)) if residual is None else residual)
         if self.factorization == "svd":
             left, sigma, right = np.linalg.svd(J, full_matrices=False)
@@ -68,7 +69,7 @@ class DampedLeastSquares(JacobianSolver):
         return np.array(J.T.dot(eigenpy.LDLT(A).solve(e)))
 
     def damping_squared(self, J: Array, residual: float) -> float:
-        """λ² by the rule, at a Jacobian and a norm of the residual."""
+        """λ² [m²] by the rule, for a Jacobian and a norm of the residual [m]."""
         squared = self.damping * self.damping
         if self.rule == "residual":
             squared *= residual * residual
@@ -77,8 +78,9 @@ class DampedLeastSquares(JacobianSolver):
         elif self.rule == "manipulability":
             w = math.sqrt(max(float(np.linalg.det(J.dot(J.T))), 0.0))
             squared *= max(0.0, 1.0 - w / self.manipulability) ** 2
-        return squared + _SMALLEST_DAMPING_SQUARED
+        entries = J.ravel(order="K")
+        return squared + SMALLEST_DAMPING_SQUARED * float(entries.dot(entries))
 
     def step(self, at: Linearization, kinematics: Kinematics) -> Array:
-        """`direction`, damped by the whole distance also where D_max shortens the pull."""
+        """`direction`, damped by the whole distance even where D_max shortens the residual."""
         return self.direction(at.J, at.e, at.distance)

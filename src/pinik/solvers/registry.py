@@ -8,37 +8,25 @@ import inspect
 from typing import Any, TypeGuard
 
 from ..errors import InputError, UnknownNameError
-from .base import JacobianSolver, Patience, Solver, SweepingSolver, parameter
+from .base import JacobianSolver, Solver, SweepingSolver
 from .ccd import CCD
 from .damped_least_squares import DampedLeastSquares
 from .pseudo_inverse import PseudoInverse
 from .transpose import JacobianTranspose
 from .two_bone import TwoBoneSolver
 
-__all__ = [
-    "CCD",
-    "CLOSED_FORMS",
-    "SOLVERS",
-    "DampedLeastSquares",
-    "JacobianSolver",
-    "JacobianTranspose",
-    "Patience",
-    "PseudoInverse",
-    "Solver",
-    "SweepingSolver",
-    "TwoBoneSolver",
-    "known_methods",
-    "make_solver",
-    "parameter",
-]
+__all__ = ["CLOSED_FORMS", "SOLVERS", "Method", "known_methods", "make_solver", "meant_by"]
+
+Method = str | type[Solver] | Solver
+"""A method as people name it: a short name or "module:Class", a class, or an instance with its parameters."""
 
 SOLVERS: dict[str, type[Solver]] = {
     solver.name: solver for solver in (CCD, JacobianTranspose, PseudoInverse, DampedLeastSquares)
 }
-"""Short name → class. Add your own class here and every front of pinik knows it."""
+"""Short name → class. A class that you add here is known to every front of pinik."""
 
 CLOSED_FORMS: dict[str, type[Solver]] = {TwoBoneSolver.name: TwoBoneSolver}
-"""The same for methods that can do only some robots, and refuse the others with a reason."""
+"""Short name → class of the methods that solve only some robots; they refuse the others with a reason."""
 
 
 def known_methods() -> dict[str, type[Solver]]:
@@ -46,12 +34,23 @@ def known_methods() -> dict[str, type[Solver]]:
     return SOLVERS | {name: solver for name, solver in CLOSED_FORMS.items() if name not in SOLVERS}
 
 
-def make_solver(method: str | type[Solver] | Solver, **parameters: Any) -> Solver:
-    """The solver that is meant.
+def meant_by(method: Method) -> type[Solver] | Solver:
+    """The class or instance that a method names; a class or an instance is returned as it is.
+
+    Raises:
+        UnknownNameError: There is no such method.
+    """
+    if isinstance(method, str):
+        return SOLVERS.get(method) or _class_by_name(method)
+    return method
+
+
+def make_solver(method: Method, **parameters: Any) -> Solver:
+    """The solver that a method names, with these parameters.
 
     Args:
-        method: A name in `SOLVERS` or `CLOSED_FORMS`, "module:Class" for one that is imported, a class, or an instance.
-        **parameters: The solver's parameters; with an instance they replace its own.
+        method: A name in `SOLVERS` or `CLOSED_FORMS`, "module:Class" for a class to import, a class, or an instance.
+        **parameters: The solver's parameters; they replace an instance's own.
 
     Raises:
         UnknownNameError: No such method or parameter.
@@ -59,10 +58,9 @@ def make_solver(method: str | type[Solver] | Solver, **parameters: Any) -> Solve
     """
     if isinstance(method, Solver) and _is_complete(type(method)):
         return type(method).make(**(method.parameters | parameters)) if parameters else method
-    if isinstance(method, str):
-        method = _class_by_name(method)
+    method = meant_by(method)
     if not _is_complete(method):
-        raise InputError(f"method is a name ({', '.join(SOLVERS)}), a Solver class or an instance; got {method!r}")
+        raise InputError(f"method must be a name ({', '.join(SOLVERS)}), a Solver class or an instance; got {method!r}")
     if any(isinstance(value, dataclasses.Field) for value in vars(method).values()):
         raise InputError(f"{method.name}: its class lacks @dataclass(frozen=True, kw_only=True)")
     return method.make(**parameters)

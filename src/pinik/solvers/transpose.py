@@ -6,7 +6,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from .base import Array, JacobianSolver, Patience, max_step_parameter, parameter
+from .base import Array, JacobianSolver, Patience
+from .parameter import max_step_parameter, parameter
 
 __all__ = ["JacobianTranspose"]
 

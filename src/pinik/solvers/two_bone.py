@@ -6,21 +6,26 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
+from weakref import WeakKeyDictionary
 
 import numpy as np
 import pinocchio
 
 from ..closed_form.recognise import OffPlane, TwoBone
 from ..errors import InputError
-from .base import Array, SweepingSolver, parameter
+from ..model.robot_model import RobotModel
+from .base import Array, SweepingSolver
+from .parameter import parameter
 
 if TYPE_CHECKING:
     from ..model.limits import Limits
-    from ..model.robot_model import Robot
     from ..problem.kinematics import Kinematics
+    from ..problem.problem import Problem
     from ..problem.targets import Target, Tolerance
 
 __all__ = ["TwoBoneSolver"]
+
+_KNOWN: WeakKeyDictionary[RobotModel, dict[tuple[str, str | None], TwoBone]] = WeakKeyDictionary()
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -40,13 +45,13 @@ class TwoBoneSolver(SweepingSolver):
         "nearest", "which of two answers inside the limits is taken", choices=("nearest", "up", "down")
     )
 
-    def check(self, kinematics: Kinematics) -> None:
+    def check(self, problem: Problem) -> None:
         """See that one position is asked of a frame that two parallel hinges move.
 
         Raises:
             InputError: It is not so; the message says why.
         """
-        _bones(kinematics.robot, kinematics.targets)
+        _bones(problem.robot, problem.targets)
 
     @property
     def exact(self) -> bool:
@@ -58,15 +63,15 @@ class TwoBoneSolver(SweepingSolver):
         """Whether the first sweep goes all the way."""
         return self.exact and self.max_step == math.inf
 
-    def answers(self, positions: Array, q: Array, kinematics: Kinematics, limits: Limits) -> Array:
+    def answers(self, positions: Array, q: Array, problem: Problem, limits: Limits) -> Array:
         """The configurations (N, nq) inside the limits that come nearest to N positions (N, 3) [m], from `q` (N, nq).
 
         Locked joints stay, as if their limits were where they stand.
         """
-        bones, _ = _bones(kinematics.robot, kinematics.targets)
+        bones, _ = _bones(problem.robot, problem.targets)
         ranges = np.tile(bones.ranges(limits), (len(q), 1, 1))
         for k, joint in enumerate(bones.joints):
-            if joint in kinematics.locked:
+            if joint in problem.locked:
                 ranges[:, k] = bones.angles_at(q)[:, k, np.newaxis]
         return limits.clip(bones.nearest(positions, q, ranges, self.elbow))
 
@@ -78,23 +83,23 @@ class TwoBoneSolver(SweepingSolver):
             distance = float(np.linalg.norm(wanted - here))
             if distance > self.max_residual:
                 wanted = here + (self.max_residual / distance) * (wanted - here)
-        there: Array = self.answers(wanted[np.newaxis], q[np.newaxis], kinematics, limits)[0]
+        there: Array = self.answers(wanted[np.newaxis], q[np.newaxis], kinematics.problem, limits)[0]
         if self.max_step < math.inf:
             step = pinocchio.difference(kinematics.model, q, there)
             largest = float(np.abs(step).max())
             if largest > self.max_step:
                 there = pinocchio.integrate(kinematics.model, q, (self.max_step / largest) * step)
-                if kinematics.held_entries is not None:
-                    there[kinematics.held_entries] = q[kinematics.held_entries]
+                if kinematics.problem.held_entries is not None:
+                    there[kinematics.problem.held_entries] = q[kinematics.problem.held_entries]
         return there, 0
 
-    def off_plane(self, robot: Robot, targets: Sequence[Target]) -> OffPlane:
+    def off_plane(self, robot: RobotModel, targets: Sequence[Target]) -> OffPlane:
         """What the target lies beside the plane in which the two bones move."""
         bones, wanted = _bones(robot, targets)
         return bones.off_plane(wanted)
 
 
-def _bones(robot: Robot, targets: Sequence[Target]) -> tuple[TwoBone, Array]:
+def _bones(robot: RobotModel, targets: Sequence[Target]) -> tuple[TwoBone, Array]:
     """The two bones that are asked for, and where their end should be (3,) [m]."""
     target = targets[0]
     if len(targets) > 1:
@@ -103,7 +108,8 @@ def _bones(robot: Robot, targets: Sequence[Target]) -> tuple[TwoBone, Array]:
         raise InputError(f"two_bone takes a position alone; target {target.frame!r} asks for an orientation")
     if target.tool is not None:
         return TwoBone.of(robot, target.frame, tool=target.tool, relative_to=target.relative_to), target.position
-    key = "two_bone", target.frame, target.relative_to
-    if key not in robot.kept:
-        robot.kept[key] = TwoBone.of(robot, target.frame, relative_to=target.relative_to)
-    return robot.kept[key], target.position
+    known = _KNOWN.setdefault(robot, {})
+    key = target.frame, target.relative_to
+    if key not in known:
+        known[key] = TwoBone.of(robot, target.frame, relative_to=target.relative_to)
+    return known[key], target.position

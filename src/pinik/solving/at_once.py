@@ -8,13 +8,13 @@ import time
 import numpy as np
 from numpy.typing import NDArray
 
-from ..problem.reach import shortfall
 from ..problem.targets import TargetError
 from ..solvers.two_bone import TwoBoneSolver
 from . import native
-from .attempts import Settings, is_nearest
+from .question import Question
 from .run import AT_REST
-from .state import Status, measure_positions
+from .state import Status
+from .verdict import measure_positions, verdict
 
 __all__ = ["attempt_at_once", "lands_at_once"]
 
@@ -23,46 +23,42 @@ Array = NDArray[np.float64]
 _BLOCK = 8192  # questions worked on at once: their numbers stay in the processor's cache
 
 
-def lands_at_once(settings: Settings) -> bool:
-    """Whether one step of the method is its answer, and it has the time to take another one and find that it rests."""
-    solver = settings.solver
-    unhurried = settings.max_iterations > 1 and settings.time_limit == math.inf
+def lands_at_once(question: Question) -> bool:
+    """Whether one step of the method is its answer, and it has the time for another one to find that it rests."""
+    solver, options = question.solver, question.options
+    unhurried = options.iterations_at_most > 1 and options.time_limit == math.inf
     return isinstance(solver, TwoBoneSolver) and solver.lands_at_once and unhurried
 
 
-def attempt_at_once(settings: Settings, goals: Array, starts: Array) -> native.Answers:
-    """What `attempts.attempt_all` would find for goals (N, 1, 18) from starts (N or 1, nq), one after another."""
+def attempt_at_once(question: Question, goals: Array, starts: Array) -> native.Answers:
+    """What `Attempts` would find for goals (N, 1, 18) from starts (N or 1, nq), one after another."""
     began = time.perf_counter()
-    count, positions = len(goals), goals[:, 0, :3]
-    starts = np.broadcast_to(settings.limits.clip(settings.limits.wrap(starts)), (count, starts.shape[1]))
+    count, positions, limits = len(goals), goals[:, 0, :3], question.limits
+    starts = np.broadcast_to(limits.clip(limits.wrap(starts)), (count, starts.shape[1]))
     q, missed, rests = np.empty(starts.shape), np.empty(count), np.empty(count, dtype=bool)
     for begin in range(0, count, _BLOCK):
         part = slice(begin, begin + _BLOCK)
-        q[part], missed[part], rests[part] = _answered(settings, positions[part], starts[part])
+        q[part], missed[part], rests[part] = _answered(question, positions[part], starts[part])
     status = np.full(count, Status.CONVERGED, dtype=object)
-    outside = np.flatnonzero(missed > settings.tolerance.position)
-    status[outside] = [_verdict(settings, goals[k], float(missed[k])) for k in outside]
-    iterations = np.where((status == Status.CONVERGED) | rests, 1, 2) * settings.kinematics.free.any()
+    outside = np.flatnonzero(missed > question.options.tolerance.position)
+    status[outside] = [_status(question, goals[k], float(missed[k])) for k in outside]
+    iterations = np.where((status == Status.CONVERGED) | rests, 1, 2) * question.problem.free.any()
     none = np.zeros(count, dtype=np.int64)
     seconds = np.full(count, (time.perf_counter() - began) / count)
     return native.Answers(q, status, missed, np.full(count, math.nan), iterations, none, none.copy(), seconds)
 
 
-def _answered(settings: Settings, positions: Array, starts: Array) -> tuple[Array, Array, NDArray[np.bool_]]:
+def _answered(question: Question, positions: Array, starts: Array) -> tuple[Array, Array, NDArray[np.bool_]]:
     """(the nearest configurations (N, nq), what they miss (N,) [m], whether they are where the starts were (N,))."""
-    solver, kinematics = settings.solver, settings.kinematics
+    solver, problem = question.solver, question.problem
     assert isinstance(solver, TwoBoneSolver)
-    q = solver.answers(positions, starts, kinematics, settings.limits)
-    reached = measure_positions(kinematics.robot, kinematics.targets[0], q)
+    q = solver.answers(positions, starts, problem, question.limits)
+    reached = measure_positions(problem.robot, problem.targets[0], q)
     rests = np.abs(q - starts).max(axis=1) < AT_REST
     return q, np.linalg.norm(reached - positions, axis=1), rests
 
 
-def _verdict(settings: Settings, goal: Array, missed: float) -> Status:
+def _status(question: Question, goal: Array, missed: float) -> Status:
     """Why a target was missed by so much [m]."""
-    if is_nearest(settings.solver, settings.kinematics, (TargetError(missed, None),), settings.tolerance):
-        return Status.UNREACHABLE
-    kinematics = settings.kinematics
-    kinematics.retarget(native.targets_of(kinematics.targets, goal))
-    proof = shortfall(kinematics, settings.limits, settings.tolerance.position)
-    return Status.STALLED if proof is None else Status.UNREACHABLE
+    targets = native.targets_of(question.problem.targets, goal)
+    return verdict(question, targets, (TargetError(missed, None),), Status.STALLED).status

@@ -1,84 +1,53 @@
-"""`iterate` and `solve`: the front of the one loop, the same for every solver."""
+"""`solve`, `prepare` and `iterate`: the fronts of the one loop, the same for every solver."""
 
 from __future__ import annotations
 
-from collections.abc import Generator, Iterable, Mapping, Sequence
+import warnings
+from collections.abc import Iterable, Sequence
 from typing import Any
 
 import numpy as np
+import pinocchio
 from numpy.typing import ArrayLike
 
-from ..checks import as_names
 from ..errors import InputError
-from ..model.limits import Limits
-from ..model.robot_model import Robot
-from ..problem.targets import TARGET_KEYWORDS, Target, Tolerance, as_targets
-from ..solvers.base import Solver
-from ..solvers.registry import SOLVERS, make_solver
-from .prepared import Prepared, as_count, check_joint_names, prepare
-from .run import TO_THE_END, compiled_for, run
+from ..model.robot_model import RobotModel
+from ..problem.kinematics import Kinematics
+from ..problem.targets import Target, Tolerance
+from ..solvers.parameter import JointValues
+from ..solvers.registry import SOLVERS, Method
+from .kept import Kept, kept_of
+from .options import Options
+from .prepared import Prepared
+from .question import Question
+from .run import Pace, States, run
 from .solution import Solution
-from .state import State
+from .words import UNWEIGHTED, Wanted, asked_targets
 
-__all__ = ["iterate", "solve"]
+__all__ = ["answer", "iterate", "prepare", "solve"]
 
-# Kinds of questions that a robot keeps compiled, for each thread; large robots' working memory is too large to keep.
-_MOST_KEPT = 16
-_MOST_FREEDOMS_KEPT = 80
-
-_OTHER_KEYWORDS = frozenset(TARGET_KEYWORDS) - {"position", "placement"}
-
-
-def iterate(
-    robot: Robot,
-    targets: Target | Sequence[Target],
-    solver: str | type[Solver] | Solver = "dls",
-    q0: ArrayLike | None = None,
-    *,
-    limits: bool = True,
-    locked: Iterable[str] = (),
-    max_iterations: int | None = None,
-    tolerance: Tolerance | ArrayLike | None = None,
-    **solver_parameters: Any,
-) -> Generator[State, Target | Sequence[Target] | None, None]:
-    """Run one solver from one start and yield a State per iteration, the start first.
-
-    Ends with the state whose `status` is set: converged, stalled or out of iterations. It serves the three ways to
-    run: drain it (until reached); take `max_iterations=1` per simulation step from the last q (chase); or a few
-    (hybrid). `states.send(targets)` moves the targets while it runs, starts its count of iterations anew, takes the
-    next step and returns its state, also after a state that was the last.
-
-    Args:
-        robot: The robot.
-        targets: One target or several.
-        solver: A name, a class or an instance.
-        q0: Start (nq,), put inside the limits; neutral when None.
-        limits: Whether every yielded q keeps inside the joints' limits.
-        locked: Names of joints that hold still.
-        max_iterations: Iterations at most; the solver's own number when None.
-        tolerance: (metres, radians) that count as reached.
-        **solver_parameters: The solver's own parameters.
-
-    Raises:
-        InputError, UnknownNameError: As `solve`.
-    """
-    if not isinstance(robot, Robot):
-        raise InputError(f"robot is what pinik.load returns; got {robot!r}")
-    made = make_solver(solver, **solver_parameters)
-    check_joint_names(robot, made)
-    kinematics = compiled_for(made, robot, targets, as_names(locked, "locked"))
-    box = Limits.of(robot, limits)
-    q = robot.neutral() if q0 is None else robot.check_configuration(q0, "q0")
-    most = made.max_iterations if max_iterations is None else as_count(max_iterations, "max_iterations")
-    return run(made, kinematics, box, box.clip(box.wrap(q)), most, Tolerance.of(tolerance), TO_THE_END)
+_WHOLE = (int, type(None))
+_NUMBER = (float, int, type(None))
 
 
 def solve(
-    robot: Robot,
-    targets: Target | Sequence[Target],
-    method: str | type[Solver] | Solver = "dls",
+    robot: RobotModel,
+    targets: str | Target | Sequence[Target],
+    method: Method = "dls",
     *,
-    q0: ArrayLike | None = None,
+    position: ArrayLike | None = None,
+    rotation: ArrayLike | None = None,
+    rpy: ArrayLike | None = None,
+    quat_xyzw: ArrayLike | None = None,
+    quat_wxyz: ArrayLike | None = None,
+    placement: pinocchio.SE3 | ArrayLike | None = None,
+    axis: str | ArrayLike | None = None,
+    direction: ArrayLike | None = None,
+    at: ArrayLike | None = None,
+    tool: pinocchio.SE3 | ArrayLike | None = None,
+    relative_to: str | None = None,
+    weight: float = UNWEIGHTED,
+    q0: ArrayLike | str | None = None,
     limits: bool = True,
     locked: Iterable[str] = (),
     restarts: int | None = None,
@@ -90,125 +59,275 @@ def solve(
     trace: bool = False,
     **solver_parameters: Any,
 ) -> Solution:
-    """Joint values that put frames where the targets want them.
+    """Find joint values that put frames where the targets want them.
 
-    A missed target is no exception: the solution says how far off it is and why. Joints that move none of the
-    frames asked for stay where `q0` has them.
+    A missed target is not an exception: the solution says how far off it is and why. Joints that move none of the
+    frames stay where `q0` has them.
 
     Args:
         robot: The robot.
-        targets: One target or several.
+        targets: The name of a frame, with its place in the keywords from `position` to `weight`; or one Target, or
+            several.
         method: "ccd", "jt", "pinv", "dls", another name in `pinik.SOLVERS`, a Solver class or an instance; "two_bone"
             where two parallel hinges move the frame.
-        q0: Start (nq,); neutral when None. With limits it is put inside them first, joint by joint, the joints that
-            move nothing and the locked ones as well.
+        position: Where the frame's origin should be (3,) [m]; this and the next eleven are explained at `Target`.
+        rotation, rpy, quat_xyzw, quat_wxyz: The orientation wanted.
+        placement: Position and orientation at once.
+        axis, direction, at: An axis of the frame, and where it should point.
+        tool: The point meant, in the frame.
+        relative_to: The frame in which the target is expressed.
+        weight: A factor on the target's residual in the step.
+        q0: Start (nq,); neutral when None; "nearest" for a start near the targets, from a table. With limits it is put
+            inside them first, joint by joint, joints that move nothing and locked ones included.
         limits: Whether the answer keeps inside the joints' limits.
-        locked: Names of joints that hold still (a floating or planar joint's too).
-        restarts: Fresh starts, drawn from `seed`, when an attempt fails; the solver's own number when None; 0 for
-            the bare method, as `iterate` runs it.
-        seed: Of the restarts' starts.
+        locked: Names of joints that hold still, floating and planar ones included.
+        restarts: Fresh starts, drawn from `seed`, after a failed attempt; the solver's own number when None; 0 for the
+            bare method, as `iterate` runs it.
+        seed: The seed of the fresh starts.
         max_iterations: Iterations of one attempt at most; the solver's own number when None.
-        tolerance: (metres, radians) that count as reached; 1e-4 m and 1e-3 rad when None.
+        tolerance: The errors that count as reached (metres, radians); 1e-4 m and 1e-3 rad when None.
         time_limit: Seconds; checked between iterations.
         engine: "auto", "python" or "native".
-        trace: Whether to keep every state. With restarts, attempts of Jacobian methods may pass the limits on their
+        trace: Whether to keep every state. With restarts, attempts of Jacobian methods may leave the limits on their
             way; the answer does not.
         **solver_parameters: The solver's own parameters, such as `damping=0.1`.
 
     Returns:
-        The solution, recomputed by plain Pinocchio.
+        The solution, with its errors computed anew by plain Pinocchio.
 
     Raises:
-        UnknownNameError: A frame, joint, method or parameter that does not exist.
+        UnknownNameError: A frame, joint, method or keyword that does not exist.
         InputError: An argument of the wrong shape, kind or range.
-        EngineError: The engine asked for is not there.
+        EngineError: The engine asked for is not available.
     """
-    asked = as_targets(targets)
-    if not isinstance(locked, (str, tuple)) and isinstance(locked, Iterable):
-        locked = tuple(locked)
-    prepared = _prepared(
-        robot, asked, method, limits=limits, locked=locked, restarts=restarts, seed=seed,
-        max_iterations=max_iterations, tolerance=tolerance, time_limit=time_limit, engine=engine, trace=trace,
-        **solver_parameters,
+    if not isinstance(robot, RobotModel):
+        raise InputError(f"robot must be what pinik.load returns; got {robot!r}")
+    wanted = (
+        position, rotation, rpy, quat_xyzw, quat_wxyz, placement, axis, direction, at, tool, relative_to, weight,
     )  # fmt: skip
+    said = (limits, locked, restarts, seed, max_iterations, tolerance, time_limit, engine, trace)
+    return answer(robot, targets, method, wanted, q0, said, solver_parameters)
+
+
+def prepare(
+    robot: RobotModel,
+    targets: str | Target | Sequence[Target],
+    method: Method = "dls",
+    *,
+    position: ArrayLike | None = None,
+    rotation: ArrayLike | None = None,
+    rpy: ArrayLike | None = None,
+    quat_xyzw: ArrayLike | None = None,
+    quat_wxyz: ArrayLike | None = None,
+    placement: pinocchio.SE3 | ArrayLike | None = None,
+    axis: str | ArrayLike | None = None,
+    direction: ArrayLike | None = None,
+    at: ArrayLike | None = None,
+    tool: pinocchio.SE3 | ArrayLike | None = None,
+    relative_to: str | None = None,
+    weight: float = UNWEIGHTED,
+    limits: bool = True,
+    locked: Iterable[str] = (),
+    restarts: int | None = None,
+    seed: int = 0,
+    max_iterations: int | None = None,
+    tolerance: Tolerance | ArrayLike | None = None,
+    time_limit: float | None = None,
+    engine: str = "auto",
+    trace: bool = False,
+    **solver_parameters: Any,
+) -> Prepared:
+    """Check and compile a kind of question once, to ask it many times with other places and starts.
+
+    The arguments and errors are those of `solve`. What is asked of which frames is fixed; where they should be may
+    differ from call to call.
+    """
+    wanted = (
+        position, rotation, rpy, quat_xyzw, quat_wxyz, placement, axis, direction, at, tool, relative_to, weight,
+    )  # fmt: skip
+    asked = asked_targets(targets, wanted, method, solver_parameters)
+    options = Options.of(
+        method, solver_parameters, limits=limits, locked=locked, restarts=restarts, seed=seed,
+        max_iterations=max_iterations, tolerance=tolerance, time_limit=time_limit, engine=engine, trace=trace,
+    )  # fmt: skip
+    return Prepared(robot, asked, options)
+
+
+def iterate(
+    robot: RobotModel,
+    targets: str | Target | Sequence[Target],
+    method: Method = "dls",
+    q0: ArrayLike | None = None,
+    *,
+    position: ArrayLike | None = None,
+    rotation: ArrayLike | None = None,
+    rpy: ArrayLike | None = None,
+    quat_xyzw: ArrayLike | None = None,
+    quat_wxyz: ArrayLike | None = None,
+    placement: pinocchio.SE3 | ArrayLike | None = None,
+    axis: str | ArrayLike | None = None,
+    direction: ArrayLike | None = None,
+    at: ArrayLike | None = None,
+    tool: pinocchio.SE3 | ArrayLike | None = None,
+    relative_to: str | None = None,
+    weight: float = UNWEIGHTED,
+    limits: bool = True,
+    locked: Iterable[str] = (),
+    max_iterations: int | None = None,
+    tolerance: Tolerance | ArrayLike | None = None,
+    **solver_parameters: Any,
+) -> States:
+    """Run one solver from one start and yield a State per iteration, the start first.
+
+    The run ends with the state whose `status` is set: converged, stalled or out of iterations. There are three ways to
+    use it: drain it until the targets are reached; take `max_iterations=1` per simulation step, from the last q; or
+    take a few iterations per step. `states.send(targets)` moves the targets while it runs, starts the count of
+    iterations anew, takes the next step and returns its state; it works after the last state as well.
+
+    Args:
+        robot: The robot.
+        targets: The name of a frame, with its place in the keywords from `position` to `weight`; or one Target, or
+            several.
+        method: A solver's name, class or instance.
+        q0: Start (nq,), put inside the limits; neutral when None.
+        position, rotation, rpy, quat_xyzw, quat_wxyz, placement, axis, direction, at, tool, relative_to, weight: As for
+            `Target`.
+        limits: Whether every q yielded keeps inside the joints' limits.
+        locked: Names of joints that hold still.
+        max_iterations: Iterations at most; the solver's own number when None.
+        tolerance: The errors that count as reached (metres, radians).
+        **solver_parameters: The solver's own parameters.
+
+    Raises:
+        UnknownNameError, InputError: As for `solve`.
+    """
+    if "solver" in solver_parameters:
+        warnings.warn("iterate's solver= is called method=, as everywhere", DeprecationWarning, stacklevel=2)
+        method = solver_parameters.pop("solver")
+    wanted = (
+        position, rotation, rpy, quat_xyzw, quat_wxyz, placement, axis, direction, at, tool, relative_to, weight,
+    )  # fmt: skip
+    asked = asked_targets(targets, wanted, method, solver_parameters)
+    options = Options.of(
+        method, solver_parameters, limits=limits, locked=locked, max_iterations=max_iterations, tolerance=tolerance
+    )
+    question = Question.of(robot, asked, options)
+    q = robot.neutral() if q0 is None else robot.check_configuration(q0, "q0")
+    start = question.limits.clip(question.limits.wrap(q))
+    return run(question, Kinematics.of(question.problem), start, Pace(options.iterations_at_most))
+
+
+def answer(
+    robot: RobotModel,
+    targets: str | Target | Sequence[Target],
+    method: Method,
+    wanted: Wanted,
+    q0: ArrayLike | str | None,
+    said: tuple[Any, ...],
+    parameters: dict[str, Any],
+) -> Solution:
+    """Solve. What was compiled for the same words, or for the same question in other words, is used again.
+
+    Args:
+        robot: The robot.
+        targets: A frame's name or targets.
+        method: The method.
+        wanted: The values of a target's keywords, in the order of `PLACE_WORDS`.
+        q0: The start.
+        said: The options, in the order of `OPTION_NAMES`.
+        parameters: The solver's parameters.
+    """
+    kept = kept_of(robot)
+    words, prepared = None, None
+    if type(targets) is str and _is_plain(wanted):
+        position = wanted[0]
+        words = _words((targets, position is None), method, said, parameters)
+        prepared = _said(kept, words)
+        if prepared is not None:
+            quick = prepared.at(wanted[5] if position is None else _as_point(position), q0)
+            if quick is not None:
+                return quick
+    asked = asked_targets(targets, wanted, method, parameters)
+    if words is None:
+        words = _words(tuple([target.shape for target in asked]), method, said, parameters)
+        prepared = _said(kept, words)
+    if prepared is None:
+        prepared = kept.prepared(robot, asked, _options(method, said, parameters))
+        if words is not None:
+            kept.remember(words, prepared)
     return prepared(asked, q0)
 
 
-def solve_from_keywords(
-    robot: Robot,
-    targets: str | Target | Sequence[Target],
-    position: ArrayLike | None,
-    method: str | type[Solver] | Solver,
-    options: dict[str, Any],
-) -> Solution:
-    """`Robot.solve`: sort the keywords into those of one Target and those of `solve`."""
-    if not isinstance(targets, str):
-        if position is not None or any(name in options for name in TARGET_KEYWORDS):
-            raise InputError("with Target objects the target's keywords belong into Target(...)")
-        return solve(robot, targets, method, **options)
-    key = _key_of_a_place(targets, position, method, options)
-    prepared: Prepared | None = None
-    if key is not None:
-        try:
-            prepared = robot.kept.get(key)
-        except TypeError:  # something in it cannot be a key
-            key = None
-    if prepared is not None:
-        place = options["placement"] if position is None else _as_point(position)
-        solution = prepared.at(place, options.get("q0"))
-        if solution is not None:
-            return solution
-    fields = {name: options.pop(name) for name in TARGET_KEYWORDS if name in options}
-    target = Target(targets, position, **fields)
-    if key is None:
-        return solve(robot, target, method, **options)
-    q0 = options.pop("q0", None)
-    return (prepared or _keep(robot, key, prepare(robot, target, method, **options)))(target, q0)
+def _is_plain(wanted: Wanted) -> bool:
+    """Whether a position alone is wanted, or a placement alone."""
+    (position, rotation, rpy, quat_xyzw, quat_wxyz, placement, axis, direction, at, tool, relative_to, weight) = wanted
+    return (
+        (position is None) is not (placement is None)
+        and tool is None
+        and relative_to is None
+        and rotation is None
+        and rpy is None
+        and quat_xyzw is None
+        and quat_wxyz is None
+        and axis is None
+        and direction is None
+        and at is None
+        and weight is UNWEIGHTED
+    )
 
 
-def _key_of_a_place(
-    frame: str, position: ArrayLike | None, method: object, options: Mapping[str, Any]
+def _words(
+    what: tuple[object, ...], method: Method, said: tuple[Any, ...], parameters: dict[str, Any]
 ) -> tuple[object, ...] | None:
-    """What to keep the compiled question under, where it asks one frame for a position, or for a placement."""
-    if (position is None) is not ("placement" in options) or type(method) is not str or method not in SOLVERS:
+    """The words of a question as a key; None for words that have to be checked each time.
+
+    Equality could confuse values of other types, as `True` equals 1 and is no count, so they do not get into a key.
+    """
+    limits, locked, restarts, seed, max_iterations, tolerance, time_limit, engine, trace = said
+    meant: object = SOLVERS.get(method) if type(method) is str else method
+    if (
+        meant is None
+        or type(limits) is not bool
+        or type(trace) is not bool
+        or type(seed) is not int
+        or type(restarts) not in _WHOLE
+        or type(max_iterations) not in _WHOLE
+        or type(time_limit) not in _NUMBER
+    ):
         return None
-    settings = []
-    for name, value in options.items():
-        if name in _OTHER_KEYWORDS:
+    if locked != ():
+        if type(locked) not in (tuple, list):
             return None
-        if name != "placement" and name != "q0":
-            settings.append((name, type(value), value))
-    return (frame, position is None, method, SOLVERS[method], *settings)
+        locked = tuple(locked)
+    if tolerance is not None and type(tolerance) is not Tolerance:
+        tolerance = tuple(tolerance.tolist()) if type(tolerance) is np.ndarray else tuple(tolerance)
+        if any([type(number) is not float for number in tolerance]):
+            return None
+    own = tuple([(name, type(value), _as_key(value)) for name, value in parameters.items()]) if parameters else ()
+    return what, meant, limits, locked, restarts, seed, max_iterations, tolerance, time_limit, engine, trace, own
+
+
+def _as_key(value: object) -> object:
+    return JointValues(value) if type(value) is dict else value
+
+
+def _said(kept: Kept, words: tuple[object, ...] | None) -> Prepared | None:
+    try:
+        return None if words is None else kept.said(words)
+    except TypeError:  # something in them cannot be a key
+        return None
+
+
+def _options(method: Method, said: tuple[Any, ...], parameters: dict[str, Any]) -> Options:
+    limits, locked, restarts, seed, max_iterations, tolerance, time_limit, engine, trace = said
+    return Options.of(
+        method, parameters, limits=limits, locked=locked, restarts=restarts, seed=seed,
+        max_iterations=max_iterations, tolerance=tolerance, time_limit=time_limit, engine=engine, trace=trace,
+    )  # fmt: skip
 
 
 def _as_point(position: ArrayLike) -> object:
-    """Three plain numbers as an array; None for what others have to judge."""
+    """Three plain numbers as an array; None for what a check has to judge."""
     if isinstance(position, (list, tuple)) and [type(x) for x in position] == [float, float, float]:
         return np.array(position)
     return position if isinstance(position, np.ndarray) and position.ndim == 1 else None
-
-
-def _prepared(
-    robot: Robot, targets: tuple[Target, ...], method: str | type[Solver] | Solver, /, **options: Any
-) -> Prepared:
-    """The question, compiled; of the last few kinds that this thread asked, what was compiled then."""
-    if not isinstance(robot, Robot):
-        raise InputError(f"robot is what pinik.load returns; got {robot!r}")
-    if isinstance(method, str) and method not in SOLVERS:  # "module:Class", which may be another one next time
-        return prepare(robot, targets, method, **options)
-    try:
-        shapes = tuple(target.shape for target in targets)
-        meant = SOLVERS[method] if isinstance(method, str) else None
-        key = (shapes, method, meant, *((name, type(value), value) for name, value in options.items()))
-        found = robot.kept.get(key)
-    except TypeError:  # something in it cannot be a key
-        return prepare(robot, targets, method, **options)
-    return found or _keep(robot, key, prepare(robot, targets, method, **options))
-
-
-def _keep(robot: Robot, key: tuple[object, ...], prepared: Prepared) -> Prepared:
-    if robot.model.nv <= _MOST_FREEDOMS_KEPT:
-        robot.kept[key] = prepared
-        while len(robot.kept) > _MOST_KEPT:
-            del robot.kept[next(iter(robot.kept))]
-    return prepared

@@ -14,16 +14,19 @@ from numpy.typing import ArrayLike, NDArray
 
 from ..checks import as_many, as_numbers, as_points, as_rotations, as_se3
 from ..errors import InputError
-from ..model.robot_model import Robot
+from ..model.robot_model import RobotModel
 from ..problem.reach import shortfall
-from ..problem.targets import Target, as_targets, largest_of
-from ..solvers.base import Solver
+from ..problem.targets import Target, Tolerance, as_targets, largest_of
+from ..solvers.registry import Method
 from . import native
 from .at_once import attempt_at_once, lands_at_once
-from .attempts import Outcome, attempt_all
-from .prepared import Prepared, as_count, prepare
+from .attempts import Outcome
+from .options import Options, as_count
+from .prepared import Prepared, is_nearest
 from .solution import Solution
-from .state import Status, measure_errors
+from .state import Status
+from .verdict import measure_errors
+from .words import check_words
 
 __all__ = ["Solutions", "solve_many"]
 
@@ -33,58 +36,86 @@ _MOST_THREADS = 1024
 
 
 def solve_many(
-    robot: Robot,
+    robot: RobotModel,
     targets: str | Target | Sequence[Target] | Sequence[Sequence[Target]],
     places: ArrayLike | Sequence[pinocchio.SE3] | None = None,
-    method: str | type[Solver] | Solver = "dls",
+    method: Method = "dls",
     *,
+    tool: pinocchio.SE3 | ArrayLike | None = None,
+    relative_to: str | None = None,
     q0: ArrayLike | str | None = None,
     threads: int | None = None,
-    **options: Any,
+    limits: bool = True,
+    locked: Iterable[str] = (),
+    restarts: int | None = None,
+    seed: int = 0,
+    max_iterations: int | None = None,
+    tolerance: Tolerance | ArrayLike | None = None,
+    time_limit: float | None = None,
+    engine: str = "auto",
+    **solver_parameters: Any,
 ) -> Solutions:
-    """Solve N questions of the same kind, each for itself.
+    """Solve N questions of the same kind, each by itself.
 
-    The answers do not depend on `threads`: what is drawn is keyed by the seed and by each question's number. Ctrl-C
+    The answers do not depend on `threads`: what is drawn depends only on the seed and on each question's number. Ctrl-C
     stops it at once.
 
     Args:
         robot: The robot.
-        targets: A frame's name or one Target as a pattern, and `places` says where; or N targets of the same kind; or N
-            sequences of as many targets of the same kinds.
+        targets: The name of a frame, or one Target as a pattern, whose places are in `places`; or N targets of the same
+            kind; or N sequences of the same number of targets of the same kinds.
         places: (N, 4, 4) homogeneous matrices or N SE3, for positions and rotations; or positions (N, 3) [m].
         method: As for `pinik.solve`.
+        tool, relative_to: As for `Target`, with the name of a frame.
         q0: One start (nq,), or N of them (N, nq); neutral when None; "nearest" for starts near each target, from a
             table.
-        threads: How many share the work; one for each processor that is free to this process when None. Of the
-            compiled engine; the Python one takes one.
-        **options: `pinik.solve`'s (limits, locked, restarts, seed, max_iterations, tolerance, time_limit for each,
-            engine) and the solver's own parameters.
+        threads: How many threads share the work; one for each processor available to this process when None. The Python
+            engine uses one.
+        limits, locked, restarts, seed, max_iterations, tolerance, engine: As for `pinik.solve`.
+        time_limit: Seconds for each question.
+        **solver_parameters: The solver's own parameters.
 
     Raises:
-        UnknownNameError, InputError, EngineError: As `pinik.solve`, with the number of the first target at fault.
+        UnknownNameError, InputError, EngineError: As for `pinik.solve`, with the number of the first faulty target.
     """
-    if not isinstance(robot, Robot):
-        raise InputError(f"robot is what pinik.load returns; got {robot!r}")
-    if "trace" in options:
+    if not isinstance(robot, RobotModel):
+        raise InputError(f"robot must be what pinik.load returns; got {robot!r}")
+    if "trace" in solver_parameters:
         raise InputError("solve_many keeps no trace; pinik.solve does")
+    check_words(method, solver_parameters)
+    options = Options.of(
+        method, solver_parameters, limits=limits, locked=locked, restarts=restarts, seed=seed,
+        max_iterations=max_iterations, tolerance=tolerance, time_limit=time_limit, engine=engine,
+    )  # fmt: skip
     count = _processors() if threads is None else min(as_count(threads, "threads"), _MOST_THREADS)
     began = time.perf_counter()
-    pattern, goals = _questions(robot, targets, places)
-    prepared = prepare(robot, pattern, method, **options)
-    nearest = isinstance(q0, str) and q0 == "nearest"
-    starts = _starts(robot, None if nearest else q0, len(goals))
-    if prepared.native is not None:
-        answers = native.attempt_many(prepared.native, goals, starts, nearest, count)
-    elif lands_at_once(prepared.settings) and not nearest:
-        answers = attempt_at_once(prepared.settings, goals, starts)
-    else:
-        answers = _attempt_one_by_one(prepared, goals, starts, nearest)
+    pattern, goals = _questions(robot, targets, places, tool, relative_to)
+    starts = _starts(robot, None if is_nearest(q0) else q0, len(goals))
+    prepared = Prepared(robot, pattern, options) if pattern else None
+    answers = _nothing(robot) if prepared is None else _answers(prepared, goals, starts, is_nearest(q0), count)
     return Solutions(**vars(answers), total_time=time.perf_counter() - began, prepared=prepared, _goals=goals)
+
+
+def _answers(prepared: Prepared, goals: Array, starts: Array, nearest: bool, threads: int) -> native.Answers:
+    if prepared.native is not None:
+        return native.attempt_many(prepared.native, goals, starts, nearest, threads)
+    if lands_at_once(prepared.question) and not nearest:
+        return attempt_at_once(prepared.question, goals, starts)
+    return _attempt_one_by_one(prepared, goals, starts, nearest)
+
+
+def _nothing(robot: RobotModel) -> native.Answers:
+    """The answers to no questions."""
+    none, counts = np.zeros(0), np.zeros(0, dtype=np.int64)
+    status = np.zeros(0, dtype=object)
+    return native.Answers(np.zeros((0, robot.model.nq)), status, none, none, counts, counts, counts, none)
 
 
 @dataclass(frozen=True, eq=False)
 class Solutions(native.Answers):
-    """The answers to N questions, each checked by plain Pinocchio; `solutions[i]` is one as `pinik.solve` gives it.
+    """The answers to N questions, each checked by plain Pinocchio. `solutions[i]` is what `pinik.solve` returns.
+
+    Any thread may read it.
 
     Attributes:
         q: The best configurations (N, nq).
@@ -94,11 +125,11 @@ class Solutions(native.Answers):
         iterations, joint_updates, restarts: Of each question, as in `Solution`.
         time: Seconds that each one took; an equal share of them where all were answered at once.
         total_time: Seconds from call to answer.
-        prepared: The kind of question.
+        prepared: The kind of question; None where `solve_many` was given no target at all.
     """
 
     total_time: float
-    prepared: Prepared = field(repr=False)
+    prepared: Prepared | None = field(repr=False)
     _goals: Array = field(repr=False)
 
     @property
@@ -108,8 +139,8 @@ class Solutions(native.Answers):
 
     @property
     def engine(self) -> str:
-        """Either "python" or "native"."""
-        return self.prepared.engine
+        """The engine that solved them: "python" or "native"."""
+        return "python" if self.prepared is None else self.prepared.engine
 
     def __len__(self) -> int:
         return len(self.q)
@@ -122,60 +153,86 @@ class Solutions(native.Answers):
 
     def __getitem__(self, index: int) -> Solution:
         if not isinstance(index, (int, np.integer)):
-            raise TypeError(f"solutions are counted by whole numbers, the arrays take slices; got {index!r}")
-        prepared, asked = self.prepared, self.prepared.settings
-        if not -len(self) <= index < len(self):
-            raise IndexError(f"there are {len(self)} solutions; got {index}")
-        targets = native.targets_of(prepared.targets, self._goals[index])
-        asked.kinematics.retarget(targets)
+            raise TypeError(f"solutions are indexed by whole numbers, their arrays by slices as well; got {index!r}")
+        if not -len(self) <= index < len(self) or self.prepared is None:
+            raise IndexError(f"there are {len(self)} solutions; got index {index}")
+        question = self.prepared.question
+        targets = native.targets_of(question.problem.targets, self._goals[index])
         missed = self.status[index] is Status.UNREACHABLE
+        tolerance = question.options.tolerance
         outcome = Outcome(
             self.status[index],
             self.q[index].copy(),
-            measure_errors(prepared.robot, targets, self.q[index]),
+            measure_errors(question.robot, targets, self.q[index]),
             int(self.iterations[index]),
             int(self.joint_updates[index]),
             int(self.restarts[index]),
-            shortfall(asked.kinematics, asked.limits, asked.tolerance.position) if missed else None,
+            shortfall(targets, question.bounds, tolerance.position) if missed else None,
             (),
             targets,
             float(self.time[index]),
-            prepared.engine,
+            self.engine,
         )
-        return Solution(outcome, asked)
+        return Solution(outcome, question)
 
 
-def _questions(robot: Robot, targets: Any, places: Any) -> tuple[tuple[Target, ...], Array]:
-    """(a pattern of what is asked each time, the numbers that say where (N, targets, 18))."""
+def _questions(
+    robot: RobotModel, targets: Any, places: Any, tool: Any, relative_to: str | None
+) -> tuple[tuple[Target, ...], Array]:
+    """(a pattern of what is asked each time, or an empty one; the numbers that say where (N, targets, 18))."""
+    if not isinstance(targets, str) and (tool is not None or relative_to is not None):
+        raise InputError(
+            "tool= and relative_to= go with the name of a frame; with targets they belong into Target(...)"
+        )
     if places is None:
-        if not isinstance(targets, Iterable):
-            raise InputError(f"targets is a frame's name, a Target, or a sequence of them; got {targets!r}")
-        if isinstance(targets, (str, Target)):
-            raise InputError("places says where the frame should be: (N, 4, 4) matrices, N SE3, or positions (N, 3)")
-        asked = [as_targets(each) for each in targets]
-        if not asked:
-            raise InputError("no target was given")
-        kind = [target.shape for target in asked[0]]
-        for number, each in enumerate(asked):
-            if [target.shape for target in each] != kind:
-                raise InputError(
-                    f"targets[{number}] asks for something else than targets[0]; solve each kind for itself"
-                )
-        return asked[0], np.array([native.goals_of(each) for each in asked])
+        return _listed(targets)
+    rotations, points = _read_places(places)
+    return _placed(targets, rotations, points, tool, relative_to)
+
+
+def _listed(targets: Any) -> tuple[tuple[Target, ...], Array]:
+    """Questions given as Target objects."""
+    if not isinstance(targets, Iterable):
+        raise InputError(f"targets must be a frame's name, a Target, or a sequence of them; got {targets!r}")
+    if isinstance(targets, (str, Target)):
+        raise InputError("places must say where the frame should be: (N, 4, 4) matrices, N SE3, or positions (N, 3)")
+    asked = [as_targets(each) for each in targets]
+    if not asked:
+        return (), np.zeros((0, 0, 18))
+    kind = [target.shape for target in asked[0]]
+    for number, each in enumerate(asked):
+        if [target.shape for target in each] != kind:
+            raise InputError(
+                f"targets[{number}] asks for something other than targets[0]; solve each kind in a call of its own"
+            )
+    return asked[0], np.array([native.goals_of(each) for each in asked])
+
+
+def _read_places(places: Any) -> tuple[Array | None, Array]:
+    """(rotations (N, 3, 3) where there are any, points (N, 3) [m])."""
     if isinstance(places, Sequence) and any(isinstance(place, pinocchio.SE3) for place in places):
         places = np.array([as_se3(place, f"places[{k}]").homogeneous for k, place in enumerate(places)])
-    rotations, points = None, None
-    if as_numbers(places, "places").ndim == 3:
-        matrices = as_many(places, (4, 4), "places")
-        for k in np.flatnonzero((np.abs(matrices[:, 3] - (0.0, 0.0, 0.0, 1.0)) > 1e-9).any(axis=1))[:1]:
-            as_se3(matrices[k], f"places[{k}]")
-        rotations, points = as_rotations(matrices[:, :3, :3], "places"), as_points(matrices[:, :3, 3], "places")
+    if np.size(places) == 0 and np.ndim(places) == 1:
+        return None, np.zeros((0, 3))
+    if as_numbers(places, "places").ndim != 3:
+        return None, as_points(places, "places")
+    matrices = as_many(places, (4, 4), "places")
+    for k in np.flatnonzero((np.abs(matrices[:, 3] - (0.0, 0.0, 0.0, 1.0)) > 1e-9).any(axis=1))[:1]:
+        as_se3(matrices[k], f"places[{k}]")
+    return as_rotations(matrices[:, :3, :3], "places"), as_points(matrices[:, :3, 3], "places")
+
+
+def _placed(
+    targets: Any, rotations: Array | None, points: Array, tool: Any, relative_to: str | None
+) -> tuple[tuple[Target, ...], Array]:
+    """Questions given as a frame or a pattern, and places."""
+    if isinstance(targets, str):
+        orientation = None if rotations is None else np.eye(3)
+        pattern = Target(targets, np.zeros(3), rotation=orientation, tool=tool, relative_to=relative_to)
+    elif isinstance(targets, Target):
+        pattern = targets
     else:
-        points = as_points(places, "places")
-    if not len(points):
-        raise InputError("places is empty")
-    first = None if rotations is None else rotations[0]
-    pattern = Target(targets, points[0], rotation=first) if isinstance(targets, str) else _one(targets)
+        raise InputError(f"with places, targets must be a frame's name or one Target; got {targets!r}")
     if pattern.axis is not None or (pattern.rotation is not None and rotations is None):
         raise InputError(f"places of {pattern.frame!r} say less than the target asks for; give N Target objects")
     goals = np.zeros((len(points), 1, 18))
@@ -187,13 +244,7 @@ def _questions(robot: Robot, targets: Any, places: Any) -> tuple[tuple[Target, .
     return (pattern,), goals
 
 
-def _one(targets: Any) -> Target:
-    if not isinstance(targets, Target):
-        raise InputError(f"with places, targets is a frame's name or one Target; got {targets!r}")
-    return targets
-
-
-def _starts(robot: Robot, q0: ArrayLike | None, count: int) -> Array:
+def _starts(robot: RobotModel, q0: ArrayLike | None, count: int) -> Array:
     """(1, nq) or (N, nq)."""
     if q0 is None:
         return robot.neutral()[np.newaxis]
@@ -201,28 +252,27 @@ def _starts(robot: Robot, q0: ArrayLike | None, count: int) -> Array:
         return robot.check_configuration(q0, "q0")[np.newaxis]
     starts = robot.check_configurations(q0, "q0")
     if len(starts) != count:
-        raise InputError(f"q0 is one start or one for each of the {count} targets; got {len(starts)}")
+        raise InputError(f"q0 must be one start, or one for each of the {count} targets; got {len(starts)}")
     return starts
 
 
 def _attempt_one_by_one(prepared: Prepared, goals: Array, starts: Array, nearest: bool) -> native.Answers:
-    outcomes, seconds = [], []
-    for number, goal in enumerate(goals):
-        began = time.perf_counter()
-        settings = prepared.settings._replace(start=starts[number % len(starts)], target=number, nearest=nearest)
-        settings.kinematics.retarget(native.targets_of(prepared.targets, goal))
-        outcomes.append(attempt_all(settings, began))
-        seconds.append(time.perf_counter() - began)
+    attempts, pattern = prepared.attempts, prepared.targets
+    outcomes = [
+        attempts(native.targets_of(pattern, goal), starts[number % len(starts)], number=number, nearest=nearest)
+        for number, goal in enumerate(goals)
+    ]
     largest = np.array([largest_of(outcome.errors) for outcome in outcomes], dtype=np.float64)  # None becomes NaN
+    largest = largest.reshape(-1, 2)
     return native.Answers(
-        np.array([outcome.q for outcome in outcomes]),
+        np.array([outcome.q for outcome in outcomes]).reshape(-1, prepared.robot.model.nq),
         np.array([outcome.status for outcome in outcomes], dtype=object),
         largest[:, 0],
         largest[:, 1],
-        np.array([outcome.iterations for outcome in outcomes]),
-        np.array([outcome.joint_updates for outcome in outcomes]),
-        np.array([outcome.restarts for outcome in outcomes]),
-        np.array(seconds),
+        np.array([outcome.iterations for outcome in outcomes], dtype=np.int64),
+        np.array([outcome.joint_updates for outcome in outcomes], dtype=np.int64),
+        np.array([outcome.restarts for outcome in outcomes], dtype=np.int64),
+        np.array([outcome.time for outcome in outcomes]),
     )
 
 

@@ -1,4 +1,4 @@
-"""The verdict of a solve in one sentence."""
+"""The verdict on a solve in one sentence."""
 
 from __future__ import annotations
 
@@ -8,40 +8,31 @@ from collections.abc import Mapping, Sequence
 from ..closed_form.recognise import OffPlane
 from ..problem.reach import Shortfall
 from ..problem.targets import Target, TargetError, Tolerance, largest_of
+from .question import Question
 from .state import Status
+from .verdict import Verdict
 
 __all__ = ["explain"]
 
 
-def explain(
-    status: Status,
-    targets: Sequence[Target],
-    errors: Sequence[TargetError],
-    tolerance: Tolerance,
-    active: Mapping[str, str],
-    proof: Shortfall | None,
-    off_plane: OffPlane | None,
-    anything_moves: bool,
-) -> str:
-    """Why the solve ended, what is missing, and which joints sit at their limits.
+def explain(question: Question, targets: Sequence[Target], verdict: Verdict, active: Mapping[str, str]) -> str:
+    """Why the solve ended, what is missing, and which joints are at their limits.
 
     Args:
-        status: The verdict.
-        targets: What was asked for.
-        errors: Each target's error.
-        tolerance: What counts as reached.
-        active: Joint name → "lower", "upper" or "both".
-        proof: Of a target out of reach.
-        off_plane: What the target lies beside a plane that its frame cannot leave.
-        anything_moves: Whether any free joint moves any of the frames.
+        question: What was asked, and how.
+        targets: Where the frames should be.
+        verdict: What the answer is worth.
+        active: Joint name → "lower", "upper" or "both", for the joints at a limit.
     """
+    status, errors, proof = verdict
     if status is Status.CONVERGED:
         position, orientation = largest_of(errors)
         words = [] if position is None else [_length(position)]
         words += [] if orientation is None else [_angle(orientation)]
         return f"converged, {' and '.join(words)} off"
+    tolerance = question.options.tolerance
     missed = _missed(targets, errors, tolerance)
-    if not anything_moves:
+    if not question.problem.free.any():
         return f"no free joint moves {_frames(targets)}; {missed}"
     begin = {
         Status.STALLED: "stalled",
@@ -49,6 +40,7 @@ def explain(
         Status.TIME_LIMIT: "out of time,",
         Status.UNREACHABLE: "unreachable:",
     }[status]
+    off_plane = question.solver.off_plane(question.robot, targets)
     why = _out_of_reach(targets, tolerance, proof, off_plane)
     first, *others = [*why, missed] if status is Status.UNREACHABLE else [missed, *why]
     return "; ".join([f"{begin} {first}", *others, *_limits(active)])
@@ -57,7 +49,7 @@ def explain(
 def _out_of_reach(
     targets: Sequence[Target], tolerance: Tolerance, proof: Shortfall | None, off_plane: OffPlane | None
 ) -> list[str]:
-    """Where a target lies that cannot be reached, as far as that is known."""
+    """Where the target lies if it cannot be reached, as far as that is known."""
     frame, places = targets[0 if proof is None else proof.target].frame, []
     if proof is not None and proof.inner:
         places.append(
@@ -71,7 +63,7 @@ def _out_of_reach(
 
 
 def _normal(plane: OffPlane) -> str:
-    """The plane's normal: by an axis' name where it is one, else by its three numbers."""
+    """The plane's normal: the name of an axis where it is one, else its three numbers."""
     whose = "the world" if plane.relative_to is None else f"frame {plane.relative_to!r}"
     numbers = [round(float(x), 3) + 0.0 for x in plane.normal]  # + 0.0: no −0
     for name, number in zip("xyz", numbers, strict=True):

@@ -15,8 +15,8 @@ import pinocchio
 from numpy.typing import NDArray
 
 from ..model.limits import Limits
-from ..model.robot_model import Robot
-from ..problem.kinematics import Kinematics
+from ..model.robot_model import RobotModel
+from ..problem.problem import Problem
 from ..problem.reach import Shortfall, reach_bounds
 from ..problem.targets import Target, TargetError
 from ..solvers.base import JacobianSolver, Solver
@@ -24,7 +24,7 @@ from ..solvers.ccd import CCD
 from ..solvers.damped_least_squares import DampedLeastSquares
 from ..solvers.pseudo_inverse import PseudoInverse
 from ..solvers.transpose import JacobianTranspose
-from .attempts import Settings
+from .question import Question
 from .state import State, Status
 
 __all__ = [
@@ -49,7 +49,7 @@ _RULES = ("constant", "residual", "sugihara", "manipulability")
 _STATUSES = tuple(Status)
 _MOST = 2**31 - 1  # that the engine counts to
 _IDENTITY = pinocchio.SE3.Identity()
-_ROBOTS: WeakKeyDictionary[Robot, Any] = WeakKeyDictionary()
+_ROBOTS: WeakKeyDictionary[RobotModel, Any] = WeakKeyDictionary()
 
 
 @functools.cache
@@ -179,35 +179,34 @@ def _state(q: Array, iteration: int, updates: int, errors: Any, residual: float,
     return State(q, iteration, updates, _errors(errors), residual, attempt, ended)
 
 
-def make_engine(settings: Settings) -> Engine:
-    """The compiled engine for these settings; their start is not read."""
+def make_engine(question: Question) -> Engine:
+    """The compiled engine for a question."""
     module = _load()
-    kinematics, limits = settings.kinematics, settings.limits
-    robot = _robot(kinematics.robot)
-    problem = _problem(robot, kinematics)
+    options, problem = question.options, question.problem
+    robot = _robot(problem.robot)
     asked = module.Settings()
-    asked.solver = _solver(settings.solver, kinematics)
-    asked.patience = settings.solver.patience.iterations, settings.solver.patience.progress
-    asked.tolerance = tuple(settings.tolerance)
-    asked.limits = limits.enabled
-    asked.restarts = min(settings.restarts, _MOST)
-    asked.seed = settings.seed & 0xFFFFFFFFFFFFFFFF
-    asked.max_iterations = min(settings.max_iterations, _MOST)
-    asked.iterations_to_the_end = min(settings.iterations_to_the_end, _MOST)
-    asked.time_limit = settings.time_limit
-    asked.trace = settings.trace
-    engine: Engine = module.Engine(robot, problem, asked)
+    asked.solver = _solver(question.solver, problem)
+    asked.patience = question.solver.patience.iterations, question.solver.patience.progress
+    asked.tolerance = tuple(options.tolerance)
+    asked.limits = options.limits
+    asked.restarts = min(options.restarts_at_most, _MOST)
+    asked.seed = options.seed & 0xFFFFFFFFFFFFFFFF
+    asked.max_iterations = min(options.iterations_at_most, _MOST)
+    asked.iterations_to_the_end = min(options.iterations_to_the_end, _MOST)
+    asked.time_limit = options.time_limit
+    asked.trace = options.trace
+    engine: Engine = module.Engine(robot, _problem(robot, problem), asked)
     return engine
 
 
-def _robot(robot: Robot) -> Any:
+def _robot(robot: RobotModel) -> Any:
     """The robot as the engine knows it, made once."""
     if robot not in _ROBOTS:
         _ROBOTS[robot] = _make_robot(robot)
     return _ROBOTS[robot]
 
 
-def _make_robot(robot: Robot) -> Any:
+def _make_robot(robot: RobotModel) -> Any:
     native = _load().Robot()
     leaders = {joint.leader for joint in robot.joints}
     model = robot.model
@@ -234,21 +233,21 @@ def _make_robot(robot: Robot) -> Any:
     return native
 
 
-def _problem(robot: Any, kinematics: Kinematics) -> Any:
+def _problem(robot: Any, asked: Problem) -> Any:
     problem = _load().Problem(robot)
-    free, limited = Limits.of(kinematics.robot, False), Limits.of(kinematics.robot)
-    for term in kinematics.terms:
-        target = term.target
-        bounds = [reach_bounds(term, kinematics.model, limits) for limits in (free, limited)]
+    free, limited = Limits.of(asked.robot, False), Limits.of(asked.robot)
+    for term in asked.terms:
+        target, chain = term.pattern, term.chain
+        bounds = [reach_bounds(term, limits) for limits in (free, limited)]
         base = next((b.base for b in bounds if b is not None), np.zeros(3))
-        reference = term.reference_placement or _IDENTITY
+        reference = chain.reference_placement or _IDENTITY
         problem.add_term(
             robot=robot,
-            frame_joint=term.frame_joint,
-            frame_rotation=term.frame_placement.rotation,
-            frame_translation=term.frame_placement.translation,
-            has_reference=term.reference_placement is not None,
-            reference_joint=term.reference_joint,
+            frame_joint=chain.frame_joint,
+            frame_rotation=chain.frame_placement.rotation,
+            frame_translation=chain.frame_placement.translation,
+            has_reference=chain.reference_placement is not None,
+            reference_joint=chain.reference_joint,
             reference_rotation=reference.rotation,
             reference_translation=reference.translation,
             asks_position=target.position is not None,
@@ -262,40 +261,40 @@ def _problem(robot: Any, kinematics: Kinematics) -> Any:
             reach=[math.inf if b is None else b.reach for b in bounds],
             hole=[0.0 if b is None else b.hole for b in bounds],
         )
-    for coordinate in kinematics.coordinates:
+    for coordinate in asked.coordinates:
         joint = coordinate.joint
         problem.add_coordinate(
             joint=joint.id,
             index=coordinate.index,
             entry=joint.idx_q if joint.nq == 1 else -1,
             movers=[(mover.id, multiplier) for mover, multiplier in coordinate.movers],
-            moved=[(j.id, j.multiplier) for j in kinematics.robot.joints if joint.name in (j.name, j.leader)],
+            moved=[(j.id, j.multiplier) for j in asked.robot.joints if joint.name in (j.name, j.leader)],
         )
-    problem.finish(lightest=kinematics.lightest, size_of_chain=kinematics.size_of_chain)
+    problem.finish(lightest=asked.lightest, size_of_chain=asked.size_of_chain)
     return problem
 
 
-def _solver(solver: Solver, kinematics: Kinematics) -> Any:
+def _solver(solver: Solver, problem: Problem) -> Any:
     native = _load().Solver()
     native.method = _METHODS.index(type(solver))
     native.max_step, native.max_residual = solver.max_step, solver.max_residual
     if isinstance(solver, CCD):
         if solver.stiffness:
-            native.stiffness = [solver.stiffness.get(c.joint.name, 1.0) for c in kinematics.coordinates]
-        native.relaxation = solver.relaxation_for(kinematics)
+            native.stiffness = [solver.stiffness.get(c.joint.name, 1.0) for c in problem.coordinates]
+        native.relaxation = solver.relaxation_for(problem)
         native.position_weight = solver.position_weight
         native.printed_scaling = solver.scaling == "printed"
         return native
     assert isinstance(solver, JacobianSolver)
-    roots = solver.roots(kinematics)
+    roots = solver.roots(problem)
     if roots is not None:
-        native.stiffness = [roots[c.joint.idx_v + c.index] ** 2 for c in kinematics.coordinates]
+        native.stiffness = [roots[c.joint.idx_v + c.index] ** 2 for c in problem.coordinates]
     native.step_size, native.target_jacobian = solver.step_size, solver.target_jacobian
     if isinstance(solver, JacobianTranspose):
         native.alpha = solver.alpha or 0.0
     elif isinstance(solver, PseudoInverse):
         native.cutoff, native.rest_gain = solver.cutoff, solver.rest_gain
-        robot = kinematics.robot
+        robot = problem.robot
         native.rest_posture = [(robot.joint(name).id, angle) for name, angle in solver.rest_posture.items()]
     elif isinstance(solver, DampedLeastSquares):
         native.damping, native.manipulability = solver.damping, solver.manipulability

@@ -1,8 +1,9 @@
-"""What a solve gives back: its verdict, the best configuration, and why it stopped."""
+"""The answer of a solve: its verdict, the best configuration, and why it stopped."""
 
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
@@ -11,12 +12,14 @@ import pinocchio
 from numpy.typing import NDArray
 
 from ..errors import SolveError
-from ..model.robot_model import Robot
+from ..model.robot_model import RobotModel
 from ..problem.targets import Target, TargetError, largest_of
-from .attempts import Outcome, Settings
+from .attempts import Outcome
 from .message import explain
 from .native import Answer, why_not
+from .question import Question
 from .state import State, Status
+from .verdict import Verdict
 
 __all__ = ["Solution"]
 
@@ -33,25 +36,25 @@ class Solution:
 
     _q: Array | None = None
 
-    def __init__(self, outcome: Outcome | _native.Answer, asked: Settings) -> None:
-        """Keep what a solve came to; it is put into words when somebody looks."""
+    def __init__(self, outcome: Outcome | _native.Answer, question: Question) -> None:
+        """Keep what a solve came to; everything else is worked out when it is first looked at."""
         self._came_to = outcome
-        self._asked = asked
+        self._question = question
 
     @property
     def _outcome(self) -> Outcome | Answer:
         outcome = self._came_to
-        return outcome if isinstance(outcome, Outcome) else Answer(outcome, self._asked.kinematics.targets)
+        return outcome if isinstance(outcome, Outcome) else Answer(outcome, self._question.problem.targets)
 
     def __getstate__(self) -> dict[str, Any]:
-        """Everything in words and numbers: what it was computed with stays here."""
+        """Words and numbers alone: what it was computed with is not pickled."""
         outcome = Outcome(*(getattr(self._outcome, name) for name in Outcome._fields))
         return {name: getattr(self, name) for name in _IN_WORDS} | {"_came_to": outcome}
 
     @cached_property
-    def robot(self) -> Robot:
+    def robot(self) -> RobotModel:
         """The robot."""
-        return self._asked.kinematics.robot
+        return self._question.robot
 
     @cached_property
     def targets(self) -> tuple[Target, ...]:
@@ -65,7 +68,7 @@ class Solution:
 
     @cached_property
     def engine(self) -> str:
-        """Which one computed: "python" or "native"."""
+        """The engine that solved it: "python" or "native"."""
         return self._outcome.engine
 
     @property
@@ -75,10 +78,11 @@ class Solution:
 
     @property
     def q(self) -> Array:
-        """The best configuration found (nq,), also on failure."""
+        """The best configuration found (nq,), also on failure; read-only, copy it to change it."""
         if self._q is None:  # `cached_property` takes a lock, and a microsecond
             q = self._came_to.q
-            self._q = q.copy() if isinstance(self._came_to, Outcome) else q  # the caller's own
+            q.setflags(write=False)
+            self._q = q
         return self._q
 
     @cached_property
@@ -93,7 +97,7 @@ class Solution:
 
     @cached_property
     def joint_updates(self) -> int:
-        """Single joints updated in all attempts, for CCD; 0 for methods that take whole steps."""
+        """Single joints updated in all attempts by CCD; 0 for methods that take whole steps."""
         return self._outcome.joint_updates
 
     @cached_property
@@ -104,43 +108,33 @@ class Solution:
     @cached_property
     def method(self) -> str:
         """The solver's short name."""
-        return self._asked.solver.name
+        return self._question.solver.name
 
     @cached_property
     def trace(self) -> tuple[State, ...] | None:
-        """Every state of every attempt when asked for, else None."""
-        return self._outcome.states if self._asked.trace else None
+        """Every state of every attempt where a trace was asked for, else None."""
+        return self._outcome.states if self._question.options.trace else None
 
     @cached_property
     def message(self) -> str:
-        """The status in one sentence, with what is missing and which joints sit at their limits."""
-        asked, outcome = self._asked, self._outcome
-        return explain(
-            outcome.status,
-            self.targets,
-            outcome.errors,
-            asked.tolerance,
-            self._sides_of_limits,
-            outcome.proof,
-            asked.solver.off_plane(self.robot, self.targets),
-            anything_moves=bool(asked.kinematics.free.any()),
-        )
+        """The status in one sentence, with what is missing and which joints are at their limits."""
+        outcome = self._outcome
+        verdict = Verdict(outcome.status, outcome.errors, outcome.proof)
+        return explain(self._question, self.targets, verdict, self._sides_of_limits)
 
     @cached_property
     def active_limits(self) -> tuple[str, ...]:
-        """Names of the joints that sit at a limit and could have moved a target."""
+        """The joints at a limit that could have moved a target, by name."""
         return tuple(self._sides_of_limits)
 
     @cached_property
     def parameters(self) -> dict[str, Any]:
         """The solver's parameters."""
-        return self._asked.solver.parameters
+        return self._question.solver.parameters
 
     @property
     def _sides_of_limits(self) -> dict[str, str]:
-        free = self._asked.kinematics.free
-        sides = self._asked.limits.active(self._came_to.q)
-        return {name: side for name, side in sides.items() if free[self.robot.joint(name).idx_v]}
+        return self._question.active_limits(self.q)
 
     def __repr__(self) -> str:
         return f"Solution({self.status.name}: {self.message}; {self.method}, {self.engine} engine, q={self.q})"
@@ -156,7 +150,7 @@ class Solution:
         """Why the compiled engine was not used, where it was not."""
         if self.engine == "native":
             return None
-        return why_not(self._asked.solver) or "the Python engine was asked for"
+        return why_not(self._question.solver) or "the Python engine was asked for"
 
     @property
     def success(self) -> bool:
@@ -224,4 +218,4 @@ class Solution:
 def _jsonable(value: Any) -> Any:
     if isinstance(value, float) and not math.isfinite(value):
         return None  # JSON has no infinity: None says "no bound"
-    return value
+    return dict(value) if isinstance(value, Mapping) else value

@@ -1,4 +1,4 @@
-"""Where attempts begin: numbers that depend on seed, target and attempt alone, the same in every engine."""
+"""Where attempts begin: at numbers that depend only on seed, target and attempt, and are the same in both engines."""
 
 from __future__ import annotations
 
@@ -8,9 +8,10 @@ from numpy.typing import NDArray
 
 from ..model.joint import Joint
 from ..model.limits import Limits
-from ..problem.kinematics import SQUARED_METRES_PER_RADIAN, Kinematics
+from ..problem.kinematics import Kinematics
+from ..problem.problem import Problem
+from ..problem.rows import Rows
 from ..problem.targets import Target
-from ..problem.term import TargetTerm
 
 __all__ = ["Starts", "random_start", "uniform"]
 
@@ -19,30 +20,31 @@ Array = NDArray[np.float64]
 _MASK = (1 << 64) - 1
 _GOLDEN = 0x9E3779B97F4A7C15
 
-_SIZE = 256
+_SIZE = 256  # configurations in the table
 _NEAREST = 32  # how many of the table's configurations are tried before others are drawn
 _OF_THE_TABLE = _MASK  # the table's key in place of a target's number
 
 
 class Starts:
-    """Where attempts begin that are given no start: near the target, as far as a table knows.
+    """The starts of attempts that are given none.
 
-    The first take the configurations of a table whose frames are nearest to their targets, the nearest first; the
-    others are drawn anew. The table is drawn too, once for all targets, when it is first wanted.
+    The first of them come from a table of configurations, in the order of how near their frames are to the targets; the
+    others are drawn at random. The table itself is drawn when it is first needed, and serves all targets.
     """
 
     def __init__(self, kinematics: Kinematics, limits: Limits, seed: int) -> None:
         self._kinematics = kinematics
         self._limits = limits
         self._seed = seed
-        drawn = [joint for joint in kinematics.robot.joints if _is_drawn(joint, kinematics)]
-        is_drawn = np.zeros(kinematics.model.nq, dtype=bool)
+        problem = kinematics.problem
+        drawn = [joint for joint in problem.robot.joints if _is_drawn(joint, problem)]
+        is_drawn = np.zeros(problem.model.nq, dtype=bool)
         for joint in drawn:
             is_drawn[joint.idx_q : joint.idx_q + joint.nq] = True
         needed = np.zeros_like(is_drawn)
-        for term in kinematics.terms:
-            for joint in kinematics.robot.joints:
-                if joint.id in term.frame_support | term.reference_support:
+        for term in problem.terms:
+            for joint in problem.robot.joints:
+                if joint.id in term.chain.frame_support | term.chain.reference_support:
                     needed[joint.idx_q : joint.idx_q + joint.nq] = True
         self._drawn = np.flatnonzero(is_drawn)
         self._still = np.flatnonzero(needed & ~is_drawn)  # the table is for these values of theirs
@@ -53,16 +55,18 @@ class Starts:
 
     @property
     def draws(self) -> bool:
-        """Whether any joint is drawn: without one, all starts are the same."""
+        """Whether any joint is drawn; otherwise all starts are the same."""
         return self._drawn.size > 0
 
     def next(self, q0: Array, *, target: int, number: int) -> Array:
-        """Start number 1, 2, … for the targets of the kinematics, `target` their number; the first comes first.
+        """Start number 1, 2, … for the present targets, whose own number is `target`; ask for number 1 first.
 
-        All that is not drawn stays as in `q0`.
+        What is not drawn stays as in `q0`.
         """
         if number > _NEAREST:
-            return random_start(self._kinematics, self._limits, q0, seed=self._seed, target=target, attempt=number)
+            return random_start(
+                self._kinematics.problem, self._limits, q0, seed=self._seed, target=target, attempt=number
+            )
         if number == 1:
             self._rank(q0)
         assert self._table is not None
@@ -73,8 +77,8 @@ class Starts:
     def _rank(self, q0: Array) -> None:
         """Order the table by squared distance from the targets.
 
-        A radian counts as in `Linearization.distance`, its square as 2 - 2 cos; so all but a constant is linear in what
-        is wanted. The direction of a point to look at, which is not, is left out.
+        A radian counts as in `Linearization.distance`, and its square as 2 − 2 cos, so that the score is linear in the
+        numbers wanted. The direction towards a point to look at is not linear, and is left out.
         """
         if self._table is None or (self._table[0, self._still] != q0[self._still]).any():
             self._make(q0)
@@ -88,16 +92,17 @@ class Starts:
         about[self._drawn] = kinematics.robot.neutral()[self._drawn]
         self._table = np.array(
             [
-                random_start(kinematics, self._limits, about, seed=self._seed, target=_OF_THE_TABLE, attempt=k)
+                random_start(kinematics.problem, self._limits, about, seed=self._seed, target=_OF_THE_TABLE, attempt=k)
                 for k in range(_SIZE)
             ]
         )
         rows = []
         for k, q in enumerate(self._table):
             pinocchio.forwardKinematics(kinematics.model, kinematics.data, q)
-            for term in kinematics.terms:
-                term.update_placements()
-            parts = [_seen(term) for term in kinematics.terms]
+            for own in kinematics.rows:
+                own.update_placements()
+            of_a_radian = kinematics.problem.squared_metres_per_radian
+            parts = [_seen(own, of_a_radian) for own in kinematics.rows]
             self._lengths[k] = sum(length for length, _ in parts)
             rows.append(np.concatenate([row for _, row in parts]))
         self._seen = np.array(rows)
@@ -112,23 +117,23 @@ def _wanted(target: Target) -> Array:
     return np.concatenate(parts)
 
 
-def _seen(term: TargetTerm) -> tuple[float, Array]:
-    """What one target adds: a number, and what is multiplied with `_wanted`."""
-    target, weight = term.target, term.weight**2
-    p, R = term.seen_from_reference()
+def _seen(rows: Rows, of_a_radian: float) -> tuple[float, Array]:
+    """What one target adds to a score: a number, and the factors on `_wanted`; `of_a_radian` in [m²/rad²]."""
+    target, weight = rows.target, rows.term.weight**2
+    p, R = rows.seen_from_reference()
     length, parts = 0.0, [np.zeros(0)]
     if target.position is not None:
         length = weight * float(p.dot(p))
         parts.append(-2.0 * weight * p)
     if target.rotation is not None:
-        parts.append(-weight * SQUARED_METRES_PER_RADIAN * R.ravel())
+        parts.append(-weight * of_a_radian * R.ravel())
     elif target.axis is not None and target.direction is not None:
-        parts.append(-2.0 * weight * SQUARED_METRES_PER_RADIAN * R.dot(target.axis))
+        parts.append(-2.0 * weight * of_a_radian * R.dot(target.axis))
     return length, np.concatenate(parts)
 
 
-def _is_drawn(joint: Joint, kinematics: Kinematics) -> bool:
-    return bool(joint.has_one_axis and joint.nv and kinematics.free[joint.idx_v])
+def _is_drawn(joint: Joint, problem: Problem) -> bool:
+    return bool(joint.has_one_axis and joint.nv and problem.free[joint.idx_v])
 
 
 def uniform(seed: int, target: int, attempt: int, index: int) -> float:
@@ -139,15 +144,14 @@ def uniform(seed: int, target: int, attempt: int, index: int) -> float:
     return float((state >> 11) * 2.0**-53)
 
 
-def random_start(kinematics: Kinematics, limits: Limits, q0: Array, *, seed: int, target: int, attempt: int) -> Array:
-    """A configuration with every free one-axis joint drawn anew, and all others as in `q0`.
+def random_start(problem: Problem, limits: Limits, q0: Array, *, seed: int, target: int, attempt: int) -> Array:
+    """A configuration with every free one-axis joint drawn at random and all others as in `q0`.
 
-    Angles are uniform in `Joint.range_to_draw_from`, slides without limits about `q0`.
+    Angles are uniform in `Joint.range_to_draw_from`; slides without limits are drawn about `q0`.
     """
     q = q0.copy()
-    robot = kinematics.robot
-    for joint in robot.joints:
-        if not _is_drawn(joint, kinematics):
+    for joint in problem.robot.joints:
+        if not _is_drawn(joint, problem):
             continue
         u = uniform(seed, target, attempt, joint.idx_v)
         entry = joint.idx_q

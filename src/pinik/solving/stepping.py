@@ -22,11 +22,11 @@ Array = NDArray[np.float64]
 def advance(
     solver: Solver, kinematics: Kinematics, limits: Limits, at: Linearization, tolerance: Tolerance, scale: float = 1.0
 ) -> tuple[Array, int]:
-    """(the next configuration, joints updated one by one); `scale` shortens the step of a Jacobian method."""
+    """(the next configuration, the number of joints updated singly); `scale` shortens a Jacobian method's step."""
     if isinstance(solver, SweepingSolver):
         q, updates = solver.sweep(at.q, kinematics, limits, tolerance)
         if np.shape(q) != at.q.shape:
-            raise InputError(f"{solver.name}.sweep returns q of shape {at.q.shape}; got {np.shape(q)}")
+            raise InputError(f"{solver.name}.sweep must return q of shape {at.q.shape}; got {np.shape(q)}")
         return (limits.clip(q), updates) if np.isfinite(q).all() else (at.q, updates)
     assert isinstance(solver, JacobianSolver)
     if solver.max_residual < math.inf:
@@ -41,15 +41,16 @@ def advance(
 
 
 def _stepped(solver: JacobianSolver, kinematics: Kinematics, at: Linearization, scale: float) -> Array:
-    """The configuration after the step, clamped and scaled; joints that are not free stay to the last bit."""
-    roots = solver.roots(kinematics)
+    """The configuration after the step, clamped and scaled. Joints that are not free keep their last bit."""
+    problem = kinematics.problem
+    roots = solver.roots(problem)
     dq = solver.step(at if roots is None else at._replace(J=at.J * roots), kinematics)
     if np.shape(dq) != at.free.shape:
-        raise InputError(f"{solver.name}.direction returns dq of shape {at.free.shape}; got {np.shape(dq)}")
+        raise InputError(f"{solver.name}.direction must return dq of shape {at.free.shape}; got {np.shape(dq)}")
     dq = dq * (at.free if roots is None else at.free * roots)
     length = math.sqrt(dq.dot(dq))
     if not math.isfinite(length):
-        return at.q  # no step: the loop will say that it stalled
+        return at.q  # no step: the loop will report a stall
     if length > solver.max_step:
         largest = float(np.abs(dq).max())
         if largest > solver.max_step:
@@ -58,18 +59,18 @@ def _stepped(solver: JacobianSolver, kinematics: Kinematics, at: Linearization, 
     if scale != 1.0:
         dq = dq * scale
     q: Array = pinocchio.integrate(kinematics.model, at.q, dq)
-    if kinematics.held_entries is not None:
-        q[kinematics.held_entries] = at.q[kinematics.held_entries]
+    if problem.held_entries is not None:
+        q[problem.held_entries] = at.q[problem.held_entries]
     return q
 
 
 def _step_along_limits(
     q: Array, solver: JacobianSolver, kinematics: Kinematics, limits: Limits, at: Linearization, scale: float
 ) -> Array:
-    """The step again, after the first try `q` left the limits.
+    """Take the step again after the first try `q` left the limits.
 
-    Joints that sat at a limit already and would go further out hold still and leave their part to the others, until
-    none does; what is outside then is clipped.
+    Joints that are at a limit and would move beyond it hold still and leave their share of the step to the others. This
+    repeats until no joint pushes against a limit; what still lies outside is clipped.
     """
     held = np.zeros_like(at.free)
     while True:

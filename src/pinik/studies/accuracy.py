@@ -10,10 +10,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..errors import InputError
-from ..model.robot_model import Robot
 from ..problem.targets import Target
+from ..robot import Robot
 from ..solvers.base import Solver
-from ..solving.prepared import Prepared, prepare
+from ..solving.front import prepare
+from ..solving.prepared import Prepared
 from ..solving.solution import Solution
 from .chain import TIP, length_of
 

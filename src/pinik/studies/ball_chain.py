@@ -11,7 +11,7 @@ import pinocchio
 from numpy.typing import NDArray
 
 from ..errors import InputError
-from ..model.robot_model import Robot
+from ..robot import Robot
 from ..solvers.registry import SOLVERS
 from .steps import PROGRAM, Step
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 
 from ..loading import load
-from ..model.robot_model import Robot
+from ..robot import Robot
 
 __all__ = ["TIP", "length_of", "planar_chain"]
 

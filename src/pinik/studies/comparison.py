@@ -10,8 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..model.home import home_configuration
-from ..model.robot_model import Robot
 from ..motion.tracks import lay_track, random_configuration
+from ..robot import Robot
 from .steps import LAP, PROGRAM, Chase, Rules, Step, in_pieces
 
 __all__ = ["COMPARISONS", "CURVE", "LAP", "Comparison", "Row", "bones", "chain_length", "compare", "places"]

@@ -8,7 +8,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ..model.robot_model import Robot
+from ..robot import Robot
 from ..solvers.base import Solver
 from ..solvers.registry import make_solver
 from .accuracy import Problem, asked_of, random_bends

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import time
-from collections.abc import Callable, Generator, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import NamedTuple, Protocol
 
@@ -13,13 +13,18 @@ import pinocchio
 from numpy.typing import NDArray
 
 from ..errors import EngineError
-from ..model.limits import Limits
-from ..model.robot_model import Robot
+from ..model.robot_model import RobotModel
+from ..problem.kinematics import Kinematics
 from ..problem.targets import Target, Tolerance
+from ..robot import Robot
 from ..solvers.base import Patience, Solver
-from ..solving.prepared import Prepared, prepare
-from ..solving.run import compiled_for, run
-from ..solving.state import State, Status, measure_errors
+from ..solving.front import prepare
+from ..solving.options import Options
+from ..solving.prepared import Prepared
+from ..solving.question import Question
+from ..solving.run import Pace, run
+from ..solving.state import Status
+from ..solving.verdict import measure_errors
 
 __all__ = ["LAP", "PROGRAM", "BareChase", "Chase", "EngineChase", "Rules", "Step", "chase_with"]
 
@@ -123,13 +128,12 @@ class BareChase:
     ) -> None:
         """Begin at `start` (nq,)."""
         target = Target(frame, robot.placement(frame, start).translation)
-        self._kinematics = compiled_for(solver, robot, target)
+        options = Options(solver, limits=limits, tolerance=rules.tolerance, max_iterations=rules.max_iterations)
+        question = Question.of(robot, target, options)
         self._target, self._robot, self._tolerance, self._clock = target, robot, rules.tolerance, clock
-        most = solver.max_iterations if rules.max_iterations is None else rules.max_iterations
-        box = Limits.of(robot, limits)
-        self._states: Generator[State, Target | Sequence[Target] | None, None] = run(
-            solver, self._kinematics, box, box.clip(box.wrap(start)), most, rules.tolerance, NEVER_STALLED
-        )
+        inside = question.limits.clip(question.limits.wrap(start))
+        pace = Pace(options.iterations_at_most, NEVER_STALLED)
+        self._states = run(question, Kinematics.of(question.problem), inside, pace)
         self._state = next(self._states)  # reached: the ball begins where the frame is
 
     def step(self, place: Array) -> Step:
@@ -156,7 +160,7 @@ class BareChase:
         )
 
 
-def largest_change(robot: Robot, before: Array, after: Array) -> float:
+def largest_change(robot: RobotModel, before: Array, after: Array) -> float:
     """The largest change of one joint between two configurations (nq,) [rad or m]."""
     return float(np.abs(pinocchio.difference(robot.model, before, after)).max(initial=0.0))
 

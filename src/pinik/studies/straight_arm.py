@@ -7,8 +7,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..model.robot_model import Robot
 from ..problem.targets import Target
+from ..robot import Robot
 from ..solvers.base import Solver
 from ..solving.solution import Solution
 from .accuracy import asked_of

@@ -12,8 +12,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..errors import InputError, UnknownNameError
-from ..model.robot_model import Robot
 from ..problem.targets import Tolerance
+from ..robot import Robot
 from ..solvers.base import Solver
 from ..solvers.ccd import CCD
 from ..solvers.damped_least_squares import DampedLeastSquares

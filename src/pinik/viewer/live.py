@@ -7,7 +7,7 @@ from collections.abc import Iterable
 from typing import TYPE_CHECKING
 
 from ..loading import load
-from ..model.robot_model import Robot
+from ..robot import Robot
 from ..solvers.base import Solver
 from ..version import __version__
 

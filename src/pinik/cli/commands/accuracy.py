@@ -10,10 +10,10 @@ from typing import Annotated, Any
 import typer
 
 from ...errors import InputError
-from ...model.robot_model import Robot
+from ...robot import Robot
 from ...solvers.base import Solver
 from ...solvers.registry import SOLVERS
-from ...solving.prepared import as_count
+from ...solving.options import as_count
 from ...solving.solution import Solution
 from ...studies.accuracy import CASES, Cost, Problem, asked_of, problems
 from ...studies.accuracy import accuracy as run_accuracy

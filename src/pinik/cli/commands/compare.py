@@ -11,9 +11,9 @@ from typing import Annotated, Any
 import typer
 
 from ...errors import EngineError, InputError, UnknownNameError
-from ...model.robot_model import Robot
 from ...motion.effectors import principal_frames
-from ...solving.prepared import ENGINES, as_count
+from ...robot import Robot
+from ...solving.options import ENGINES, as_count
 from ...studies.comparison import COMPARISONS, CURVE, Row
 from ...studies.comparison import compare as run_comparisons
 from ...studies.thesis import METHODS, PRESETS, Contest, Mismatch, contest, mismatch, published

@@ -10,7 +10,7 @@ from typing import Any
 import pinocchio
 
 from ...model.joint import Joint
-from ...model.robot_model import Robot
+from ...robot import Robot
 from ...solving import native
 from ...version import __version__
 from ..inputs.loading import load_robot

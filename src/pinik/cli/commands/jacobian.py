@@ -6,7 +6,7 @@ from typing import Annotated
 
 import typer
 
-from ...model.robot_model import Robot
+from ...robot import Robot
 from ..inputs.assignments import configuration
 from ..inputs.loading import load_robot
 from ..inputs.options import AsJson, Degrees, PackageDirs, PoseName, RelativeTo, RobotSource, Root, Settings

@@ -9,7 +9,7 @@ from collections.abc import Iterable, Mapping
 from typing import Any
 
 from ...errors import PinikError, UnknownNameError
-from ...model.robot_model import Robot
+from ...robot import Robot
 from ...solvers.base import Solver
 from ...solvers.registry import SOLVERS, make_solver
 from ..terminal.exits import CommandError, in_words

@@ -10,8 +10,8 @@ from pathlib import Path
 from typing import Any
 
 from ...errors import InputError, PinikError
-from ...model.robot_model import Robot
 from ...problem.targets import Target
+from ...robot import Robot
 from ..terminal.exits import CommandError
 
 __all__ = ["as_options", "check_frames", "target_from_options", "targets_from_file"]

@@ -8,7 +8,7 @@ from pathlib import Path
 
 from ...errors import RobotLoadError, UnknownNameError
 from ...loading import load_in_silence
-from ...model.robot_model import Robot
+from ...robot import Robot
 from ..terminal import output
 from ..terminal.exits import CommandError, ExitStatus
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from ...model.robot_model import Robot
+from ...robot import Robot
 
 __all__ = ["configuration_fields"]
 

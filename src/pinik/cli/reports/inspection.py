@@ -13,7 +13,7 @@ from ...description import packages
 from ...description import reader as urdf
 from ...errors import RobotLoadError, UnknownNameError
 from ...loading import locate
-from ...model.robot_model import Robot
+from ...robot import Robot
 
 if TYPE_CHECKING:
     from ...shapes.second_opinion import SecondOpinion

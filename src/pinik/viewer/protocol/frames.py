@@ -7,7 +7,7 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from ...model.robot_model import Robot
+from ...robot import Robot
 from ..simulation.instance import STATUSES, Instance
 from ..simulation.session import Session
 from ..web.scene import InstanceBlock, JointPlacements, pack_frame

@@ -5,7 +5,7 @@ from __future__ import annotations
 from ...description.catalog import catalog
 from ...errors import UnknownNameError
 from ...loading import load_in_silence
-from ...model.robot_model import Robot
+from ...robot import Robot
 
 __all__ = ["ROOTS", "RobotMenu"]
 

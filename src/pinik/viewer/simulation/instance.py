@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import time
-from collections.abc import Callable, Generator, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from typing import NamedTuple
 
@@ -14,18 +14,19 @@ from numpy.typing import NDArray
 
 from ...errors import InputError
 from ...model.limits import Limits
-from ...model.robot_model import Robot
 from ...problem.kinematics import Kinematics
-from ...problem.reach import shortfall
 from ...problem.targets import Target, Tolerance, largest_of
+from ...robot import Robot
 from ...solvers.base import Solver
-from ...solving.attempts import is_nearest
 from ...solving.message import explain
-from ...solving.run import TO_THE_END, compiled_for, run
-from ...solving.state import State, Status, measure_errors
+from ...solving.options import Options
+from ...solving.question import Question
+from ...solving.run import Pace, States, run
+from ...solving.state import State, Status
+from ...solving.verdict import judge
 from .statistics import Statistics, StepFigures
 
-__all__ = ["STATUSES", "Chase", "Instance", "Verdict"]
+__all__ = ["STATUSES", "Chase", "Instance", "Standing"]
 
 Array = NDArray[np.float64]
 
@@ -51,11 +52,11 @@ class Chase:
     at_most: int = 20
 
 
-class Verdict(NamedTuple):
+class Standing(NamedTuple):
     """Where an instance stands, in words.
 
     Attributes:
-        status: One of `STATUSES`; UNREACHABLE only where proved.
+        status: One of `STATUSES`; UNREACHABLE only where that is proved.
         message: One sentence.
         position_error: The largest of the targets' [m], by plain forward kinematics; None where none is asked for.
         orientation_error: The same [rad].
@@ -128,9 +129,9 @@ class Instance:
         self.status = "IDLE"
         self.counted = False
         self._idle = why
-        self._states: Generator[State, Target | Sequence[Target] | None, None] | None = None
+        self._states: States | None = None
         self._state: State | None = None
-        self._kinematics: Kinematics | None = None
+        self._question: Question | None = None
         self._targets: tuple[Target, ...] = ()
         self._trouble = ""
 
@@ -187,16 +188,16 @@ class Instance:
             state = next(self._states)
         return state
 
-    def _begin(self, targets: tuple[Target, ...]) -> Generator[State, Target | Sequence[Target] | None, None]:
+    def _begin(self, targets: tuple[Target, ...]) -> States:
         solver, chase = self._solver, self._chase
+        options = Options(solver, limits=chase.limits, tolerance=chase.tolerance)
         try:
-            self._kinematics = compiled_for(solver, self.robot, targets)
+            self._question = Question.of(self.robot, targets, options)
         except InputError as error:
             raise _RefusedError(str(error)) from None
-        limits = Limits.of(self.robot, chase.limits)
-        start = limits.clip(limits.wrap(self.q))
+        limits, kinematics = self._question.limits, Kinematics.of(self._question.problem)
         most = solver.max_iterations if chase.until_reached else chase.at_most
-        return run(solver, self._kinematics, limits, start, most, chase.tolerance, TO_THE_END)
+        return run(self._question, kinematics, limits.clip(limits.wrap(self.q)), Pace(most))
 
     def _fail(self, error: Exception, spent: float) -> None:
         """A step that the solver did not survive counts as one that missed."""
@@ -215,30 +216,15 @@ class Instance:
         """Joint name → "lower", "upper" or "both", for joints at a limit or beyond one, whether limits hold or not."""
         return self._all_limits.active(self.q)
 
-    def verdict(self) -> Verdict:
+    def verdict(self) -> Standing:
         """Where it stands, with the errors recomputed by plain forward kinematics, and why a target is missed."""
         if self._trouble:
-            return Verdict(self.status, self._trouble, None, None, ())
-        if self._kinematics is None or not self._targets:
-            return Verdict("IDLE", self._idle, None, None, ())
-        kinematics, tolerance = self._kinematics, self._chase.tolerance
-        errors = measure_errors(self.robot, self._targets, self.q)
-        off = largest_of(errors)
-        status, proof = Status[self.status], None
-        if all(error.within(tolerance) for error in errors):
-            status = Status.CONVERGED
-        else:
-            proof = shortfall(kinematics, Limits.of(self.robot, self._chase.limits), tolerance.position)
-            stalled = status is Status.STALLED
-            if proof is not None or (stalled and is_nearest(self._solver, kinematics, errors, tolerance)):
-                status = Status.UNREACHABLE
-            elif status is Status.CONVERGED:
-                status = Status.STALLED
-        active = {}
-        if self._chase.limits:
-            sides = self.limit_sides()
-            active = {name: side for name, side in sides.items() if kinematics.free[self.robot.joint(name).idx_v]}
-        off_plane = self._solver.off_plane(self.robot, self._targets)
-        moves = bool(kinematics.free.any())
-        words = explain(status, self._targets, errors, tolerance, active, proof, off_plane, moves)
-        return Verdict(status.name, words, off.position, off.orientation, tuple(active))
+            return Standing(self.status, self._trouble, None, None, ())
+        if self._question is None or not self._targets:
+            return Standing("IDLE", self._idle, None, None, ())
+        question = self._question
+        verdict = judge(question, self._targets, self.q, Status[self.status])
+        active = question.active_limits(self.q) if question.options.limits else {}
+        words = explain(question, self._targets, verdict, active)
+        off = largest_of(verdict.errors)
+        return Standing(verdict.status.name, words, off.position, off.orientation, tuple(active))

@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 
 from ...errors import InputError
-from ...model.robot_model import Robot
-from ...problem.kinematics import Kinematics
+from ...problem.problem import Problem
 from ...problem.targets import Target
+from ...robot import Robot
 from ...solvers.base import Solver
 from ...solvers.registry import CLOSED_FORMS, make_solver
 
@@ -23,7 +23,7 @@ def check_balls(solver: Solver, robot: Robot, frames: Sequence[str]) -> None:
     refusals = []
     for frame in frames:
         try:
-            solver.check(Kinematics(robot, Target(frame, position=(0.0, 0.0, 0.0))))
+            solver.check(Problem(robot, Target(frame, position=(0.0, 0.0, 0.0))))
             return
         except InputError as error:
             refusals.append(f"{solver.name} cannot chase a ball here: {error}")

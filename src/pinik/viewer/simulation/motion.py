@@ -8,8 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...model.home import home_configuration
-from ...model.robot_model import Robot
 from ...motion.tracks import Track, lay_track, random_configuration
+from ...robot import Robot
 from .balls import Ball
 
 __all__ = ["MOTIONS", "Motion"]

@@ -11,13 +11,13 @@ from numpy.typing import ArrayLike
 
 from ...errors import InputError, UnknownNameError
 from ...model.home import home_configuration, lowest_point
-from ...model.robot_model import Robot
 from ...motion.curves import CURVES
 from ...motion.effectors import principal_frames
 from ...problem.targets import Tolerance
+from ...robot import Robot
 from ...solvers.base import Solver
-from ...solvers.registry import known_methods, make_solver
-from ...solving.prepared import check_joint_names
+from ...solvers.registry import Method, known_methods, make_solver
+from ...solving.question import check_joint_names
 from .balls import MODES, Ball, Mode
 from .instance import Chase, Instance
 from .method_menu import check_balls, fitting, offered
@@ -35,7 +35,7 @@ _ON_THE_GROUND = 0.12  # [m] above the lowest frame
 _DEFAULT_METHODS = ("ccd", "jt", "pinv", "dls")
 
 
-Methods = str | type[Solver] | Solver | Iterable[str | type[Solver] | Solver]
+Methods = Method | Iterable[Method]
 """One method or several, by name (also "ccd,dls"), class or instance."""
 
 

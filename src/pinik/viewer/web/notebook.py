@@ -14,11 +14,11 @@ from numpy.typing import NDArray
 
 from ...errors import UrdfWarning
 from ...model.home import home_configuration
-from ...model.robot_model import Robot
 from ...picture.arguments import checked_size, view_direction
 from ...picture.bodies import bodies_of
 from ...picture.camera import Camera, facing, look_from
 from ...picture.draw import BALL, Picture, ball_radius, draw
+from ...robot import Robot
 
 __all__ = ["as_html", "draw_beside"]
 

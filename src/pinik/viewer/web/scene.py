@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from ...errors import EngineError
 from ...model.home import robot_size
-from ...model.robot_model import Robot
+from ...robot import Robot
 
 if TYPE_CHECKING:
     from ...shapes.meshes import Color, Shape

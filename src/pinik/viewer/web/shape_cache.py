@@ -13,7 +13,7 @@ import platformdirs
 import umsgpack
 
 from ...description.packages import resolve
-from ...model.robot_model import Robot
+from ...robot import Robot
 from .scene import Shapes, make_shapes
 
 __all__ = ["LIMIT", "cache_folder", "shapes_of"]

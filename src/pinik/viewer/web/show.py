@@ -11,7 +11,7 @@ from collections.abc import Callable
 from typing import Any, Protocol
 
 from ...errors import InputError, PinikError
-from ...model.robot_model import Robot
+from ...robot import Robot
 from ..protocol.frames import FrameMaker
 from ..protocol.messages import apply, checked, parse, text, whole_number
 from ..protocol.recording import Recording, animation_page

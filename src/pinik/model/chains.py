@@ -1,0 +1,111 @@
+"""The chain of joints that moves a frame: which joints, from where to where, and how long it is."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Iterable
+from dataclasses import dataclass
+
+import numpy as np
+import pinocchio
+
+from .joint import Joint
+
+__all__ = ["Chain", "chain_of"]
+
+
+@dataclass(frozen=True, eq=False)
+class Chain:
+    """The joints that move a frame relative to a reference.
+
+    Where the reference hangs on another branch, the chain goes down that branch and up the frame's own.
+
+    Attributes:
+        joints: These joints, followers included, base first.
+        frame_joint, reference_joint: The joints that carry the frame and the reference (0: the world).
+        frame_placement: Where the frame, or the tool in it, sits on its joint.
+        reference_placement: Where the reference sits on its joint; None for the world.
+        frame_support, reference_support: The ids of all joints between the world and each of the two.
+        model: The model.
+    """
+
+    joints: tuple[Joint, ...]
+    frame_joint: int
+    reference_joint: int
+    frame_placement: pinocchio.SE3
+    reference_placement: pinocchio.SE3 | None
+    frame_support: frozenset[int]
+    reference_support: frozenset[int]
+    model: pinocchio.Model
+
+    @property
+    def is_one_branch(self) -> bool:
+        """Whether the reference does not move: the chain goes from its first joint straight to the frame."""
+        return not any(joint.id in self.reference_support for joint in self.joints)
+
+    def length(self, still: Collection[int] = ()) -> float:
+        """The length of what moves [m]: the distances from joint to joint up to the frame, its tool included.
+
+        Sliding joints count fully drawn out. The way to the first joint that moves does not count, so a chain is as
+        long wherever it is mounted.
+
+        Args:
+            still: Ids of joints that hold still.
+        """
+        own = [joint for joint in self.joints if joint.id in self.frame_support]
+        other = [joint for joint in self.joints if joint.id not in self.frame_support]
+        length = self._branch(own, self.frame_placement, still)
+        if other:
+            assert self.reference_placement is not None
+            length += self._branch(other, self.reference_placement, still)
+            if own:
+                first, last = (self.model.jointPlacements[branch[0].id].translation for branch in (own, other))
+                length += float(np.linalg.norm(first - last))
+        return length
+
+    def _branch(self, joints: list[Joint], end: pinocchio.SE3, still: Collection[int]) -> float:
+        while joints and joints[0].id in still:
+            joints = joints[1:]
+        if not joints:
+            return 0.0
+        offsets = [self.model.jointPlacements[joint.id].translation for joint in joints[1:]]
+        ways = sum(float(np.linalg.norm(offset)) for offset in (*offsets, end.translation))
+        return ways + sum(_travel(joint) for joint in joints if joint.kind == "prismatic" and joint.id not in still)
+
+
+def chain_of(
+    model: pinocchio.Model,
+    joints: Iterable[Joint],
+    frame: int,
+    reference: int | None = None,
+    tool: pinocchio.SE3 | None = None,
+) -> Chain:
+    """The chain that moves a frame.
+
+    Args:
+        model: The model.
+        joints: Its joints.
+        frame: The frame's index.
+        reference: The index of the frame that it moves relative to; the world when None.
+        tool: The point meant, in the frame.
+    """
+    at = model.frames[frame]
+    base = None if reference is None else model.frames[reference]
+    reference_joint = 0 if base is None else base.parentJoint
+    frame_support = frozenset(model.supports[at.parentJoint])
+    reference_support = frozenset(model.supports[reference_joint])
+    one_sided = frame_support ^ reference_support
+    return Chain(
+        tuple(joint for joint in joints if joint.id in one_sided),
+        at.parentJoint,
+        reference_joint,
+        at.placement if tool is None else at.placement * tool,
+        None if base is None else base.placement,
+        frame_support,
+        reference_support,
+        model,
+    )
+
+
+def _travel(joint: Joint) -> float:
+    """How far a sliding joint can be drawn out from zero [m]."""
+    return max(map(abs, joint.range_to_draw_from(joint.lower, joint.upper)))

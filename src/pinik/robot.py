@@ -1,0 +1,62 @@
+"""`Robot`: a robot that answers both questions, where its frames are and which joint values put them elsewhere."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from typing import Any
+
+import pinocchio
+from numpy.typing import ArrayLike
+
+from .model.robot_model import RobotModel
+from .problem.targets import Target, Tolerance
+from .solvers.registry import Method
+from .solving.front import answer
+from .solving.solution import Solution
+from .solving.words import UNWEIGHTED
+
+__all__ = ["Robot"]
+
+
+class Robot(RobotModel):
+    """A robot as `pinik.load` returns it: everything of `RobotModel`, and `solve`."""
+
+    def solve(
+        self,
+        targets: str | Target | Sequence[Target],
+        position: ArrayLike | None = None,
+        *,
+        rotation: ArrayLike | None = None,
+        rpy: ArrayLike | None = None,
+        quat_xyzw: ArrayLike | None = None,
+        quat_wxyz: ArrayLike | None = None,
+        placement: pinocchio.SE3 | ArrayLike | None = None,
+        axis: str | ArrayLike | None = None,
+        direction: ArrayLike | None = None,
+        at: ArrayLike | None = None,
+        tool: pinocchio.SE3 | ArrayLike | None = None,
+        relative_to: str | None = None,
+        weight: float = UNWEIGHTED,
+        method: Method = "dls",
+        q0: ArrayLike | str | None = None,
+        limits: bool = True,
+        locked: Iterable[str] = (),
+        restarts: int | None = None,
+        seed: int = 0,
+        max_iterations: int | None = None,
+        tolerance: Tolerance | ArrayLike | None = None,
+        time_limit: float | None = None,
+        engine: str = "auto",
+        trace: bool = False,
+        **solver_parameters: Any,
+    ) -> Solution:
+        """Find joint values that put frames where the targets want them.
+
+        The arguments, the answer and the errors are those of `pinik.solve`, which explains each. A question that was
+        asked before is not compiled again.
+        """
+        wanted = (
+            position, rotation, rpy, quat_xyzw, quat_wxyz, placement, axis, direction, at, tool, relative_to, weight,
+        )  # fmt: skip
+        said = (limits, locked, restarts, seed, max_iterations, tolerance, time_limit, engine, trace)
+        return answer(self, targets, method, wanted, q0, said, solver_parameters)

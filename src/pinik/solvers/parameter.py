@@ -1,0 +1,209 @@
+"""A solver's parameter: its range, unit and meaning, from which checks, help texts and sliders are made."""
+
+from __future__ import annotations
+
+import contextlib
+import dataclasses
+import math
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+from ..errors import InputError
+
+__all__ = ["JointValues", "Parameter", "max_step_parameter", "parameter", "parameters_of", "stiffness_parameter"]
+
+
+class JointValues(Mapping[str, float]):
+    """Joint name → number, immutable and hashable. It equals any mapping with the same items."""
+
+    __slots__ = ("_hash", "_values")
+
+    def __init__(self, values: Mapping[str, float] = {}) -> None:  # noqa: B006: it is copied
+        self._values = dict(values)
+        self._hash = hash(frozenset(self._values.items()))
+
+    def __getitem__(self, name: str) -> float:
+        return self._values[name]
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._values)
+
+    def __len__(self) -> int:
+        return len(self._values)
+
+    def __hash__(self) -> int:
+        return self._hash
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, Mapping) and self._values == dict(other)
+
+    def __repr__(self) -> str:
+        return repr(self._values)
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return JointValues, (self._values,)
+
+
+@dataclass(frozen=True)
+class Parameter:
+    """One parameter of a solver.
+
+    Attributes:
+        default: The value that it has unless told otherwise.
+        help: What it means, in one line.
+        unit: Such as "rad".
+        low, high: The range, ends included; None where it is open.
+        slider: The part of the range that a slider offers; the whole range when None.
+        choices: The words allowed, for a choice.
+        optional: Whether None is allowed and means something of its own.
+        unbounded: Whether infinity is allowed. None stands for it, because JSON has no infinity.
+        name: The field's name.
+    """
+
+    default: Any
+    help: str
+    unit: str = ""
+    low: float | None = None
+    high: float | None = None
+    slider: tuple[float, float] | None = None
+    choices: tuple[str, ...] = ()
+    optional: bool = False
+    unbounded: bool = False
+    name: str = ""
+
+    @cached_property
+    def kind(self) -> str:
+        """One of "choice", "truth", "joints" (joint name → number) and "number"."""
+        if self.choices:
+            return "choice"
+        if isinstance(self.default, bool):
+            return "truth"
+        return "joints" if isinstance(self.default, JointValues) else "number"
+
+    def check(self, value: Any, method: str) -> Any:
+        """`value` as the parameter of a method keeps it: immutable, and inside its range.
+
+        Raises:
+            InputError: The value has the wrong kind or lies outside the range.
+        """
+        what = f"{method}: {self.name}"
+        if value is None and self.optional:
+            return None
+        if value is None and self.unbounded:
+            return math.inf
+        match self.kind:
+            case "choice":
+                if not isinstance(value, str) or value not in self.choices:
+                    raise InputError(f"{what} must be one of {', '.join(map(repr, self.choices))}; got {value!r}")
+                return value
+            case "truth":
+                if not isinstance(value, (bool, np.bool_)):
+                    raise InputError(f"{what} must be true or false; got {value!r}")
+                return bool(value)
+            case "joints":
+                if not isinstance(value, Mapping):
+                    raise InputError(f"{what} must map joint names to numbers; got {value!r}")
+                return JointValues({str(n): self._number(v, f"{what}[{n!r}]") for n, v in value.items()})
+        number = self._number(value, what)
+        return int(number) if self.is_whole and number.is_integer() else number
+
+    @property
+    def is_whole(self) -> bool:
+        """Whether its numbers are whole ones."""
+        return isinstance(self.default, int) and not isinstance(self.default, bool)
+
+    def _number(self, value: Any, what: str) -> float:
+        low = -math.inf if self.low is None else self.low
+        high = math.inf if self.high is None else self.high
+        number = math.nan
+        if isinstance(value, (int, float, np.integer, np.floating)) and not isinstance(value, bool):
+            with contextlib.suppress(OverflowError):
+                number = float(value)
+        if not low <= number <= high or not (self.unbounded or math.isfinite(number)):
+            bounds = "a number" if self.unbounded else "a finite number"
+            if math.isfinite(high):
+                bounds += f" from {low:g} to {high:g}"
+            elif math.isfinite(low):
+                bounds += f" of at least {low:g}"
+            unit = f" [{self.unit}]" if self.unit else ""
+            none = " or None" if self.optional else ""
+            raise InputError(f"{what} must be {bounds}{unit}{none}; got {value!r}")
+        return number
+
+    def plain(self, value: Any) -> Any:
+        """A value as JSON has it: infinity becomes None, a mapping a dict."""
+        if isinstance(value, float) and not math.isfinite(value):
+            return None
+        return dict(value) if isinstance(value, Mapping) else value
+
+    @property
+    def none_means(self) -> str | None:
+        """What None stands for, in words; None where it is not allowed."""
+        return "automatic" if self.optional else "no limit" if self.unbounded else None
+
+    @property
+    def range_in_words(self) -> str:
+        """The values allowed, such as "from 0.01 to 1.99 rad"; empty where any number is."""
+        if self.choices:
+            return " | ".join(self.choices)
+        if self.kind == "truth":
+            return "true | false"
+        unit = f" {self.unit}" if self.unit else ""
+        if self.low is None and self.high is None:
+            return self.unit
+        if self.high is None:
+            return f"from {self.low:g}{unit}"
+        return f"{'up' if self.low is None else f'{self.low:g}'} to {self.high:g}{unit}"
+
+    @property
+    def default_in_words(self) -> str:
+        """The default as the command line takes it."""
+        if isinstance(self.default, float):
+            return f"{self.default:.4g}"
+        return "null" if self.default is None else str(self.default).lower()
+
+
+def parameter(
+    default: Any,
+    help: str,
+    *,
+    unit: str = "",
+    low: float | None = None,
+    high: float | None = None,
+    slider: tuple[float, float] | None = None,
+    choices: tuple[str, ...] = (),
+    optional: bool = False,
+    unbounded: bool = False,
+) -> Any:
+    """A field of a solver's dataclass that knows its range, unit and meaning; see `Parameter` for the arguments."""
+    own = JointValues(default) if isinstance(default, Mapping) else default
+    described = Parameter(own, help, unit, low, high, slider, tuple(choices), optional, unbounded)
+    return dataclasses.field(default=own, metadata={"parameter": described})
+
+
+def parameters_of(solver: type[Any]) -> tuple[Parameter, ...]:
+    """The parameters of a solver's class, in the order of its fields; fields made without `parameter` are left out."""
+    known: tuple[Parameter, ...] | None = vars(solver).get("_parameters")
+    if known is None:
+        known = tuple(
+            dataclasses.replace(field.metadata["parameter"], name=field.name)
+            for field in dataclasses.fields(solver)
+            if "parameter" in field.metadata
+        )
+        solver._parameters = known
+    return known
+
+
+def max_step_parameter(default: float) -> Any:
+    """The clamp on a step, whose default differs between methods."""
+    help_ = "largest change of one joint in one step"
+    return parameter(default, help_, unit="rad or m", low=1e-6, slider=(0.01, 3.2), unbounded=True)
+
+
+def stiffness_parameter(help: str) -> Any:
+    """How willingly each joint moves, from 0 to 1."""
+    return parameter({}, help, low=0.0, high=1.0)

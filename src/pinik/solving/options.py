@@ -1,0 +1,137 @@
+"""Every option of a question, once: what fronts take, both engines read, and a new option joins as one field."""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from ..checks import as_finite_number, as_names
+from ..errors import InputError, UnknownNameError
+from ..problem.targets import Tolerance
+from ..solvers.base import Solver
+from ..solvers.damped_least_squares import DampedLeastSquares
+from ..solvers.registry import Method, make_solver
+
+__all__ = ["ENGINES", "OPTION_NAMES", "Options", "as_count", "as_truth"]
+
+ENGINES = ("auto", "python", "native")
+
+# Iterations in which the best of the failed attempts is followed to its end, unless the caller allows fewer.
+_TO_THE_END_AT_MOST = 5000
+
+
+def as_count(value: object, what: str, least: int = 1) -> int:
+    """`value` as a whole number of at least `least`; InputError for anything else."""
+    if isinstance(value, bool) or not isinstance(value, (int, np.integer)) or value < least:
+        raise InputError(f"{what} must be a whole number of at least {least}; got {value!r}")
+    return int(value)
+
+
+def as_truth(value: object, what: str) -> bool:
+    """`value` as a truth value; InputError for anything else."""
+    if not isinstance(value, (bool, np.bool_)):
+        raise InputError(f"{what} must be True or False; got {value!r}")
+    return bool(value)
+
+
+def _names(value: Iterable[str], what: str) -> tuple[str, ...]:
+    return as_names(value, what)
+
+
+def _count(value: int, what: str) -> int:
+    return as_count(value, what, least=0)
+
+
+def _count_or_none(least: int) -> Callable[[int | None, str], int | None]:
+    return lambda value, what: None if value is None else as_count(value, what, least)
+
+
+def _tolerance(value: Tolerance | ArrayLike | None, what: str) -> Tolerance:
+    return Tolerance.of(value)
+
+
+def _seconds(value: float | None, what: str) -> float:
+    seconds = math.inf if value is None or value == math.inf else as_finite_number(value, what)
+    if seconds <= 0.0:
+        raise InputError(f"{what} must be a positive number of seconds; got {value!r}")
+    return seconds
+
+
+def _engine(value: str, what: str) -> str:
+    if value not in ENGINES:
+        raise UnknownNameError("engine", value, ENGINES)
+    return value
+
+
+@dataclass(frozen=True)
+class Options:
+    """How a question is to be solved. Checked, immutable and hashable; equal options are the same options.
+
+    Attributes:
+        method: The solver with its parameters; a name, a class or an instance is taken.
+        limits: Whether the answer keeps inside the joints' limits.
+        locked: The names of joints that hold still.
+        restarts: Fresh starts after a failed attempt; the solver's own number when None.
+        seed: The seed of the fresh starts.
+        max_iterations: Iterations of one attempt at most; the solver's own number when None.
+        tolerance: The errors that count as reached.
+        time_limit: Seconds for one question; infinite, or None, where there is no limit.
+        engine: "auto", "python" or "native".
+        trace: Whether to keep every state.
+
+    Raises:
+        UnknownNameError: There is no such method or engine.
+        InputError: A value of the wrong kind or out of its range.
+    """
+
+    method: Solver = field(default=DampedLeastSquares(), metadata={"check": lambda value, what: make_solver(value)})
+    limits: bool = field(default=True, metadata={"check": as_truth})
+    locked: tuple[str, ...] = field(default=(), metadata={"check": _names})
+    restarts: int | None = field(default=None, metadata={"check": _count_or_none(0)})
+    seed: int = field(default=0, metadata={"check": _count})
+    max_iterations: int | None = field(default=None, metadata={"check": _count_or_none(1)})
+    tolerance: Tolerance = field(default=Tolerance(), metadata={"check": _tolerance})
+    time_limit: float = field(default=math.inf, metadata={"check": _seconds})
+    engine: str = field(default="auto", metadata={"check": _engine})
+    trace: bool = field(default=False, metadata={"check": as_truth})
+
+    def __post_init__(self) -> None:
+        """Check every option."""
+        for own in dataclasses.fields(self):
+            object.__setattr__(self, own.name, own.metadata["check"](getattr(self, own.name), own.name))
+
+    @classmethod
+    def of(cls, method: Method = "dls", parameters: dict[str, Any] | None = None, **options: Any) -> Options:
+        """Options with parameters of the solver among them.
+
+        Args:
+            method: A solver's name, class or instance.
+            parameters: The solver's parameters, by name.
+            **options: The other options.
+        """
+        return cls(make_solver(method, **(parameters or {})), **options)
+
+    @property
+    def restarts_at_most(self) -> int:
+        """Fresh starts after a failed attempt."""
+        return self.method.restarts if self.restarts is None else self.restarts
+
+    @property
+    def iterations_at_most(self) -> int:
+        """Iterations of one attempt."""
+        return self.method.max_iterations if self.max_iterations is None else self.max_iterations
+
+    @property
+    def iterations_to_the_end(self) -> int:
+        """Iterations of the last run, which follows the best of the failed attempts."""
+        return _TO_THE_END_AT_MOST if self.max_iterations is None else self.max_iterations
+
+
+OPTION_NAMES = tuple(own.name for own in dataclasses.fields(Options) if own.name != "method")
+"""The names of the options that every front takes besides the method."""

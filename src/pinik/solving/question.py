@@ -1,0 +1,85 @@
+"""A question: what is asked of which frames of a robot, and how; compiled once, and never changed."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..errors import InputError
+from ..model.limits import Limits
+from ..model.robot_model import RobotModel
+from ..problem.problem import Problem
+from ..problem.reach import Bounds, bounds_of
+from ..problem.targets import Target
+from ..solvers.base import JacobianSolver, Solver
+from .options import Options
+
+__all__ = ["Question", "check_joint_names"]
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class Question:
+    """Targets of one kind with the options to solve them by. Any thread may read it.
+
+    Attributes:
+        problem: The targets, compiled.
+        options: The options.
+        limits: The joints' limits, on or off as the options say.
+    """
+
+    problem: Problem
+    options: Options
+    limits: Limits
+
+    @classmethod
+    def of(cls, robot: RobotModel, targets: Target | Sequence[Target], options: Options) -> Question:
+        """Compile a question.
+
+        Raises:
+            UnknownNameError: There is no such frame or joint.
+            InputError: The method cannot do what is asked, or a joint named in its parameters cannot be set.
+        """
+        if not isinstance(robot, RobotModel):
+            raise InputError(f"robot must be what pinik.load returns; got {robot!r}")
+        solver = options.method
+        check_joint_names(robot, solver)
+        at_target = isinstance(solver, JacobianSolver) and solver.target_jacobian
+        problem = Problem(robot, targets, locked=(*options.locked, *solver.held), target_jacobian=at_target)
+        solver.check(problem)
+        return cls(problem, options, Limits.of(robot, options.limits))
+
+    @property
+    def robot(self) -> RobotModel:
+        """The robot."""
+        return self.problem.robot
+
+    @property
+    def solver(self) -> Solver:
+        """The method with its parameters."""
+        return self.options.method
+
+    def active_limits(self, q: Array) -> dict[str, str]:
+        """Joint name → "lower", "upper" or "both", for the joints at a limit that can move a target."""
+        free, robot = self.problem.free, self.robot
+        return {name: side for name, side in self.limits.active(q).items() if free[robot.joint(name).idx_v]}
+
+    @cached_property
+    def bounds(self) -> list[Bounds | None]:
+        """How far and how near each target's frame can be."""
+        return bounds_of(self.problem, self.limits)
+
+
+def check_joint_names(robot: RobotModel, solver: Solver) -> None:
+    """Check that the joints named in a solver's parameters exist, can be set, and have an angle where one is given."""
+    for parameter, value in solver.parameters.items():
+        if isinstance(value, Mapping):
+            for name in value:
+                joint = robot.settable_joint(name)
+                if parameter == "rest_posture" and not joint.has_one_axis:
+                    raise InputError(f"rest_posture: joint {name!r} is {joint.kind} and has no angle")
