@@ -11,8 +11,9 @@ from numpy.typing import NDArray
 from ..problem.reach import shortfall
 from ..problem.targets import TargetError
 from ..solvers.two_bone import TwoBoneSolver
-from . import native
 from .attempts import Settings, is_nearest
+from .native.answers import Answers
+from .native.codec import targets_of
 from .run import AT_REST
 from .state import Status, measure_positions
 
@@ -30,7 +31,7 @@ def lands_at_once(settings: Settings) -> bool:
     return isinstance(solver, TwoBoneSolver) and solver.lands_at_once and unhurried
 
 
-def attempt_at_once(settings: Settings, goals: Array, starts: Array) -> native.Answers:
+def attempt_at_once(settings: Settings, goals: Array, starts: Array) -> Answers:
     """What `attempts.attempt_all` would find for goals (N, 1, 18) from starts (N or 1, nq), one after another."""
     began = time.perf_counter()
     count, positions = len(goals), goals[:, 0, :3]
@@ -45,7 +46,7 @@ def attempt_at_once(settings: Settings, goals: Array, starts: Array) -> native.A
     iterations = np.where((status == Status.CONVERGED) | rests, 1, 2) * settings.kinematics.free.any()
     none = np.zeros(count, dtype=np.int64)
     seconds = np.full(count, (time.perf_counter() - began) / count)
-    return native.Answers(q, status, missed, np.full(count, math.nan), iterations, none, none.copy(), seconds)
+    return Answers(q, status, missed, np.full(count, math.nan), iterations, none, none.copy(), seconds)
 
 
 def _answered(settings: Settings, positions: Array, starts: Array) -> tuple[Array, Array, NDArray[np.bool_]]:
@@ -63,6 +64,6 @@ def _verdict(settings: Settings, goal: Array, missed: float) -> Status:
     if is_nearest(settings.solver, settings.kinematics, (TargetError(missed, None),), settings.tolerance):
         return Status.UNREACHABLE
     kinematics = settings.kinematics
-    kinematics.retarget(native.targets_of(kinematics.targets, goal))
+    kinematics.retarget(targets_of(kinematics.targets, goal))
     proof = shortfall(kinematics, settings.limits, settings.tolerance.position)
     return Status.STALLED if proof is None else Status.UNREACHABLE

@@ -18,9 +18,10 @@ from ..model.robot_model import Robot
 from ..problem.reach import shortfall
 from ..problem.targets import Target, as_targets, largest_of
 from ..solvers.base import Solver
-from . import native
 from .at_once import attempt_at_once, lands_at_once
 from .attempts import Outcome, attempt_all
+from .native.answers import Answers, attempt_many
+from .native.codec import goals_of, targets_of
 from .prepared import Prepared, as_count, prepare
 from .solution import Solution
 from .state import Status, measure_errors
@@ -74,7 +75,7 @@ def solve_many(
     nearest = isinstance(q0, str) and q0 == "nearest"
     starts = _starts(robot, None if nearest else q0, len(goals))
     if prepared.native is not None:
-        answers = native.attempt_many(prepared.native, goals, starts, nearest, count)
+        answers = attempt_many(prepared.native, goals, starts, nearest, count)
     elif lands_at_once(prepared.settings) and not nearest:
         answers = attempt_at_once(prepared.settings, goals, starts)
     else:
@@ -83,7 +84,7 @@ def solve_many(
 
 
 @dataclass(frozen=True, eq=False)
-class Solutions(native.Answers):
+class Solutions(Answers):
     """The answers to N questions, each checked by plain Pinocchio; `solutions[i]` is one as `pinik.solve` gives it.
 
     Attributes:
@@ -126,7 +127,7 @@ class Solutions(native.Answers):
         prepared, asked = self.prepared, self.prepared.settings
         if not -len(self) <= index < len(self):
             raise IndexError(f"there are {len(self)} solutions; got {index}")
-        targets = native.targets_of(prepared.targets, self._goals[index])
+        targets = targets_of(prepared.targets, self._goals[index])
         asked.kinematics.retarget(targets)
         missed = self.status[index] is Status.UNREACHABLE
         outcome = Outcome(
@@ -161,7 +162,7 @@ def _questions(robot: Robot, targets: Any, places: Any) -> tuple[tuple[Target, .
                 raise InputError(
                     f"targets[{number}] asks for something else than targets[0]; solve each kind for itself"
                 )
-        return asked[0], np.array([native.goals_of(each) for each in asked])
+        return asked[0], np.array([goals_of(each) for each in asked])
     if isinstance(places, Sequence) and any(isinstance(place, pinocchio.SE3) for place in places):
         places = np.array([as_se3(place, f"places[{k}]").homogeneous for k, place in enumerate(places)])
     rotations, points = None, None
@@ -205,16 +206,16 @@ def _starts(robot: Robot, q0: ArrayLike | None, count: int) -> Array:
     return starts
 
 
-def _attempt_one_by_one(prepared: Prepared, goals: Array, starts: Array, nearest: bool) -> native.Answers:
+def _attempt_one_by_one(prepared: Prepared, goals: Array, starts: Array, nearest: bool) -> Answers:
     outcomes, seconds = [], []
     for number, goal in enumerate(goals):
         began = time.perf_counter()
         settings = prepared.settings._replace(start=starts[number % len(starts)], target=number, nearest=nearest)
-        settings.kinematics.retarget(native.targets_of(prepared.targets, goal))
+        settings.kinematics.retarget(targets_of(prepared.targets, goal))
         outcomes.append(attempt_all(settings, began))
         seconds.append(time.perf_counter() - began)
     largest = np.array([largest_of(outcome.errors) for outcome in outcomes], dtype=np.float64)  # None becomes NaN
-    return native.Answers(
+    return Answers(
         np.array([outcome.q for outcome in outcomes]),
         np.array([outcome.status for outcome in outcomes], dtype=object),
         largest[:, 0],

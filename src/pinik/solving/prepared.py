@@ -18,8 +18,8 @@ from ..model.robot_model import Robot
 from ..problem.targets import Target, Tolerance, as_targets
 from ..solvers.base import Solver
 from ..solvers.registry import make_solver
-from . import native
 from .attempts import Settings, attempt_all
+from .native import codec, compiling, module
 from .run import compiled_for
 from .solution import Solution
 from .starts import Starts
@@ -163,7 +163,7 @@ class Prepared:
             time_limit=time_limit,
             trace=trace,
         )
-        self.native = native.make_engine(self.settings) if self.engine == "native" else None
+        self.native = compiling.make_engine(self.settings) if self.engine == "native" else None
 
     def __reduce__(self) -> tuple[Any, ...]:
         """Compile it anew elsewhere: what was compiled holds memory of this process."""
@@ -192,7 +192,7 @@ class Prepared:
         nearest = isinstance(q0, str) and q0 == "nearest"
         start = self.settings.start if q0 is None or nearest else self.robot.check_configuration(q0, "q0")
         if self.native is not None:
-            return Solution(self.native.solve(start, native.goals_of(asked), nearest), self.settings)
+            return Solution(self.native.solve(start, codec.goals_of(asked), nearest), self.settings)
         self._kinematics.retarget(asked)
         return Solution(attempt_all(self.settings._replace(start=start, nearest=nearest), began), self.settings)
 
@@ -249,7 +249,7 @@ def _chosen(engine: str, solver: Solver) -> str:
     """
     if engine not in ENGINES:
         raise UnknownNameError("engine", engine, ENGINES)
-    why_not = native.why_not(solver)
+    why_not = module.why_not(solver)
     if engine == "native" and why_not:
         raise EngineError(f"the compiled engine cannot be used: {why_not}; engine='auto' or 'python' can")
     return "python" if engine == "python" or why_not else "native"

@@ -15,7 +15,8 @@ from ..model.robot_model import Robot
 from ..problem.targets import Target, TargetError, largest_of
 from .attempts import Outcome, Settings
 from .message import explain
-from .native import Answer, why_not
+from .native.answers import Answer
+from .native.module import why_not
 from .state import State, Status
 
 __all__ = ["Solution"]
