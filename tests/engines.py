@@ -12,13 +12,13 @@ import pytest
 from numpy.typing import NDArray
 
 import pinik
-from pinik.solving import native
+from pinik.solving.native.module import why_not
 from pinik.solving.run import TO_THE_END, run
 
 Array = NDArray[np.float64]
 Step = Callable[..., Array]
 
-WHY_NOT = native.why_not()
+WHY_NOT = why_not()
 REQUIRED = bool(os.environ.get("PINIK_REQUIRE_NATIVE"))
 needs_native = pytest.mark.skipif(WHY_NOT is not None and not REQUIRED, reason=f"no compiled engine: {WHY_NOT}")
 """For tests of the compiled engine. With PINIK_REQUIRE_NATIVE set they run where there is none, and fail."""

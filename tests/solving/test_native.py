@@ -19,17 +19,17 @@ import pytest
 import pinik
 from engines import REQUIRED, WHY_NOT, needs_native
 from pinik import Status, Target
-from pinik.solving import native
+from pinik.solving.native import codec, module
 
 METHODS = ["ccd", "jt", "pinv", "dls"]
 
 
 @pytest.fixture
 def reload_engine():
-    """`native` looks for the module anew in this test and after it."""
-    native._load.cache_clear()
+    """`module` looks for the module anew in this test and after it."""
+    module.load.cache_clear()
     yield
-    native._load.cache_clear()
+    module.load.cache_clear()
 
 
 @pytest.fixture
@@ -78,7 +78,7 @@ def shape_of(stub: str) -> str:
 
 
 def test_without_the_module_python_computes_and_says_why(no_module, panda):
-    assert "not built" in native.why_not()
+    assert "not built" in module.why_not()
     s = panda.solve("panda_hand_tcp", [0.4, 0.1, 0.5], seed=101)
     assert s.success
     assert s.engine == "python"
@@ -89,7 +89,7 @@ def test_without_the_module_python_computes_and_says_why(no_module, panda):
 @needs_native
 def test_an_engine_for_another_pinocchio_refuses(another_pinocchio, panda):
     built = pinocchio_of_the_module()
-    assert native.why_not() == (f"it was built against Pinocchio {built}, and 99.1.0 is installed; install pinik again")
+    assert module.why_not() == (f"it was built against Pinocchio {built}, and 99.1.0 is installed; install pinik again")
     assert panda.solve("panda_hand_tcp", [0.4, 0.1, 0.5], seed=103).engine == "python"
     with pytest.raises(pinik.EngineError, match=r"99\.1\.0 is installed"):
         panda.solve("panda_hand_tcp", [0.4, 0.1, 0.5], engine="native", seed=104)
@@ -181,7 +181,7 @@ def test_threads_get_the_answers_that_they_get_alone(panda):
 
     alone, together = answers(), {}
     shared = pinik.prepare(panda, Target("panda_hand_tcp", placement=np.eye(4)), engine="native").native
-    goals = [native.goals_of((Target("panda_hand_tcp", placement=M),)) for M, _ in asked]
+    goals = [codec.goals_of((Target("panda_hand_tcp", placement=M),)) for M, _ in asked]
 
     def work(k):
         mine = answers()

@@ -10,7 +10,8 @@ from numpy.typing import NDArray
 
 from ..problem.targets import TargetError
 from ..solvers.two_bone import TwoBoneSolver
-from . import native
+from .native.answers import Answers
+from .native.codec import targets_of
 from .question import Question
 from .run import AT_REST
 from .state import Status
@@ -30,7 +31,7 @@ def lands_at_once(question: Question) -> bool:
     return isinstance(solver, TwoBoneSolver) and solver.lands_at_once and unhurried
 
 
-def attempt_at_once(question: Question, goals: Array, starts: Array) -> native.Answers:
+def attempt_at_once(question: Question, goals: Array, starts: Array) -> Answers:
     """What `Attempts` would find for goals (N, 1, 18) from starts (N or 1, nq), one after another."""
     began = time.perf_counter()
     count, positions, limits = len(goals), goals[:, 0, :3], question.limits
@@ -45,7 +46,7 @@ def attempt_at_once(question: Question, goals: Array, starts: Array) -> native.A
     iterations = np.where((status == Status.CONVERGED) | rests, 1, 2) * question.problem.free.any()
     none = np.zeros(count, dtype=np.int64)
     seconds = np.full(count, (time.perf_counter() - began) / count)
-    return native.Answers(q, status, missed, np.full(count, math.nan), iterations, none, none.copy(), seconds)
+    return Answers(q, status, missed, np.full(count, math.nan), iterations, none, none.copy(), seconds)
 
 
 def _answered(question: Question, positions: Array, starts: Array) -> tuple[Array, Array, NDArray[np.bool_]]:
@@ -60,5 +61,5 @@ def _answered(question: Question, positions: Array, starts: Array) -> tuple[Arra
 
 def _status(question: Question, goal: Array, missed: float) -> Status:
     """Why a target was missed by so much [m]."""
-    targets = native.targets_of(question.problem.targets, goal)
+    targets = targets_of(question.problem.targets, goal)
     return verdict(question, targets, (TargetError(missed, None),), Status.STALLED).status

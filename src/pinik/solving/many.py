@@ -18,9 +18,10 @@ from ..model.robot_model import RobotModel
 from ..problem.reach import shortfall
 from ..problem.targets import Target, Tolerance, as_targets, largest_of
 from ..solvers.registry import Method
-from . import native
 from .at_once import attempt_at_once, lands_at_once
 from .attempts import Outcome
+from .native.answers import Answers, attempt_many
+from .native.codec import goals_of, targets_of
 from .options import Options, as_count
 from .prepared import Prepared, is_nearest
 from .solution import Solution
@@ -96,23 +97,23 @@ def solve_many(
     return Solutions(**vars(answers), total_time=time.perf_counter() - began, prepared=prepared, _goals=goals)
 
 
-def _answers(prepared: Prepared, goals: Array, starts: Array, nearest: bool, threads: int) -> native.Answers:
+def _answers(prepared: Prepared, goals: Array, starts: Array, nearest: bool, threads: int) -> Answers:
     if prepared.native is not None:
-        return native.attempt_many(prepared.native, goals, starts, nearest, threads)
+        return attempt_many(prepared.native, goals, starts, nearest, threads)
     if lands_at_once(prepared.question) and not nearest:
         return attempt_at_once(prepared.question, goals, starts)
     return _attempt_one_by_one(prepared, goals, starts, nearest)
 
 
-def _nothing(robot: RobotModel) -> native.Answers:
+def _nothing(robot: RobotModel) -> Answers:
     """The answers to no questions."""
     none, counts = np.zeros(0), np.zeros(0, dtype=np.int64)
     status = np.zeros(0, dtype=object)
-    return native.Answers(np.zeros((0, robot.model.nq)), status, none, none, counts, counts, counts, none)
+    return Answers(np.zeros((0, robot.model.nq)), status, none, none, counts, counts, counts, none)
 
 
 @dataclass(frozen=True, eq=False)
-class Solutions(native.Answers):
+class Solutions(Answers):
     """The answers to N questions, each checked by plain Pinocchio. `solutions[i]` is what `pinik.solve` returns.
 
     Any thread may read it.
@@ -157,7 +158,7 @@ class Solutions(native.Answers):
         if not -len(self) <= index < len(self) or self.prepared is None:
             raise IndexError(f"there are {len(self)} solutions; got index {index}")
         question = self.prepared.question
-        targets = native.targets_of(question.problem.targets, self._goals[index])
+        targets = targets_of(question.problem.targets, self._goals[index])
         missed = self.status[index] is Status.UNREACHABLE
         tolerance = question.options.tolerance
         outcome = Outcome(
@@ -205,7 +206,7 @@ def _listed(targets: Any) -> tuple[tuple[Target, ...], Array]:
             raise InputError(
                 f"targets[{number}] asks for something other than targets[0]; solve each kind in a call of its own"
             )
-    return asked[0], np.array([native.goals_of(each) for each in asked])
+    return asked[0], np.array([goals_of(each) for each in asked])
 
 
 def _read_places(places: Any) -> tuple[Array | None, Array]:
@@ -256,15 +257,15 @@ def _starts(robot: RobotModel, q0: ArrayLike | None, count: int) -> Array:
     return starts
 
 
-def _attempt_one_by_one(prepared: Prepared, goals: Array, starts: Array, nearest: bool) -> native.Answers:
+def _attempt_one_by_one(prepared: Prepared, goals: Array, starts: Array, nearest: bool) -> Answers:
     attempts, pattern = prepared.attempts, prepared.targets
     outcomes = [
-        attempts(native.targets_of(pattern, goal), starts[number % len(starts)], number=number, nearest=nearest)
+        attempts(targets_of(pattern, goal), starts[number % len(starts)], number=number, nearest=nearest)
         for number, goal in enumerate(goals)
     ]
     largest = np.array([largest_of(outcome.errors) for outcome in outcomes], dtype=np.float64)  # None becomes NaN
     largest = largest.reshape(-1, 2)
-    return native.Answers(
+    return Answers(
         np.array([outcome.q for outcome in outcomes]).reshape(-1, prepared.robot.model.nq),
         np.array([outcome.status for outcome in outcomes], dtype=object),
         largest[:, 0],

@@ -14,8 +14,10 @@ from ..errors import EngineError, InputError
 from ..model.robot_model import RobotModel
 from ..problem.targets import Target, as_targets
 from ..solvers.base import Solver
-from . import native
 from .attempts import Attempts
+from .native.codec import goals_of
+from .native.compiling import make_engine
+from .native.module import why_not
 from .options import Options
 from .question import Question
 from .solution import Solution
@@ -47,7 +49,7 @@ class Prepared:
         self.robot, self.options = robot, options
         self.targets = self.question.problem.targets
         self._neutral = robot.neutral()
-        self.native = native.make_engine(self.question) if self.engine == "native" else None
+        self.native = make_engine(self.question) if self.engine == "native" else None
         self._attempts: Attempts | None = None
 
     def __reduce__(self) -> tuple[Any, ...]:
@@ -89,7 +91,7 @@ class Prepared:
         nearest = is_nearest(q0)
         start = self._neutral if q0 is None or nearest else self.robot.check_configuration(q0, "q0")
         if self.native is not None:
-            return Solution(self.native.solve(start, native.goals_of(asked), nearest), self.question)
+            return Solution(self.native.solve(start, goals_of(asked), nearest), self.question)
         return Solution(self.attempts(asked, start, nearest=nearest, began=began), self.question)
 
     def at(self, place: object, q0: object = None) -> Solution | None:
@@ -143,7 +145,7 @@ def _chosen(engine: str, solver: Solver) -> str:
     Raises:
         EngineError: The compiled engine was asked for, and cannot be used.
     """
-    why_not = native.why_not(solver)
-    if engine == "native" and why_not:
-        raise EngineError(f"the compiled engine cannot be used: {why_not}; engine='auto' or 'python' can")
-    return "python" if engine == "python" or why_not else "native"
+    why = why_not(solver)
+    if engine == "native" and why:
+        raise EngineError(f"the compiled engine cannot be used: {why}; engine='auto' or 'python' can")
+    return "python" if engine == "python" or why else "native"

@@ -16,7 +16,8 @@ from ..model.robot_model import RobotModel
 from ..problem.targets import Target, TargetError, largest_of
 from .attempts import Outcome
 from .message import explain
-from .native import Answer, why_not
+from .native.answers import Answer
+from .native.module import why_not
 from .question import Question
 from .state import State, Status
 from .verdict import Verdict

@@ -11,7 +11,7 @@ import pinocchio
 
 from ...model.joint import Joint
 from ...robot import Robot
-from ...solving import native
+from ...solving.native.module import why_not
 from ...version import __version__
 from ..inputs.loading import load_robot
 from ..inputs.options import AsJson, Degrees, PackageDirs, RobotSource, Root
@@ -64,7 +64,7 @@ def _fields(robot: Robot) -> dict[str, Any]:
         "poses": {name: {"angles": robot.angles(q), "q": q.tolist()} for name, q in robot.poses.items()},
         "warnings": list(robot.warnings),
         "engine": _engine(),
-        "why_not_native": native.why_not(),
+        "why_not_native": why_not(),
         "version": __version__,
         "pinocchio": pinocchio.__version__,
     }
@@ -72,7 +72,7 @@ def _fields(robot: Robot) -> dict[str, Any]:
 
 def _engine() -> str:
     """The engine that `engine="auto"` takes for pinik's own methods."""
-    return "python" if native.why_not() else "native"
+    return "python" if why_not() else "native"
 
 
 def _joint_fields(robot: Robot, joint: Joint) -> dict[str, Any]:
@@ -109,7 +109,7 @@ def _emit(robot: Robot, units: Units) -> None:
         f"nq {model.nq}, nv {model.nv}"
     )
     output.emit(f"engine    {_engine()}, pinik {__version__}, Pinocchio {pinocchio.__version__}")
-    why = native.why_not()
+    why = why_not()
     if why:
         output.emit(textwrap.fill(why, _width(), initial_indent=" " * 10, subsequent_indent=" " * 10))
     output.emit("")

@@ -1,0 +1,1 @@
+"""The bridge between pinik and its compiled engine."""

@@ -1,0 +1,124 @@
+"""What the compiled engine answers, as Python objects."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...problem.reach import Shortfall
+from ...problem.targets import Target, TargetError
+from ..state import State, Status
+from .codec import targets_of
+
+__all__ = ["Answer", "Answers", "attempt_many"]
+
+if TYPE_CHECKING:
+    from ... import _native
+    from ..._native import Engine
+
+Array = NDArray[np.float64]
+
+_STATUSES = tuple(Status)
+
+
+@dataclass(frozen=True, eq=False)
+class Answers:
+    """The results of N solves, one entry each; `many.Solutions` describes the fields."""
+
+    q: Array
+    status: NDArray[np.object_]
+    position_error: Array
+    orientation_error: Array
+    iterations: NDArray[np.int64]
+    joint_updates: NDArray[np.int64]
+    restarts: NDArray[np.int64]
+    time: Array
+
+
+def attempt_many(engine: Engine, goals: Array, starts: Array, nearest: bool, threads: int) -> Answers:
+    """Solve for goals (N, n, 18) from starts (N or 1, nq). The number of a question seeds its restarts."""
+    q, status, position, orientation, iterations, updates, restarts, seconds = engine.solve_many(
+        starts, goals, nearest, threads
+    )
+    statuses = np.array(_STATUSES, dtype=object)[status]
+    return Answers(q, statuses, position, orientation, iterations, updates, restarts, seconds)
+
+
+class Answer:
+    """The result of a solve, with the attributes of `attempts.Outcome`; each is converted to Python when it is read.
+
+    Attributes:
+        pattern: The targets of the prepared question, whose numbers this solve replaced.
+    """
+
+    __slots__ = ("_answer", "pattern")
+
+    engine = "native"
+
+    def __init__(self, answer: _native.Answer, pattern: tuple[Target, ...]) -> None:
+        self._answer = answer
+        self.pattern = pattern
+
+    @property
+    def targets(self) -> tuple[Target, ...]:
+        """The targets."""
+        return targets_of(self.pattern, self._answer.goals)
+
+    @property
+    def time(self) -> float:
+        """The duration of the solve [s]."""
+        return self._answer.seconds
+
+    @property
+    def status(self) -> Status:
+        """Why the solve ended."""
+        return _STATUSES[self._answer.status]
+
+    @property
+    def q(self) -> Array:
+        """A new copy of the best configuration (nq,)."""
+        return self._answer.q
+
+    @property
+    def errors(self) -> tuple[TargetError, ...]:
+        """The error of each target at `q`."""
+        return _errors(self._answer.errors)
+
+    @property
+    def iterations(self) -> int:
+        """Iterations of all attempts."""
+        return self._answer.iterations
+
+    @property
+    def joint_updates(self) -> int:
+        """Joint updates of all attempts."""
+        return self._answer.joint_updates
+
+    @property
+    def restarts(self) -> int:
+        """The number of attempts after the first."""
+        return self._answer.restarts
+
+    @property
+    def proof(self) -> Shortfall | None:
+        """The proof that a target is out of reach, if there is one."""
+        proof = self._answer.proof
+        return None if proof is None else Shortfall(*proof)
+
+    @property
+    def states(self) -> tuple[State, ...]:
+        """Every state, if a trace was requested."""
+        return tuple([_state(*state) for state in self._answer.states])
+
+
+def _errors(pairs: Any) -> tuple[TargetError, ...]:
+    return tuple([TargetError(position, orientation) for position, orientation in pairs])
+
+
+def _state(q: Array, iteration: int, updates: int, errors: Any, residual: float, attempt: int, status: int) -> State:
+    q.setflags(write=False)
+    ended = _STATUSES[status] if status < len(_STATUSES) else None
+    return State(q, iteration, updates, _errors(errors), residual, attempt, ended)

@@ -1,0 +1,40 @@
+"""Targets as the rows of numbers that the compiled engine reads, and back."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...problem.targets import Target
+
+__all__ = ["goals_of", "targets_of"]
+
+Array = NDArray[np.float64]
+
+
+def goals_of(targets: tuple[Target, ...]) -> Array:
+    """Encode targets as rows (n, 18): position (3), rotation matrix by rows (9), direction (3), point to look at (3).
+
+    What a target does not constrain is zero.
+    """
+    goals = np.zeros((len(targets), 18))
+    for row, target in zip(goals, targets, strict=True):
+        if target.position is not None:
+            row[:3] = target.position
+        if target.rotation is not None:
+            row[3:12] = target.rotation.ravel()
+        if target.direction is not None:
+            row[12:15] = target.direction
+        if target.at is not None:
+            row[15:] = target.at
+    return goals
+
+
+def targets_of(pattern: tuple[Target, ...], goals: Iterable[Array]) -> tuple[Target, ...]:
+    """Decode rows that `goals_of` made: targets of the same kind as `pattern`, with the numbers of `goals` (n, 18)."""
+    return tuple(
+        target.with_numbers(goal[:3], goal[3:12].reshape(3, 3), goal[12:15], goal[15:])
+        for target, goal in zip(pattern, goals, strict=True)
+    )

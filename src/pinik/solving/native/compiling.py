@@ -1,0 +1,156 @@
+"""Robots, problems and solvers handed over to the compiled engine."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, Any
+from weakref import WeakKeyDictionary
+
+import numpy as np
+import pinocchio
+
+from ...model.limits import Limits
+from ...model.robot_model import RobotModel
+from ...problem.problem import Problem
+from ...problem.reach import reach_bounds
+from ...solvers.base import JacobianSolver, Solver
+from ...solvers.ccd import CCD
+from ...solvers.damped_least_squares import DampedLeastSquares
+from ...solvers.pseudo_inverse import PseudoInverse
+from ...solvers.transpose import JacobianTranspose
+from ..question import Question
+from .module import METHODS, load
+
+__all__ = ["make_engine"]
+
+if TYPE_CHECKING:
+    from ..._native import Engine
+
+_KINDS = ("revolute", "continuous", "prismatic", "floating", "planar")
+_RULES = ("constant", "residual", "sugihara", "manipulability")
+_MOST = 2**31 - 1  # the largest number that the engine counts to
+_IDENTITY = pinocchio.SE3.Identity()
+_ROBOTS: WeakKeyDictionary[RobotModel, Any] = WeakKeyDictionary()
+
+
+def make_engine(question: Question) -> Engine:
+    """The compiled engine for a question."""
+    module = load()
+    options, problem = question.options, question.problem
+    robot = _robot(problem.robot)
+    asked = module.Settings()
+    asked.solver = _solver(question.solver, problem)
+    asked.patience = question.solver.patience.iterations, question.solver.patience.progress
+    asked.tolerance = tuple(options.tolerance)
+    asked.limits = options.limits
+    asked.restarts = min(options.restarts_at_most, _MOST)
+    asked.seed = options.seed & 0xFFFFFFFFFFFFFFFF
+    asked.max_iterations = min(options.iterations_at_most, _MOST)
+    asked.iterations_to_the_end = min(options.iterations_to_the_end, _MOST)
+    asked.time_limit = options.time_limit
+    asked.trace = options.trace
+    engine: Engine = module.Engine(robot, _problem(robot, problem), asked)
+    return engine
+
+
+def _robot(robot: RobotModel) -> Any:
+    """The engine's copy of a robot, which is built once and then kept."""
+    if robot not in _ROBOTS:
+        _ROBOTS[robot] = _make_robot(robot)
+    return _ROBOTS[robot]
+
+
+def _make_robot(robot: RobotModel) -> Any:
+    native = load().Robot()
+    leaders = {joint.leader for joint in robot.joints}
+    model = robot.model
+    for joint in robot.joints:
+        placement = model.jointPlacements[joint.id]
+        native.add_joint(
+            kind=_KINDS.index(joint.kind),
+            parent=model.parents[joint.id],
+            rotation=placement.rotation,
+            translation=placement.translation,
+            axis=np.array(joint.axis),
+            idx_q=joint.idx_q,
+            nq=joint.nq,
+            idx_v=joint.idx_v,
+            nv=joint.nv,
+            follows=joint.leader is not None,
+            multiplier=joint.multiplier,
+            offset=joint.offset,
+            lower=float(robot.lower_q[joint.idx_q]) if joint.nq == 1 else -math.inf,
+            upper=float(robot.upper_q[joint.idx_q]) if joint.nq == 1 else math.inf,
+            shared=joint.name in leaders,
+        )
+    native.finish()
+    return native
+
+
+def _problem(robot: Any, asked: Problem) -> Any:
+    problem = load().Problem(robot)
+    free, limited = Limits.of(asked.robot, False), Limits.of(asked.robot)
+    for term in asked.terms:
+        target, chain = term.pattern, term.chain
+        bounds = [reach_bounds(term, limits) for limits in (free, limited)]
+        base = next((b.base for b in bounds if b is not None), np.zeros(3))
+        reference = chain.reference_placement or _IDENTITY
+        problem.add_term(
+            robot=robot,
+            frame_joint=chain.frame_joint,
+            frame_rotation=chain.frame_placement.rotation,
+            frame_translation=chain.frame_placement.translation,
+            has_reference=chain.reference_placement is not None,
+            reference_joint=chain.reference_joint,
+            reference_rotation=reference.rotation,
+            reference_translation=reference.translation,
+            asks_position=target.position is not None,
+            asks_rotation=target.rotation is not None,
+            asks_axis=target.axis is not None,
+            asks_at=target.at is not None,
+            axis=np.array([1.0, 0.0, 0.0]) if target.axis is None else target.axis,
+            weight=term.weight,
+            has_bounds=any(b is not None for b in bounds),
+            base=base,
+            reach=[math.inf if b is None else b.reach for b in bounds],
+            hole=[0.0 if b is None else b.hole for b in bounds],
+        )
+    for coordinate in asked.coordinates:
+        joint = coordinate.joint
+        problem.add_coordinate(
+            joint=joint.id,
+            index=coordinate.index,
+            entry=joint.idx_q if joint.nq == 1 else -1,
+            movers=[(mover.id, multiplier) for mover, multiplier in coordinate.movers],
+            moved=[(j.id, j.multiplier) for j in asked.robot.joints if joint.name in (j.name, j.leader)],
+        )
+    problem.finish(lightest=asked.lightest, size_of_chain=asked.size_of_chain)
+    return problem
+
+
+def _solver(solver: Solver, problem: Problem) -> Any:
+    native = load().Solver()
+    native.method = METHODS.index(type(solver))
+    native.max_step, native.max_residual = solver.max_step, solver.max_residual
+    if isinstance(solver, CCD):
+        if solver.stiffness:
+            native.stiffness = [solver.stiffness.get(c.joint.name, 1.0) for c in problem.coordinates]
+        native.relaxation = solver.relaxation_for(problem)
+        native.position_weight = solver.position_weight
+        native.printed_scaling = solver.scaling == "printed"
+        return native
+    assert isinstance(solver, JacobianSolver)
+    roots = solver.roots(problem)
+    if roots is not None:
+        native.stiffness = [roots[c.joint.idx_v + c.index] ** 2 for c in problem.coordinates]
+    native.step_size, native.target_jacobian = solver.step_size, solver.target_jacobian
+    if isinstance(solver, JacobianTranspose):
+        native.alpha = solver.alpha or 0.0
+    elif isinstance(solver, PseudoInverse):
+        native.cutoff, native.rest_gain = solver.cutoff, solver.rest_gain
+        robot = problem.robot
+        native.rest_posture = [(robot.joint(name).id, angle) for name, angle in solver.rest_posture.items()]
+    elif isinstance(solver, DampedLeastSquares):
+        native.damping, native.manipulability = solver.damping, solver.manipulability
+        native.rule, native.by_svd = _RULES.index(solver.rule), solver.factorization == "svd"
+    return native
