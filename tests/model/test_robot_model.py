@@ -419,15 +419,6 @@ class TestLimits:
             angle = loaded.angles(loaded.random(seed))["tail"]
             assert bounds[0] - 1e-12 <= angle <= bounds[1] + 1e-12
 
-    def test_that_leave_a_leader_no_room_are_a_load_error(self):
-        text = robot(
-            *(link(name) for name in "abc"),
-            joint("lead", "a", "b", limit=limit(-1, 1)),
-            joint("tail", "b", "c", mimic("lead"), limit=limit(2, 3)),
-        )
-        with pytest.raises(RobotLoadError, match="joint 'lead': the limits of the joints that mimic it"):
-            pinik.load(text)
-
     def test_that_are_absent_are_zero_with_a_warning(self):
         text = robot(
             *(link(name) for name in "abc"),

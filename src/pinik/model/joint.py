@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable
 from dataclasses import dataclass
 
 import numpy as np
@@ -13,7 +12,7 @@ from numpy.typing import NDArray
 from ..description.reader import Description
 from ..errors import InputError
 
-__all__ = ["Joint", "joints_of", "limits_cut_by_followers"]
+__all__ = ["Joint", "joints_of"]
 
 Array = NDArray[np.float64]
 
@@ -150,13 +149,3 @@ def joints_of(model: pinocchio.Model, description: Description) -> tuple[Joint, 
             )
         )
     return tuple(joints)
-
-
-def limits_cut_by_followers(joint: Joint, joints: Iterable[Joint]) -> tuple[float, float]:
-    """(lower, upper) of a joint [rad or m] that keep it and all that mimic it inside; lower > upper if nothing does."""
-    lower, upper = joint.lower, joint.upper
-    for follower in joints:
-        if follower.leader == joint.name and follower.multiplier != 0.0:
-            ends = [(limit - follower.offset) / follower.multiplier for limit in (follower.lower, follower.upper)]
-            lower, upper = max(lower, min(ends)), min(upper, max(ends))
-    return lower + 0.0, upper + 0.0  # a negative multiplier turns 0 into −0, which numpy holds to be below 0

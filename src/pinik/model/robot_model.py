@@ -16,10 +16,11 @@ from numpy.typing import ArrayLike, NDArray
 
 from ..checks import as_finite_number, as_many, as_se3, as_vector
 from ..description import reader as urdf
-from ..errors import InputError, RobotLoadError, UnknownNameError
+from ..errors import InputError, UnknownNameError
 from .build import build_model
-from .joint import Joint, joints_of, limits_cut_by_followers
+from .joint import Joint, joints_of
 from .poses import read_poses
+from .ranges import configuration_limits
 
 if TYPE_CHECKING:
     from ..problem.targets import Target
@@ -84,8 +85,9 @@ class Robot:
         self._settable = tuple(j for j in self.joints if j.has_one_axis and j.leader is None)
         self.joint_names = tuple(j.name for j in self._settable)
         self.mimics = {j.name: (j.leader, j.multiplier, j.offset) for j in self.joints if j.leader is not None}
-        self.lower, self.upper = self._joint_limits()
-        self.lower_q, self.upper_q = self._configuration_limits()
+        self.lower_q, self.upper_q = configuration_limits(self.model, self.joints)
+        first_entries = [joint.idx_q for joint in self._settable]
+        self.lower, self.upper = self.lower_q[first_entries], self.upper_q[first_entries]
         for limits in (self.lower, self.upper, self.lower_q, self.upper_q):
             limits.setflags(write=False)
 
@@ -371,27 +373,6 @@ class Robot:
             **options: `Target`'s keywords, `pinik.solve`'s options and the solver's parameters.
         """
         return _solve_from_keywords()(self, targets, position, method, options)
-
-    def _joint_limits(self) -> tuple[Array, Array]:
-        cut = [limits_cut_by_followers(joint, self.joints) for joint in self._settable]
-        for joint, (lower, upper) in zip(self._settable, cut, strict=True):
-            if lower > upper:
-                raise RobotLoadError(
-                    "the limits of the joints that mimic it leave it no room",
-                    source=self.description.source,
-                    element=f"joint {joint.name!r}",
-                )
-            if lower == upper and joint.lower < joint.upper:
-                words = "the limits of the joints that mimic it leave it only the value"
-                self.warnings += (f"joint {joint.name!r}: {words} {lower:g}",)
-        return np.array([lower for lower, _ in cut]), np.array([upper for _, upper in cut])
-
-    def _configuration_limits(self) -> tuple[Array, Array]:
-        lower, upper = np.full(self.model.nq, -np.inf), np.full(self.model.nq, np.inf)
-        for joint, low, high in zip(self._settable, self.lower, self.upper, strict=True):
-            if joint.nq == 1:
-                lower[joint.idx_q], upper[joint.idx_q] = low, high
-        return lower, upper
 
 
 @cache
