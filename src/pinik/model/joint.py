@@ -57,22 +57,44 @@ class Joint:
         return self.kind in ("revolute", "continuous", "prismatic")
 
     def angle(self, q: Array) -> float:
-        """A one-axis joint's angle at `q` [rad or m], a follower's too."""
+        """The angle of a one-axis joint at `q` [rad or m]; for a follower, the angle that it takes from its leader."""
         own = math.atan2(q[self.idx_q + 1], q[self.idx_q]) if self.nq == 2 else float(q[self.idx_q])
         return own if self.leader is None else self.multiplier * own + self.offset
 
+    def angle_range(self, lower: float, upper: float) -> tuple[float, float]:
+        """The range of the angle [rad or m] while the joint's entry of q runs from `lower` to `upper`, or ±infinity.
+
+        For a follower that entry is its leader's.
+        """
+        if self.multiplier == 0.0:
+            return self.offset, self.offset
+        first, last = self.multiplier * lower + self.offset, self.multiplier * upper + self.offset
+        return min(first, last), max(first, last)
+
     def set_angle(self, q: Array, angle: float) -> None:
-        """Write a one-axis joint's angle [rad or m] into `q`, in place.
+        """Set the angle of a one-axis joint [rad or m] in `q`, in place; for a follower, by setting its leader.
 
         Raises:
-            InputError: A floating or planar joint, which has no angle.
+            InputError: A floating or planar joint, which has no angle, or a follower with multiplier 0.
         """
         if not self.has_one_axis:
             raise InputError(f"joint {self.name!r} is {self.kind} and has no angle; give its SE3 in joint_placements")
-        if self.nq == 2:
+        if self.leader is not None:
+            q[self.idx_q] = self._leader_angle(angle)
+        elif self.nq == 2:
             q[self.idx_q : self.idx_q + 2] = math.cos(angle), math.sin(angle)
         else:
             q[self.idx_q] = angle
+
+    def _leader_angle(self, angle: float) -> float:
+        """The leader's angle [rad or m] that puts this follower at `angle`."""
+        leader = (angle - self.offset) / self.multiplier if self.multiplier else math.inf
+        if not math.isfinite(leader):
+            raise InputError(
+                f"joint {self.name!r} cannot be set: it mimics {self.leader!r} with multiplier {self.multiplier:g} "
+                f"and stays at {self.offset:g}"
+            )
+        return leader
 
     def placement(self, q: Array) -> pinocchio.SE3:
         """A floating or planar joint's SE3 in its parent at `q`."""

@@ -17,6 +17,7 @@ from numpy.typing import ArrayLike, NDArray
 from ..checks import as_finite_number, as_many, as_se3, as_vector
 from ..description import reader as urdf
 from ..errors import InputError, UnknownNameError
+from .angles import set_angles
 from .build import build_model
 from .joint import Joint, joints_of
 from .poses import read_poses
@@ -227,11 +228,15 @@ class Robot:
             if given is not None and not isinstance(given, Mapping):
                 raise InputError(f"joints are given by name, as in {{'joint': 0.3}}; got {given!r}")
         q = self.neutral()
-        for name, value in (angles or {}).items():
-            joint = self.settable_joint(name)
-            joint.set_angle(q, as_finite_number(value, f"the angle of joint {name!r}"))
+        set_angles(
+            q,
+            {
+                self.joint(name): as_finite_number(angle, f"the angle of joint {name!r}")
+                for name, angle in (angles or {}).items()
+            },
+        )
         for name, placement in (joint_placements or {}).items():
-            joint = self.settable_joint(name)
+            joint = self.joint(name)
             if joint.has_one_axis:
                 raise InputError(f"joint {name!r} is {joint.kind}; give its scalar in angles")
             joint.set_placement(q, as_se3(placement, f"the placement of joint {name!r}"))
