@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from ..errors import InputError, UnknownNameError
 
 if TYPE_CHECKING:
-    from ..closed_form.recognise import OffPlane
+    from ..closed_form.robot_bones import OffPlane
     from ..model.limits import Limits
     from ..model.robot_model import Robot
     from ..problem.kinematics import Kinematics, Linearization

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import pinocchio
 
-from ..closed_form.recognise import OffPlane, TwoBone
+from ..closed_form.robot_bones import OffPlane, TwoBone
 from ..errors import InputError
 from .base import Array, SweepingSolver, parameter
 
