@@ -31,8 +31,8 @@ EXCEPTIONS = {
 # Package → the modules and rooms that alone may import it.
 ONLY_THERE = {
     "yourdfpy": {"shapes.second_opinion"},
-    "trimesh": {"shapes.meshes"},
-    "scipy": {"shapes.meshes"},
+    "trimesh": {"shapes.meshes", "shapes.triangles"},
+    "scipy": set(),
     "PIL": {"picture.draw"},
     "meshcat": set(),  # of meshcat the page takes the JavaScript; the Python package brings IPython and ZeroMQ
     "zmq": set(),

@@ -4,7 +4,7 @@ Where are its frames (`Robot.placement`, `Robot.jacobian`), and which joint valu
 (`Robot.solve`, `solve`, `iterate`).
 """
 
-from .closed_form.recognise import TwoBone, TwoBoneConfigurations
+from .closed_form.robot_bones import TwoBone, TwoBoneConfigurations
 from .closed_form.two_bone import TwoBoneAnswers, two_bone
 from .description.catalog import catalog
 from .errors import EngineError, InputError, PinikError, RobotLoadError, SolveError, UnknownNameError, UrdfWarning

@@ -130,8 +130,8 @@ def test_a_slider_moves_by_metres_however_long_its_axis_is_written() -> None:
 def test_the_mimic_joints_of_real_robots_follow_as_yourdfpy_says(name: str) -> None:
     entry = find(name)
     description = urdf.read(entry.urdf)
-    model, left_free = build_model(description)
-    assert left_free == ()
+    model, words = build_model(description)
+    assert not any("left free" in warning for warning in words)
     rng = np.random.default_rng(7)
     leaders = [tag.name for tag in description.joints if tag.kind in ONE_AXIS and tag.mimic is None]
     angles = dict(zip(leaders, rng.uniform(-3, 3, len(leaders)), strict=True))

@@ -251,12 +251,11 @@ class TestAngles:
         assert set(angles.values()) == {0.0}
         np.testing.assert_array_equal(panda.configuration(), panda.neutral())
 
-    def test_a_follower_is_refused_and_the_error_names_its_leader(self, panda):
-        assert panda.mimics == {"panda_finger_joint2": ("panda_finger_joint1", 1.0, 0.0)}
+    def test_a_follower_is_not_locked_and_the_error_names_its_leader(self, panda):
         with pytest.raises(
             InputError, match=r"'panda_finger_joint2' mimics 'panda_finger_joint1'.*set 'panda_finger_joint1'"
         ):
-            panda.configuration({"panda_finger_joint2": 0.01})
+            panda.settable_joint("panda_finger_joint2")
 
     def test_an_unknown_joint_is_refused_with_near_names(self, panda):
         with pytest.raises(UnknownNameError, match=r"no joint 'panda_jont4'; near: .*'panda_joint4'") as caught:
@@ -270,7 +269,7 @@ class TestAngles:
 
     @pytest.mark.parametrize("bad", [math.nan, math.inf, "0.3", None, [0.1], True, 10**400])
     def test_an_angle_is_a_finite_number(self, arm, bad):
-        with pytest.raises(InputError, match="the angle of joint 'bone1_x' is a finite number"):
+        with pytest.raises(InputError, match=r"the angle of joint 'bone1_x' .*finite number"):
             arm.configuration({"bone1_x": bad})
 
     def test_angles_and_placements_are_not_confused(self):
@@ -418,15 +417,6 @@ class TestLimits:
         for seed in range(20):
             angle = loaded.angles(loaded.random(seed))["tail"]
             assert bounds[0] - 1e-12 <= angle <= bounds[1] + 1e-12
-
-    def test_that_leave_a_leader_no_room_are_a_load_error(self):
-        text = robot(
-            *(link(name) for name in "abc"),
-            joint("lead", "a", "b", limit=limit(-1, 1)),
-            joint("tail", "b", "c", mimic("lead"), limit=limit(2, 3)),
-        )
-        with pytest.raises(RobotLoadError, match="joint 'lead': the limits of the joints that mimic it"):
-            pinik.load(text)
 
     def test_that_are_absent_are_zero_with_a_warning(self):
         text = robot(

@@ -262,6 +262,16 @@ class TestProof:
         assert proof(load_quietly(text), Target("d", (0, reach + 0.1, 0))) == pytest.approx((0, 0.1, reach, False))
         assert proof(load_quietly(text), Target("d", (0, hole - 0.1, 0))) == pytest.approx((0, 0.1, hole, True))
 
+    def test_counts_a_follower_that_stays_at_its_offset_under_a_leader_without_limits(self):
+        text = robot(
+            *(link(name) for name in "abcd"),
+            joint("lead", "a", "b", axis(0, 0, 1), kind="continuous", limit=""),
+            joint("tail", "b", "c", origin((L1, 0, 0)), axis(1, 0, 0), mimic("lead", 0.0, 0.2), kind="prismatic"),
+            joint("end", "c", "d", origin((L2, 0, 0)), kind="fixed", limit=""),
+        )
+        reach = L1 + 0.2 + L2
+        assert proof(load_quietly(text), Target("d", (0, reach + 0.1, 0))) == pytest.approx((0, 0.1, reach, False))
+
     def test_counts_the_tool(self, two_link):
         for length in (0.1, 0.3):
             tool = (length, 0, 0)

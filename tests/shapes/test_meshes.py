@@ -125,7 +125,7 @@ def test_a_missing_or_broken_mesh_is_a_warning_and_the_rest_is_drawn(tmp_path, c
 def test_an_unknown_geometry_is_a_warning():
     shapes, warnings = load_shapes(urdf_with(visual("<torus/>")))
     assert shapes == []
-    assert "box, sphere, cylinder, capsule, mesh" in warnings[0]
+    assert "box, sphere, cylinder, capsule or mesh" in warnings[0]
 
 
 def test_the_panda_is_shown_in_its_own_colours_and_size():

@@ -1,4 +1,4 @@
-"""Two hinges in a plane, with ranges, for any number of points: both elbows, and the nearest that the ranges leave."""
+"""Two hinges in a plane, with ranges: both elbows for any number of points, and the nearest point inside the ranges"""
 
 from __future__ import annotations
 
@@ -14,20 +14,20 @@ from .two_bone import ELBOWS, elbow_angles
 __all__ = ["ROUNDING", "PlanarArm", "Turns", "turn"]
 
 ROUNDING = 1e-12
-"""Of the lengths that enter; and [rad] of an angle at the end of its range."""
+"""Allowance for rounding: relative to the lengths involved, and in rad for an angle at the end of its range."""
 
 Array = NDArray[np.float64]
 Truths = NDArray[np.bool_]
 
 
 class Turns(NamedTuple):
-    """Angles brought near to where joints stand, and into their ranges.
+    """Angles turned by whole turns towards the joints' present values, and into their ranges.
 
     Attributes:
-        angle: The equal angle nearest to where the joint stands [rad].
-        inside: One inside the range: an equal angle, the nearest to where the joint stands; or the end of the range
-            that is nearest to one [rad].
-        fits: Whether it is an equal one, but for rounding.
+        angle: The angle, turned as near as possible to the joint's present value [rad].
+        inside: The angle, turned into the range and there as near as possible to the present value [rad]; if none of
+            its turns lies inside, the nearest end of the range.
+        fits: Whether one of its turns lies inside the range, but for rounding.
     """
 
     angle: Array
@@ -37,11 +37,13 @@ class Turns(NamedTuple):
 
 @dataclass(frozen=True)
 class PlanarArm:
-    r"""The tip is at $l_1 (\cos\theta_1, \sin\theta_1) + l_2 (\cos(\theta_1 + \theta_2), \sin(\theta_1 + \theta_2))$,
-    and the joints' values are $q_1 = \theta_1$ and $q_2 = \sigma(\theta_2 - \gamma)$.
+    r"""Two bones in a plane, hinged at the origin and at each other.
+
+    The tip is at $l_1 (\cos\theta_1, \sin\theta_1) + l_2 (\cos(\theta_1 + \theta_2), \sin(\theta_1 + \theta_2))$,
+    and the joint angles are $q_1 = \theta_1$ and $q_2 = \sigma(\theta_2 - \gamma)$.
 
     Attributes:
-        l1, l2: The bones' lengths [m].
+        l1, l2: Lengths of the bones [m].
         bend: γ [rad].
         sense: σ, 1 or −1.
     """
@@ -52,23 +54,21 @@ class PlanarArm:
     sense: float = 1.0
 
     def joint_angles(self, angles: ArrayLike) -> Array:
-        """(q₁, q₂) for (θ₁, θ₂) [rad]: (…, 2) from (…, 2)."""
+        """The joint angles (q₁, q₂) for (θ₁, θ₂) [rad]; both are (…, 2)."""
         values = np.array(angles, dtype=np.float64)
         values[..., 1] = self.sense * (values[..., 1] - self.bend)
         return values
 
     def elbows(self, points: Array, now: Array, slack: Array) -> tuple[Array, Array]:
-        """Both answers of `two_bone`, up first, ranges aside.
-
-        A point within `slack` (N,) [m] of the base leaves the first joint free, and it stays where it is.
+        """Both answers of `two_bone`, elbow up first, without regard to ranges.
 
         Args:
-            points: Where the tips should be (N, 2) [m].
-            now: Where the joints stand (N, 2) [rad].
-            slack: (N,) [m].
+            points: Target positions of the tip (N, 2) [m].
+            now: Present joint angles (N, 2) [rad].
+            slack: (N,) [m]; a point nearer to the base than this leaves the first joint free, and it stays as it is.
 
         Returns:
-            The joints' values (N, 2 elbows, 2) [rad], and what both tips then miss their point by (N,) [m].
+            The joint angles (N, 2 elbows, 2) [rad], and the distance by which both miss their point (N,) [m].
         """
         x, y = points.T
         distance = np.hypot(x, y)
@@ -80,16 +80,16 @@ class PlanarArm:
         return values, np.maximum(outside, 0.0)
 
     def nearest(self, points: Array, now: Array, ranges: Array, slack: Array, elbow: str) -> Array:
-        """The joints' values (N, 2) inside their ranges [rad] that bring the tips nearest to their points.
+        """The joint angles (N, 2) inside their ranges that bring the tips nearest to their points [rad].
 
-        Where the minimum lies inside, it is one of the two elbows; else one joint is at an end of its range, and the
-        other one turns as near to the point as it may. Of equally near ones `elbow` is taken, and of these the nearest
-        to `now`.
+        If neither elbow is inside the ranges, one joint is at an end of its range, and the other turns as near to the
+        point as its range allows. Of equally near answers, those with the given elbow are preferred, and of these the
+        one nearest to `now`.
 
         Args:
             points, now, slack: As for `elbows`.
-            ranges: The joints' lowest and highest values (N, 2 joints, 2) [rad], infinite where there are none.
-            elbow: "up", "down", or anything else for neither.
+            ranges: Lower and upper ends (N, 2 joints, 2) [rad], infinite where there are none.
+            elbow: "up", "down", or any other text for no preference.
         """
         ways, _ = self.elbows(points, now, slack)
         turns = turn(ways, ranges[:, np.newaxis], now[:, np.newaxis])
@@ -103,7 +103,7 @@ class PlanarArm:
         return nearest
 
     def _chosen(self, ways: Array, allowed: Truths, now: Array, elbow: str) -> Array:
-        """Of the ways (N, k, 2) that are allowed (N, k): with that elbow, where one has it, the nearest to `now`."""
+        """The allowed answer nearest to `now` (N, 2), of N times k; with the given elbow, if an allowed one has it."""
         if elbow in ELBOWS:
             down = np.sin(self.sense * ways[..., 1] + self.bend) >= 0.0
             wanted = allowed & (down == (elbow == "down"))
@@ -113,8 +113,12 @@ class PlanarArm:
         return np.asarray(ways[np.arange(len(ways)), best])
 
     def _at_ends(self, points: Array, now: Array, ranges: Array, slack: Array) -> tuple[Array, Array]:
-        """With one joint at an end of its range, the other as near to the point as it may (N, 4, 2), and what that
-        misses (N, 4) [m], infinite where there is no such end."""
+        """The best answers with one joint at an end of its range.
+
+        Returns:
+            Joint angles (N, 4 ends, 2) [rad], and their distances from the point (N, 4) [m], infinite for an end that
+            does not exist.
+        """
         x, y = points[:, :1], points[:, 1:]
         finite = np.isfinite(ranges)
         first, second = np.moveaxis(np.where(finite, ranges, 0.0), 1, 0)  # (N, 2 ends) each
@@ -130,7 +134,7 @@ class PlanarArm:
         return ways, np.where(finite.reshape(-1, 4), np.hypot(off[..., 0], off[..., 1]), np.inf)
 
     def _tip(self, values: Array) -> Array:
-        """Where the tip is (…, 2) [m] for the joints' values (…, 2) [rad]."""
+        """Tip positions (…, 2) [m] for joint angles (…, 2) [rad]."""
         first = values[..., 0]
         both = first + self.sense * values[..., 1] + self.bend
         x = self.l1 * np.cos(first) + self.l2 * np.cos(both)
@@ -138,13 +142,13 @@ class PlanarArm:
 
 
 def turn(wanted: Array, ranges: Array, now: Array) -> Turns:
-    """Hinges' angles turned by whole turns into their ranges (…, 2), near to where they stand `now`; all in rad."""
+    """Turn the angles of hinges by whole turns towards `now`, and into their ranges (…, 2); all in rad."""
     low, high = ranges[..., 0], ranges[..., 1]
     angle = now + _within_half_a_turn(wanted - now)
     is_inside: Truths = (low <= angle) & (angle <= high)
     if is_inside.all():
         return Turns(angle, angle, is_inside)
-    with np.errstate(invalid="ignore"):  # infinite ends have no multiples, and nothing lies beyond them
+    with np.errstate(invalid="ignore"):  # the remainder of an infinite end is NaN, but nothing lies beyond it
         inside = np.where(angle > high, high - (high - angle) % math.tau, angle)
         inside = np.where(angle < low, low + (angle - low) % math.tau, inside)
         gaps = np.abs(_within_half_a_turn(angle[..., np.newaxis] - ranges))
@@ -155,7 +159,7 @@ def turn(wanted: Array, ranges: Array, now: Array) -> Turns:
 
 
 def _within_half_a_turn(angle: Array) -> Array:
-    """The equal angle in [−π, π]; nothing is rounded that is there already."""
+    """The angle turned into [−π, π]; one that is inside already is not rounded."""
     rest = np.fmod(angle, math.tau)
     rest = np.where(rest > math.pi, rest - math.tau, rest)
     return np.where(rest < -math.pi, rest + math.tau, rest)

@@ -16,33 +16,34 @@ __all__ = ["ELBOWS", "TwoBoneAnswers", "elbow_angles", "two_bone"]
 Array = NDArray[np.float64]
 
 ELBOWS = ("up", "down")
-"""The two answers in their order: seen with the target to the right, the elbow is above the line to it, or below."""
+"""The two answers in order: with the target to the right, the elbow is above the line to the target, or below it."""
 
 _LONGEST = 1e150  # beyond, products of lengths overflow
-_BLOCK = 8192  # targets worked on at once: their numbers stay in the processor's cache
-_BORDER = 4.0 * np.finfo(np.float64).eps  # of the arm's length: what rounding may put a target outside by
+_BLOCK = 8192  # targets per pass, so that their numbers stay in the processor's cache
+_BORDER = 4.0 * np.finfo(np.float64).eps  # of the arm's length: how far outside rounding may put a target
 _NO_SIDE = 1e-12  # the sine below which a pole points along the line to the target
 
 
 @dataclass(frozen=True, eq=False)
 class TwoBoneAnswers:
-    """What `two_bone` found for N targets.
+    """The two answers of `two_bone` for each of N targets.
 
-    The second axis of `angles`, `elbows`, `tips` and `errors` is the elbow: 0 "up", to the left of the line from the
-    base to the target, or on the pole's side; 1 "down", its mirror image. Out of reach both give the nearest point.
+    The second axis of `angles`, `elbows`, `tips` and `errors` is the elbow. Index 0 is "up": left of the line from the
+    base to the target, or on the side of the pole. Index 1 is "down", the mirror image. Where the target is out of
+    reach, both answers place the tip at the nearest point within reach.
 
     Attributes:
-        l1, l2: The bones' lengths, (N,) each [m].
+        l1, l2: Lengths of the bones, (N,) each [m].
         targets: (N, 2) or (N, 3) [m].
-        angles: (N, 2, 2): of the first bone from the x axis, in (−π, π], and of the second bone from the first, in
-            [−π, 0] for the elbow up and [0, π] down [rad]. Both turn counter-clockwise. In space x is `plane`'s, which
-            points at the target.
-        distance: From the base to the target (N,) [m].
-        reachable: Whether the target lies in the annulus |l1 − l2| ≤ distance ≤ l1 + l2 (N,), its borders included,
-            with 4 units of rounding in the arm's length.
-        shortfall: How far outside it lies, and the tip ends short of it (N,) [m]; 0 where it is reachable.
-        plane: For targets in space, the axes of the plane in which each arm lies: (N, 3, 3), columns x at the target,
-            y at the pole's side and z, about which the joints turn. None for targets in the plane.
+        angles: (N, 2 elbows, 2 joints) [rad], counter-clockwise: the first bone's from the x axis, in (−π, π], and the
+            second bone's from the first bone, in [−π, 0] for the elbow up and in [0, π] for the elbow down. In space, x
+            is the x axis of `plane`, which points at the target.
+        distance: Distance from the base to the target (N,) [m].
+        reachable: Whether the target lies in the annulus |l1 − l2| ≤ distance ≤ l1 + l2 (N,). The borders are
+            included, with a margin of 4 units of rounding in the arm's length.
+        shortfall: How far outside the annulus the target lies (N,) [m]; 0 where it is reachable.
+        plane: For targets in space, the axes of the plane of each arm: (N, 3, 3), with columns x towards the target,
+            y towards the pole, and z, about which the joints turn. None for targets in the plane.
     """
 
     l1: Array
@@ -59,22 +60,22 @@ class TwoBoneAnswers:
 
     @property
     def too_far(self) -> NDArray[np.bool_]:
-        """Whether the target lies beyond the outer border, where the arm is stretched at it (N,)."""
+        """Whether the target lies beyond the outer border, so that the arm is stretched towards it (N,)."""
         return ~self.reachable & (self.distance > np.maximum(self.l1, self.l2))
 
     @property
     def too_near(self) -> NDArray[np.bool_]:
-        """Whether the target lies in the hole around the base, where the arm is folded (N,)."""
+        """Whether the target lies in the hole around the base, so that the arm is folded (N,)."""
         return ~self.reachable & ~self.too_far
 
     @cached_property
     def elbows(self) -> Array:
-        """Where the bones meet: (N, 2, 2), or (N, 2, 3) in space [m], by forward kinematics of `angles`."""
+        """Elbow positions by forward kinematics of `angles`: (N, 2, 2), or (N, 2, 3) in space [m]."""
         return self._in_space(self._bone(self.l1, self.angles[..., 0]))
 
     @cached_property
     def tips(self) -> Array:
-        """Where the second bone ends: (N, 2, 2), or (N, 2, 3) in space [m], by forward kinematics of `angles`."""
+        """Tip positions by forward kinematics of `angles`: (N, 2, 2), or (N, 2, 3) in space [m]."""
         return self.elbows + self._in_space(self._bone(self.l2, self.angles.sum(axis=-1)))
 
     @cached_property
@@ -90,40 +91,40 @@ class TwoBoneAnswers:
 
 
 def two_bone(l1: ArrayLike, l2: ArrayLike, targets: ArrayLike, pole: ArrayLike | None = None) -> TwoBoneAnswers:
-    r"""Both ways in which two bones, hinged at the origin and at each other, reach each target.
+    r"""Both ways in which two bones, hinged at the origin and at each other, reach each of N targets.
 
-    With the target at the distance $d$ in the direction $\varphi$, the triangle of $l_1$, $l_2$, $d$ has the angle
-    $\alpha$ at the base, and at the elbow the second bone turns by $\beta'$ out of the first one's line:
+    Let the target be at distance $d$ in direction $\varphi$. The triangle with sides $l_1$, $l_2$, $d$ has the angle
+    $\alpha$ at the base, and at the elbow the second bone deviates by $\beta'$ from the line of the first:
 
     $$\theta_1 = \varphi \pm \alpha, \quad \theta_2 = \mp \beta', \qquad
     \tan\tfrac{\alpha}{2} = \sqrt{\frac{(s - d)(s - l_1)}{s\,(s - l_2)}}, \quad
     \tan\tfrac{\beta'}{2} = \sqrt{\frac{s\,(s - d)}{(s - l_1)(s - l_2)}}, \quad s = \tfrac12 (l_1 + l_2 + d).$$
 
     These are the half-angle forms of the law of cosines, $\cos\alpha = (d^2 + l_1^2 - l_2^2) / (2 d l_1)$ and
-    $\beta' = \pi - \beta$; an arc cosine would lose half the digits where the arm is stretched or folded. Outside the
-    annulus the factor that turns negative is taken as 0: the arm stretches, or folds, towards the target. With the
-    target at the base every direction is as good; then $\varphi = 0$, and $\alpha = \pi/2$ where the bones are equal.
+    $\beta' = \pi - \beta$. An arc cosine would lose half the digits where the arm is stretched or folded. Outside the
+    annulus the negative factor is replaced by 0, so that the arm stretches or folds towards the target. With the target
+    at the base all directions are equivalent; then $\varphi = 0$, and $\alpha = \pi/2$ if the bones are equally long.
 
-    Source: Šimunić, §2.3, eqs. 2.3.1–2.3.3; Zucconi, "Inverse kinematics in two dimensions" (its B = π − β, which has
-    to turn against α); the factors as in Kahan, "Miscalculating area and angles of a needle-like triangle" (2014).
+    Sources: Šimunić, §2.3, eqs. 2.3.1–2.3.3; Zucconi, "Inverse kinematics in two dimensions", whose B = π − β must turn
+    against α; for the factors, Kahan, "Miscalculating area and angles of a needle-like triangle" (2014).
 
     Args:
-        l1: Length of the bone at the base, one for all or (N,) [m]; 0 or more.
-        l2: Length of the other.
-        targets: Where the tip should be, from the base: (N, 2), or (N, 3) with a pole [m].
-        pole: In space, the direction to which the elbow bends, one for all (3,) or (N, 3), of any length but 0. Where
-            it points along the line to the target, an axis across that line takes its place.
+        l1: Length of the bone at the base [m], at least 0; a number, or (N,).
+        l2: Length of the other bone, likewise.
+        targets: Target positions of the tip, from the base: (N, 2), or (N, 3) with a pole [m].
+        pole: In space, the direction towards which the elbow bends: (3,) or (N, 3), of any length except 0. A pole
+            along the line to the target is replaced by an axis across that line.
 
     Raises:
-        InputError: A wrong shape, a number that is not finite or larger than 1e150, a negative length, a zero pole; a
-            pole in the plane or none in space. The message has the index of the first that is wrong.
+        InputError: A wrong shape; a number that is not finite or exceeds 1e150; a negative length; a zero pole; a pole
+            in the plane, or none in space. The message gives the index of the first wrong entry.
     """
     shape = _shape(targets)
     size = shape[1] if len(shape) == 2 else 2
     if size not in (2, 3):
-        raise InputError(f"targets takes N times 2 or 3 numbers; got an array of shape {shape}")
+        raise InputError(f"targets must be N times 2 or 3 numbers; got an array of shape {shape}")
     points = as_many(targets, (size,), "targets")
-    _refuse_the_first(_largest(points) > _LONGEST, points, "targets", f"at most {_LONGEST:g}")
+    _refuse_the_first(_largest(points) > _LONGEST, points, "targets", f"at most {_LONGEST:g} in each entry")
     count = len(points)
     first, second = _lengths(l1, count, "l1"), _lengths(l2, count, "l2")
     poles = _poles(pole, count, size)
@@ -146,8 +147,11 @@ def two_bone(l1: ArrayLike, l2: ArrayLike, targets: ArrayLike, pole: ArrayLike |
 
 
 def elbow_angles(l1: ArrayLike, l2: ArrayLike, direction: Array, distance: Array) -> tuple[Array, Array]:
-    """(`TwoBoneAnswers.angles` (N, 2, 2) [rad], how far each target lies outside the annulus, negative inside (N,) [m])
-    for targets in these directions [rad] at these distances [m]; nothing is checked.
+    """The closed form for targets in these directions (N,) [rad] at these distances (N,) [m]; nothing is checked.
+
+    Returns:
+        `TwoBoneAnswers.angles` (N, 2, 2) [rad], and how far each target lies outside the annulus, negative inside
+        (N,) [m].
     """
     alpha, bend, outside = _triangle(np.asarray(l1), np.asarray(l2), distance)
     angles = np.empty((len(distance), 2, 2))
@@ -157,33 +161,33 @@ def elbow_angles(l1: ArrayLike, l2: ArrayLike, direction: Array, distance: Array
 
 
 def _triangle(l1: Array, l2: Array, d: Array) -> tuple[Array, Array, Array]:
-    """(α, β', how far d lies outside the annulus, negative inside) of triangles with these sides, (N,) each."""
+    """For triangles with these sides: α, β', and how far d lies outside the annulus, negative inside; (N,) each."""
     beyond, inner, outer = _excess(l1, l2, d), _excess(d, l2, l1), _excess(d, l1, l2)  # 2(s − d), 2(s − l1), 2(s − l2)
     outside = -np.minimum(np.minimum(inner, outer), beyond)
     root, root_d, root_1, root_2 = (np.sqrt(np.maximum(factor, 0.0)) for factor in (l1 + l2 + d, beyond, inner, outer))
     alpha = 2.0 * np.arctan2(root_d * root_1, root * root_2)
     bend = 2.0 * np.arctan2(root * root_d, root_1 * root_2)
     at_base = (root_1 == 0.0) & (root_2 == 0.0)
-    alpha[at_base] = 0.5 * np.pi  # between them lies the limit of equal bones as the target goes to the base
+    alpha[at_base] = 0.5 * np.pi  # the limit for equal bones as the target approaches the base
     return alpha, bend, outside
 
 
 def _excess(a: Array, b: Array, c: Array) -> Array:
-    """a + b − c, good to its last bits wherever it is not negative: what could cancel is subtracted first."""
+    """a + b − c, accurate to the last bits where it is not negative, because the larger terms are subtracted first."""
     return (np.maximum(a, b) - c) + np.minimum(a, b)
 
 
 def _wrapped(angle: Array) -> Array:
-    """Angles in (−2π, 2π] brought into (−π, π]."""
+    """Wrap angles from (−2π, 2π] into (−π, π], in place."""
     angle[angle > np.pi] -= 2.0 * np.pi
     angle[angle <= -np.pi] += 2.0 * np.pi
     return angle
 
 
 def _planes(targets: Array, distance: Array, poles: Array) -> Array:
-    """(N, 3, 3): columns at the target, across it towards the pole, and about which to turn from one to the other."""
+    """The axes of each arm's plane (N, 3, 3), in columns: towards the target, towards the pole, and normal to both."""
     at_base = np.flatnonzero(distance == 0.0)
-    poles = poles.T / _largest(poles)  # (3, N) from here on: numpy is slow along an axis of three
+    poles = poles.T / _largest(poles)  # (3, N) from here on, as numpy is slow along an axis of three
     poles /= np.sqrt(_dot(poles, poles))
     x = targets.T.copy()
     x[:, at_base] = _across(poles[:, at_base])
@@ -194,14 +198,14 @@ def _planes(targets: Array, distance: Array, poles: Array) -> Array:
     sideless = np.flatnonzero(length < _NO_SIDE)
     y[:, sideless], length[sideless] = _across(x[:, sideless]), 1.0
     y /= length
-    y -= _dot(y, x) * x  # once more, for what rounding left of x where the pole was nearly along it
+    y -= _dot(y, x) * x  # again, because rounding leaves a part along x where the pole is nearly parallel to it
     y /= np.sqrt(_dot(y, y))
     z = [x[1] * y[2] - x[2] * y[1], x[2] * y[0] - x[0] * y[2], x[0] * y[1] - x[1] * y[0]]
     return np.stack([x, y, np.stack(z)], axis=-1).transpose(1, 0, 2)
 
 
 def _across(directions: Array) -> Array:
-    """A unit vector across each unit vector (3, N): the part across it of the coordinate axis that it avoids most."""
+    """A unit vector normal to each unit vector (3, N), near the coordinate axis that is most nearly normal to it."""
     axes = np.eye(3)[:, np.abs(directions).argmin(axis=0)]
     across = axes - _dot(axes, directions) * directions
     return np.array(across / np.sqrt(_dot(across, across)))
@@ -212,7 +216,7 @@ def _dot(a: Array, b: Array) -> Array:
 
 
 def _largest(vectors: Array) -> Array:
-    """The largest entry of each vector (N, k), its sign taken off."""
+    """The largest absolute entry of each vector (N, k)."""
     sizes = np.abs(vectors[:, 0])
     for entry in vectors.T[1:]:
         np.maximum(sizes, np.abs(entry), out=sizes)
@@ -222,19 +226,19 @@ def _largest(vectors: Array) -> Array:
 def _shape(value: ArrayLike) -> tuple[int, ...]:
     try:
         return np.shape(value)
-    except ValueError:  # rows of different lengths, which the check of the numbers will tell
+    except ValueError:  # rows of different lengths; the check of the numbers reports them
         return ()
 
 
 def _lengths(value: ArrayLike, count: int, what: str) -> Array:
-    """A bone's lengths (count,), checked; a single number serves for all."""
+    """The lengths of a bone (count,), checked; a single number is repeated."""
     shape = _shape(value)
     if shape == ():
         lengths = np.full(1, as_finite_number(value, what))
     else:
         if shape != (count,):
             raise InputError(
-                f"{what} is one length or one for each of the {count} targets; got an array of shape {shape}"
+                f"{what} must be one length, or one for each of the {count} targets; got an array of shape {shape}"
             )
         lengths = as_many(value, (), what)
     wrong = ~((lengths >= 0.0) & (lengths <= _LONGEST))
@@ -243,22 +247,22 @@ def _lengths(value: ArrayLike, count: int, what: str) -> Array:
 
 
 def _poles(pole: ArrayLike | None, count: int, size: int) -> Array | None:
-    """Directions (count, 3) for targets in space, None for those in the plane."""
+    """The poles (count, 3), checked, for targets in space; None for targets in the plane."""
     if size == 2:
         if pole is not None:
-            raise InputError("a pole goes with targets in space (N, 3); in the plane there are the elbows up and down")
+            raise InputError("pole must be None for targets in the plane (N, 2); a pole needs targets in space (N, 3)")
         return None
     if pole is None:
-        raise InputError("targets in space (N, 3) need a pole: the direction to which the elbow bends")
+        raise InputError("pole must be given for targets in space (N, 3): the direction towards which the elbow bends")
     single = len(_shape(pole)) == 1
     poles = as_many(np.asarray(pole)[np.newaxis] if single else pole, (3,), "pole")
     if not single and len(poles) != count:
-        raise InputError(f"pole is one direction or one for each of the {count} targets; got {len(poles)}")
-    _refuse_the_first(_largest(poles) < 1e-300, poles, "pole", "a direction and cannot be zero")
+        raise InputError(f"pole must be one direction, or one for each of the {count} targets; got {len(poles)}")
+    _refuse_the_first(_largest(poles) < 1e-300, poles, "pole", "a direction, not zero")
     return np.broadcast_to(poles, (count, 3))
 
 
 def _refuse_the_first(wrong: NDArray[np.bool_], values: Array, what: str, right: str) -> None:
     for k in np.flatnonzero(wrong)[:1]:
         name = what if len(values) == 1 else f"{what}[{k}]"
-        raise InputError(f"{name} is {right}; got {values[k].tolist()}")
+        raise InputError(f"{name} must be {right}; got {values[k].tolist()}")

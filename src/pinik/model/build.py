@@ -9,7 +9,10 @@ from xml.etree import ElementTree
 import pinocchio
 
 from ..description.reader import Description
+from ..description.writer import UNLIMITED
 from ..errors import InputError, RobotLoadError
+from .joint import joints_of
+from .ranges import set_position_limits
 
 __all__ = ["MAX_DEGREES_OF_FREEDOM", "MAX_LINKS", "build_model"]
 
@@ -45,8 +48,8 @@ def build_model(
         mimic: Whether mimic joints follow their leaders; else all of them are free.
 
     Returns:
-        The model, and warnings in words: the mimic joints that Pinocchio cannot represent and that were left
-        free.
+        The model, whose position limits are those that hold (`ranges.set_position_limits`), and warnings in words:
+        mimic joints that Pinocchio cannot represent and that are left free, and followers whose limits are ignored.
 
     Raises:
         InputError: `root` is none of these.
@@ -65,11 +68,12 @@ def build_model(
     }
     warnings = tuple(f"joint {name!r}: {cause}; it is left free" for name, cause in causes.items() if cause)
     honoured = {name for name, cause in causes.items() if cause is None}
-    if not honoured:
-        return free, warnings
-    leaders = {tag.mimic.leader for tag in description.joints if tag.mimic is not None and tag.name in honoured}
-    xml = _with_mimics(description.xml, honoured, leaders)
-    return _built(description, xml, root_joint, mimic=True), warnings
+    if honoured:
+        leaders = {tag.mimic.leader for tag in description.joints if tag.mimic is not None and tag.name in honoured}
+        model = _built(description, _with_mimics(description.xml, honoured, leaders), root_joint, mimic=True)
+    else:
+        model = free
+    return model, warnings + set_position_limits(model, joints_of(model, description))
 
 
 def _check_names(description: Description, root: str) -> None:
@@ -123,9 +127,10 @@ def _with_mimics(xml: str, honoured: Collection[str], leaders: Collection[str]) 
             joint.remove(mimic)
         if joint.attrib["type"] == "continuous" and (name in leaders or name in honoured):
             joint.set("type", "revolute")
-            for limit in joint.findall("limit"):
-                joint.remove(limit)
-            ElementTree.SubElement(joint, "limit", lower="0", upper="0", effort="0", velocity="0")
+            limit = joint.find("limit")
+            if limit is None:
+                limit = ElementTree.SubElement(joint, "limit", effort=repr(UNLIMITED), velocity=repr(UNLIMITED))
+            limit.attrib.update(lower="0", upper="0")  # URDF wants bounds here; `set_position_limits` lifts them
     return ElementTree.tostring(robot, encoding="unicode")
 
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable
 from dataclasses import dataclass
 
 import numpy as np
@@ -13,7 +12,7 @@ from numpy.typing import NDArray
 from ..description.reader import Description
 from ..errors import InputError
 
-__all__ = ["Joint", "joints_of", "limits_cut_by_followers"]
+__all__ = ["Joint", "joints_of"]
 
 Array = NDArray[np.float64]
 
@@ -58,22 +57,44 @@ class Joint:
         return self.kind in ("revolute", "continuous", "prismatic")
 
     def angle(self, q: Array) -> float:
-        """A one-axis joint's angle at `q` [rad or m], a follower's too."""
+        """The angle of a one-axis joint at `q` [rad or m]; for a follower, the angle that it takes from its leader."""
         own = math.atan2(q[self.idx_q + 1], q[self.idx_q]) if self.nq == 2 else float(q[self.idx_q])
         return own if self.leader is None else self.multiplier * own + self.offset
 
+    def angle_range(self, lower: float, upper: float) -> tuple[float, float]:
+        """The range of the angle [rad or m] while the joint's entry of q runs from `lower` to `upper`, or ±infinity.
+
+        For a follower that entry is its leader's.
+        """
+        if self.multiplier == 0.0:
+            return self.offset, self.offset
+        first, last = self.multiplier * lower + self.offset, self.multiplier * upper + self.offset
+        return min(first, last), max(first, last)
+
     def set_angle(self, q: Array, angle: float) -> None:
-        """Write a one-axis joint's angle [rad or m] into `q`, in place.
+        """Set the angle of a one-axis joint [rad or m] in `q`, in place; for a follower, by setting its leader.
 
         Raises:
-            InputError: A floating or planar joint, which has no angle.
+            InputError: A floating or planar joint, which has no angle, or a follower with multiplier 0.
         """
         if not self.has_one_axis:
             raise InputError(f"joint {self.name!r} is {self.kind} and has no angle; give its SE3 in joint_placements")
-        if self.nq == 2:
+        if self.leader is not None:
+            q[self.idx_q] = self._leader_angle(angle)
+        elif self.nq == 2:
             q[self.idx_q : self.idx_q + 2] = math.cos(angle), math.sin(angle)
         else:
             q[self.idx_q] = angle
+
+    def _leader_angle(self, angle: float) -> float:
+        """The leader's angle [rad or m] that puts this follower at `angle`."""
+        leader = (angle - self.offset) / self.multiplier if self.multiplier else math.inf
+        if not math.isfinite(leader):
+            raise InputError(
+                f"joint {self.name!r} cannot be set: it mimics {self.leader!r} with multiplier {self.multiplier:g} "
+                f"and stays at {self.offset:g}"
+            )
+        return leader
 
     def placement(self, q: Array) -> pinocchio.SE3:
         """A floating or planar joint's SE3 in its parent at `q`."""
@@ -150,13 +171,3 @@ def joints_of(model: pinocchio.Model, description: Description) -> tuple[Joint, 
             )
         )
     return tuple(joints)
-
-
-def limits_cut_by_followers(joint: Joint, joints: Iterable[Joint]) -> tuple[float, float]:
-    """(lower, upper) of a joint [rad or m] that keep it and all that mimic it inside; lower > upper if nothing does."""
-    lower, upper = joint.lower, joint.upper
-    for follower in joints:
-        if follower.leader == joint.name and follower.multiplier != 0.0:
-            ends = [(limit - follower.offset) / follower.multiplier for limit in (follower.lower, follower.upper)]
-            lower, upper = max(lower, min(ends)), min(upper, max(ends))
-    return lower + 0.0, upper + 0.0  # a negative multiplier turns 0 into −0, which numpy holds to be below 0

@@ -16,10 +16,12 @@ from numpy.typing import ArrayLike, NDArray
 
 from ..checks import as_finite_number, as_many, as_se3, as_vector
 from ..description import reader as urdf
-from ..errors import InputError, RobotLoadError, UnknownNameError
+from ..errors import InputError, UnknownNameError
+from .angles import set_angles
 from .build import build_model
-from .joint import Joint, joints_of, limits_cut_by_followers
+from .joint import Joint, joints_of
 from .poses import read_poses
+from .ranges import configuration_limits
 
 __all__ = ["RobotModel"]
 
@@ -79,8 +81,9 @@ class RobotModel:
         self._settable = tuple(j for j in self.joints if j.has_one_axis and j.leader is None)
         self.joint_names = tuple(j.name for j in self._settable)
         self.mimics = {j.name: (j.leader, j.multiplier, j.offset) for j in self.joints if j.leader is not None}
-        self.lower, self.upper = self._joint_limits()
-        self.lower_q, self.upper_q = self._configuration_limits()
+        self.lower_q, self.upper_q = configuration_limits(self.model, self.joints)
+        first_entries = [joint.idx_q for joint in self._settable]
+        self.lower, self.upper = self.lower_q[first_entries], self.upper_q[first_entries]
         for limits in (self.lower, self.upper, self.lower_q, self.upper_q):
             limits.setflags(write=False)
 
@@ -215,11 +218,15 @@ class RobotModel:
             if given is not None and not isinstance(given, Mapping):
                 raise InputError(f"joints are given by name, as in {{'joint': 0.3}}; got {given!r}")
         q = self.neutral()
-        for name, value in (angles or {}).items():
-            joint = self.settable_joint(name)
-            joint.set_angle(q, as_finite_number(value, f"the angle of joint {name!r}"))
+        set_angles(
+            q,
+            {
+                self.joint(name): as_finite_number(angle, f"the angle of joint {name!r}")
+                for name, angle in (angles or {}).items()
+            },
+        )
         for name, placement in (joint_placements or {}).items():
-            joint = self.settable_joint(name)
+            joint = self.joint(name)
             if joint.has_one_axis:
                 raise InputError(f"joint {name!r} is {joint.kind}; give its scalar in angles")
             joint.set_placement(q, as_se3(placement, f"the placement of joint {name!r}"))
@@ -342,27 +349,6 @@ class RobotModel:
         if axes == pinocchio.WORLD:
             return np.array(rMf.toActionMatrix() @ J)
         return np.vstack([rMf.rotation @ J[:3], rMf.rotation @ J[3:]])
-
-    def _joint_limits(self) -> tuple[Array, Array]:
-        cut = [limits_cut_by_followers(joint, self.joints) for joint in self._settable]
-        for joint, (lower, upper) in zip(self._settable, cut, strict=True):
-            if lower > upper:
-                raise RobotLoadError(
-                    "the limits of the joints that mimic it leave it no room",
-                    source=self.description.source,
-                    element=f"joint {joint.name!r}",
-                )
-            if lower == upper and joint.lower < joint.upper:
-                words = "the limits of the joints that mimic it leave it only the value"
-                self.warnings += (f"joint {joint.name!r}: {words} {lower:g}",)
-        return np.array([lower for lower, _ in cut]), np.array([upper for _, upper in cut])
-
-    def _configuration_limits(self) -> tuple[Array, Array]:
-        lower, upper = np.full(self.model.nq, -np.inf), np.full(self.model.nq, np.inf)
-        for joint, low, high in zip(self._settable, self.lower, self.upper, strict=True):
-            if joint.nq == 1:
-                lower[joint.idx_q], upper[joint.idx_q] = low, high
-        return lower, upper
 
 
 def _frames_by_name(model: pinocchio.Model) -> dict[str, int]:

@@ -210,5 +210,4 @@ def _meets(angle: float, low: float, high: float) -> bool:
 
 
 def _joint_range(joint: Joint, limits: Limits) -> tuple[float, float]:
-    ends = [joint.multiplier * float(end[joint.idx_q]) + joint.offset for end in (limits.lower, limits.upper)]
-    return min(ends), max(ends)
+    return joint.angle_range(float(limits.lower[joint.idx_q]), float(limits.upper[joint.idx_q]))

@@ -1,7 +1,7 @@
-"""A second opinion on a robot: yourdfpy reads the same file, and every link's placement is compared.
+"""A second opinion on a robot: yourdfpy reads the same file, and the placements of all links are compared.
 
-yourdfpy shares no code with Pinocchio, nor with pinik's own reader. Importing this module imports it, and with it
-trimesh (over a second); import it only where the opinion is wanted.
+yourdfpy shares no code with Pinocchio or with pinik's reader. Importing this module imports yourdfpy and trimesh,
+which takes over a second; import it only where the comparison is needed.
 """
 
 from __future__ import annotations
@@ -34,16 +34,16 @@ NO_AXIS = ("floating", "planar")
 
 @dataclass(frozen=True)
 class SecondOpinion:
-    """What yourdfpy says about a robot.
+    """How yourdfpy's reading of a robot compares with pinik's.
 
     Attributes:
-        unread: Why yourdfpy could not read the file, in words; None where it could, else the rest is empty.
-        links: How many links were compared.
-        configurations: At how many configurations, the neutral one first.
+        unread: The reason why yourdfpy could not read the file, in which case all else is empty; None if it could.
+        links: The number of links compared.
+        configurations: The number of configurations compared; the first is the neutral one.
         position_difference_m: The largest distance between the two placements of a link [m].
         rotation_difference_rad: The largest angle between them [rad].
-        disagreeing: The links whose placements differ by more than 1e-9, and those that only one of the two knows.
-        unmoved: The floating and planar joints; yourdfpy cannot move them, so they stayed neutral.
+        disagreeing: Links whose placements differ by more than 1e-9, and links that only one reader found.
+        unmoved: Floating and planar joints, which yourdfpy cannot move; they stay neutral.
     """
 
     unread: str | None = None
@@ -56,11 +56,11 @@ class SecondOpinion:
 
     @property
     def agrees(self) -> bool:
-        """Whether yourdfpy read the file and put every link where pinik puts it."""
+        """Whether yourdfpy could read the file and agrees on the placement of every link."""
         return self.unread is None and not self.disagreeing
 
     def to_dict(self) -> dict[str, Any]:
-        """The JSON form; docs/json.md explains the fields."""
+        """The fields as JSON; docs/json.md describes them."""
         return {"agrees": self.agrees, **asdict(self)}
 
     def __str__(self) -> str:
@@ -74,16 +74,16 @@ class SecondOpinion:
 
 
 def ask_yourdfpy(robot: RobotModel, path: str | Path) -> SecondOpinion:
-    """Compare a robot with what yourdfpy reads in a file.
+    """Compare a robot with yourdfpy's reading of its file.
 
-    The placements are those in the root link, at the neutral and at two random configurations, always the same.
-    Followers move as yourdfpy's own reading of their mimics says; those that pinik left free get their own angles.
-    What yourdfpy is known to do otherwise is kept out: it multiplies a slider's travel by the length of its axis, and
-    leaves floating and planar joints, and mimics of mimics, where they are.
+    Placements are compared in the root link, at the neutral configuration and at two random ones, which are always the
+    same. Followers move as yourdfpy reads their mimic tags; those that pinik left free have angles of their own. Known
+    deviations of yourdfpy are excluded: it multiplies the travel of a prismatic joint by the length of its axis, and
+    does not move floating joints, planar joints or mimics of mimics.
 
     Args:
-        robot: The robot; how its root hangs in the world does not matter.
-        path: The file that it was loaded from; read again, so `urdf.read` should have accepted it.
+        robot: The robot, with any root joint.
+        path: The file that the robot was loaded from.
     """
     rng = np.random.default_rng(0)
     configurations = [
@@ -94,14 +94,14 @@ def ask_yourdfpy(robot: RobotModel, path: str | Path) -> SecondOpinion:
         with _silenced():
             reader, mimics = _read(Path(path))
             theirs = [_their_links(reader, mimics, robot, q) for q in configurations]
-    except Exception as fault:  # it raises whatever its reader stumbles over: KeyError, TypeError, AttributeError, …
+    except Exception as fault:  # yourdfpy raises KeyError, TypeError, AttributeError, …
         cause = " ".join(str(fault).split())[:200]
         return SecondOpinion(unread=f"it could not read the file ({type(fault).__name__}: {cause})")
     return _compared(robot, [_our_links(robot, q) for q in configurations], theirs)
 
 
 def _apart(difference: float | None) -> str:
-    """A difference without the noise of rounding."""
+    """A difference as text; rounding errors are shown as 1e-12."""
     return "nan" if difference is None else f"{max(difference, 1e-12):.2g}"
 
 
@@ -111,14 +111,14 @@ def _listed(names: Sequence[str]) -> str:
 
 
 def _with_neutral_placements(robot: RobotModel, q: Array) -> Array:
-    """The configuration with the angles of `q` whose floating and planar joints are neutral."""
+    """The configuration with the angles of `q`, and with neutral floating and planar joints."""
     angles = robot.angles(q)
     return robot.configuration({name: angles[name] for name in robot.joint_names})
 
 
 @contextmanager
 def _silenced() -> Iterator[None]:
-    """Keep off stderr what yourdfpy logs and warns about."""
+    """Suppress what yourdfpy logs and warns about."""
     logger = logging.getLogger("yourdfpy.urdf")
     disabled, logger.disabled = logger.disabled, True
     try:
@@ -130,15 +130,15 @@ def _silenced() -> Iterator[None]:
 
 
 def _read(path: Path) -> tuple[yourdfpy.URDF, dict[str, Any]]:
-    """yourdfpy's reading of the file, without shapes and with unit axes, and its mimics, taken off the joints.
+    """yourdfpy's reading of the file, without shapes and mimic tags and with unit axes; and the mimic tags.
 
-    With its mimics left on, yourdfpy would move followers by itself: wrongly where they follow a follower, or a leader
-    that comes after a floating or planar joint.
+    yourdfpy itself would place followers wrongly where they follow a follower, or a leader that comes after a floating
+    or planar joint.
     """
     document = io.BytesIO(path.read_bytes())
     read = yourdfpy.URDF.load(document, load_meshes=False, build_scene_graph=False).robot
     for link in read.links:
-        link.visuals.clear()  # it would build boxes and cylinders
+        link.visuals.clear()  # else it builds meshes for boxes and cylinders
     mimics = {}
     for joint in read.joints:
         if joint.mimic is not None:
@@ -146,7 +146,7 @@ def _read(path: Path) -> tuple[yourdfpy.URDF, dict[str, Any]]:
         if joint.type in NO_AXIS:
             joint.type = "fixed"
         elif joint.type != "fixed":
-            axis = joint.axis / np.abs(joint.axis).max()  # first, so that no square over- or underflows
+            axis = joint.axis / np.abs(joint.axis).max()  # first, so that squares neither overflow nor underflow
             joint.axis = axis / np.linalg.norm(axis)
     return yourdfpy.URDF(robot=read, load_meshes=False, build_scene_graph=True), mimics
 
@@ -154,8 +154,8 @@ def _read(path: Path) -> tuple[yourdfpy.URDF, dict[str, Any]]:
 def _their_links(reader: yourdfpy.URDF, mimics: Mapping[str, Any], robot: RobotModel, q: Array) -> dict[str, Array]:
     """Link → its placement (4, 4) in the root link, by yourdfpy.
 
-    What it says of single joints is multiplied here: asked for a whole chain, it looks for the path anew each time,
-    minutes in all for some thousand links.
+    The placements of single joints are multiplied here: for a whole chain yourdfpy searches the path each time, which
+    takes minutes for a thousand links.
     """
     angles = robot.angles(q)
     settable = {name: angles[name] for name in robot.joint_names}
@@ -195,11 +195,11 @@ def _compared(
     names = [name for name in robot.description.links if name in theirs[0]]
     a, b = (np.array([[links[name] for name in names] for links in side]) for side in (ours, theirs))  # (k, n, 4, 4)
     apart = np.linalg.norm(a[..., :3, 3] - b[..., :3, 3], axis=-1)  # (k, n)
-    # ‖A − B‖ = 2√2 sin(θ/2) for rotations an angle θ apart; exact near 0, where the arc cosine of a trace is not.
+    # For rotations an angle θ apart ‖A − B‖ = 2√2 sin(θ/2); near 0 this is exact, unlike the arc cosine of a trace.
     chord = np.linalg.norm(a[..., :3, :3] - b[..., :3, :3], axis=(-2, -1)) / np.sqrt(8.0)
     turned = 2.0 * np.arcsin(np.minimum(chord, 1.0))
     far = np.maximum(np.linalg.norm(a[..., :3, 3], axis=-1), 1.0)
-    same = ((apart <= TOLERANCE * far) & (turned <= TOLERANCE)).all(axis=0)  # never where yourdfpy says NaN
+    same = ((apart <= TOLERANCE * far) & (turned <= TOLERANCE)).all(axis=0)  # False where yourdfpy returns NaN
     wrong = [name for name, agreed in zip(names, same, strict=True) if not agreed]
     return SecondOpinion(
         links=len(names),

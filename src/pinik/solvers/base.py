@@ -16,7 +16,7 @@ from ..errors import UnknownNameError
 from .parameter import max_step_parameter, parameter, parameters_of, stiffness_parameter
 
 if TYPE_CHECKING:
-    from ..closed_form.recognise import OffPlane
+    from ..closed_form.robot_bones import OffPlane
     from ..model.limits import Limits
     from ..model.robot_model import RobotModel
     from ..problem.kinematics import Kinematics, Linearization

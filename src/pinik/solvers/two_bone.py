@@ -11,7 +11,7 @@ from weakref import WeakKeyDictionary
 import numpy as np
 import pinocchio
 
-from ..closed_form.recognise import OffPlane, TwoBone
+from ..closed_form.robot_bones import OffPlane, TwoBone
 from ..errors import InputError
 from ..model.robot_model import RobotModel
 from .base import Array, SweepingSolver

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 
-from ..closed_form.recognise import OffPlane
+from ..closed_form.robot_bones import OffPlane
 from ..problem.reach import Shortfall
 from ..problem.targets import Target, TargetError, Tolerance, largest_of
 from .question import Question

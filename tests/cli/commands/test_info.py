@@ -4,6 +4,7 @@ import pinocchio
 import pytest
 
 import pinik
+from urdf_texts import joint, link, robot
 
 
 def test_joints_with_kind_unit_limits_and_leader(run):
@@ -32,6 +33,19 @@ def test_a_joint_without_limits_has_null(run):
     joints = run("info", "double_pendulum_continuous", "--json").json["joints"]
     assert {(joint["kind"], joint["lower"], joint["upper"]) for joint in joints} == {("continuous", None, None)}
     assert "∞" in run("info", "double_pendulum_continuous").out
+
+
+def test_a_follower_with_multiplier_0_has_its_offset_for_both_limits(run, tmp_path):
+    text = robot(
+        *map(link, "abc"),
+        joint("lead", "a", "b", kind="continuous", limit=""),
+        joint("tail", "b", "c", '<mimic joint="lead" multiplier="0" offset="0.25"/>'),
+    )
+    file = tmp_path / "still.urdf"
+    file.write_text(text)
+    joints = {fields["name"]: fields for fields in run("info", file, "--json").json["joints"]}
+    assert (joints["lead"]["lower"], joints["lead"]["upper"]) == (None, None)
+    assert (joints["tail"]["lower"], joints["tail"]["upper"]) == (0.25, 0.25)
 
 
 def test_a_floating_root_has_neither_unit_nor_limits(run):

@@ -95,9 +95,7 @@ def _limits(robot: Robot, joint: Joint) -> tuple[float | None, float | None]:
     if not joint.has_one_axis:
         return None, None
     index = robot.joint_names.index(joint.leader or joint.name)
-    ends = (float(robot.lower[index]), float(robot.upper[index]))
-    lower, upper = sorted(joint.multiplier * end + joint.offset for end in ends)
-    return lower, upper
+    return joint.angle_range(float(robot.lower[index]), float(robot.upper[index]))
 
 
 def _emit(robot: Robot, units: Units) -> None:

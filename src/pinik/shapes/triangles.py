@@ -1,0 +1,116 @@
+"""Triangle meshes: boxes, spheres, cylinders, capsules, and those in files, with edges that stay sharp"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from pathlib import Path
+
+import numpy as np
+import trimesh
+from numpy.typing import NDArray
+
+__all__ = ["Color", "Part", "box", "capsule", "cylinder", "read_file", "scaled", "sphere"]
+
+Color = tuple[float, float, float, float]
+"""Red, green, blue, opacity, each in 0..1."""
+Part = tuple[trimesh.Trimesh, Color | None]
+"""A mesh, and its own colour if it has one."""
+
+CREASE = np.deg2rad(40.0)  # edges sharper than this stay sharp when a mesh brings no normals
+
+
+def box(size: NDArray[np.float64]) -> trimesh.Trimesh:
+    """A box about the origin with these edges (3,) [m]."""
+    return _creased(trimesh.creation.box(size))
+
+
+def sphere(radius: float) -> trimesh.Trimesh:
+    """A sphere about the origin [m]."""
+    return trimesh.creation.icosphere(3, radius)
+
+
+def cylinder(radius: float, length: float) -> trimesh.Trimesh:
+    """A cylinder about the origin, along z [m]."""
+    return _creased(trimesh.creation.cylinder(radius, length))
+
+
+def capsule(radius: float, length: float) -> trimesh.Trimesh:
+    """A capsule about the origin, along z [m]; as in URDF's cylinder, `length` does not include the caps."""
+    return _creased(trimesh.creation.capsule(length, radius))
+
+
+def scaled(mesh: trimesh.Trimesh, scale: NDArray[np.float64]) -> trimesh.Trimesh:
+    """The mesh, scaled along each axis (3,); the same object where the scale is 1."""
+    if np.array_equal(scale, np.ones(3)):
+        return mesh
+    copy = mesh.copy()
+    copy.apply_transform(np.diag([*np.broadcast_to(scale, 3), 1.0]))
+    return copy
+
+
+def read_file(path: Path) -> list[Part]:
+    """Read a mesh file: one mesh for each colour in it, in the file's own frame [m].
+
+    Raises:
+        Exception: Whatever trimesh raises for a file that it cannot read; ValueError where there are no triangles.
+    """
+    scene = trimesh.load_scene(path)
+    by_color: dict[Color | None, list[trimesh.Trimesh]] = {}
+    for mesh in scene.dump():
+        if isinstance(mesh, trimesh.Trimesh) and len(mesh.faces):
+            # COLLADA names its unit; an STL or OBJ file is taken to be in metres.
+            in_metres = trimesh.units.unit_conversion(mesh.units or "meters", "meters")
+            mesh.apply_transform(np.diag([in_metres, in_metres, in_metres, 1.0]))
+            by_color.setdefault(_own_color(mesh), []).append(mesh)
+    if not by_color:
+        raise ValueError(f"'{path.name}' holds no triangles")
+    keep = _brings_normals(path)
+    return [(_joined(meshes, keep_normals=keep), color) for color, meshes in by_color.items()]
+
+
+def _own_color(mesh: trimesh.Trimesh) -> Color | None:
+    """The colour that its file gives the mesh, if any."""
+    visual = mesh.visual
+    if isinstance(visual, trimesh.visual.TextureVisuals) and visual.material is not None:
+        rgba = np.asarray(visual.material.main_color, dtype=float) / 255.0
+    elif isinstance(visual, trimesh.visual.ColorVisuals) and visual.defined:
+        rgba = np.asarray(visual.main_color, dtype=float) / 255.0
+    else:
+        return None
+    r, g, b, a = (float(value) for value in rgba)
+    return (r, g, b, a)
+
+
+def _brings_normals(path: Path) -> bool:
+    suffix = path.suffix.lower()
+    return suffix == ".dae" or (suffix == ".obj" and b"\nvn " in path.read_bytes())
+
+
+def _joined(meshes: Iterable[trimesh.Trimesh], *, keep_normals: bool) -> trimesh.Trimesh:
+    vertices, faces, normals, count = [], [], [], 0
+    for mesh in meshes:
+        vertices.append(mesh.vertices)
+        faces.append(mesh.faces + count)
+        normals.append(mesh.vertex_normals)
+        count += len(mesh.vertices)
+    joined = trimesh.Trimesh(np.vstack(vertices), np.vstack(faces), vertex_normals=np.vstack(normals), process=False)
+    if keep_normals and not _is_faceted(joined):
+        return joined
+    return _creased(trimesh.Trimesh(joined.vertices, joined.faces))
+
+
+def _is_faceted(mesh: trimesh.Trimesh) -> bool:
+    """Whether the normals at the corners of each face are the face's own, as exporters without smooth shading write."""
+    along = np.einsum("fkc,fc->fk", mesh.vertex_normals[mesh.faces], mesh.face_normals).min(axis=1)
+    has_area = mesh.face_normals.any(axis=1)
+    return bool((along[has_area] > 1.0 - 1e-3).all())
+
+
+def _creased(mesh: trimesh.Trimesh) -> trimesh.Trimesh:
+    """The mesh with vertices split along sharp edges, so that these stay sharp under smooth shading."""
+    smooth = mesh.face_adjacency[mesh.face_adjacency_angles < CREASE]
+    patch = trimesh.graph.connected_component_labels(smooth, len(mesh.faces))  # type: ignore[no-untyped-call]
+    patches = int(patch.max()) + 1
+    corners = mesh.faces.ravel() * patches + np.repeat(patch, 3)
+    kept, faces = np.unique(corners, return_inverse=True)
+    return trimesh.Trimesh(mesh.vertices[kept // patches], faces.reshape(-1, 3), process=False)
