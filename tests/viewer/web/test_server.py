@@ -522,8 +522,7 @@ def test_the_page_has_a_policy_that_runs_its_own_scripts_alone(view):
         assert (status, headers["Content-Type"]) == (200, "text/html; charset=utf-8")
         policy = dict(part.split(" ", 1) for part in headers["Content-Security-Policy"].split("; "))
         nonces.append(re.search(r"'nonce-([\w-]{16,})'", policy["script-src"])[1])
-        # Texts are evaluated for whoever drives the browser only: see test_page_looks.py for what meshcat could.
-        assert set(policy["script-src"].split()) == {"'self'", f"'nonce-{nonces[-1]}'", "'unsafe-eval'"}
+        assert set(policy["script-src"].split()) == {"'self'", f"'nonce-{nonces[-1]}'"}
         assert policy["default-src"] == "'self'"
         assert f"ws://127.0.0.1:{view.port}" in policy["connect-src"].split()
         page = body.decode()

@@ -82,9 +82,7 @@ class _Index(_Handler):
         here = self.request.host
         policy = {
             "default-src": "'self'",
-            # The page evaluates no text, and takes away meshcat's one command that does; programs that drive
-            # browsers, such as playwright, evaluate theirs.
-            "script-src": f"'self' 'nonce-{nonce}' 'unsafe-eval'",
+            "script-src": f"'self' 'nonce-{nonce}'",
             "style-src": "'self' 'unsafe-inline'",
             "img-src": "'self' data: blob:",
             "connect-src": f"'self' ws://{here} wss://{here}",
