@@ -68,8 +68,9 @@ def tabs(browser: Browser) -> Iterator[Tabs]:
         page.context.close()
 
 
-def new_context(browser: Browser, **options: Any) -> BrowserContext:
-    context = browser.new_context(**options)
+def new_context(browser: Browser, *, bypass_csp: bool = True, **options: Any) -> BrowserContext:
+    """A browser's context; playwright evaluates its own scripts, which the page's content security policy forbids."""
+    context = browser.new_context(bypass_csp=bypass_csp, **options)
     context.set_default_timeout(1000 * PATIENCE)
     return context
 

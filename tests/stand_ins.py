@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import struct
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from typing import Any
 
@@ -13,6 +13,8 @@ import pinocchio
 from numpy.typing import NDArray
 
 import pinik
+from pinik.viewer.protocol.packing import InstanceBlock, pack_frame
+from pinik.viewer.protocol.recording import Recording
 from pinik.viewer.protocol.setup import write_setup
 from pinik.viewer.protocol.state import session_state
 from pinik.viewer.simulation.session import Session
@@ -169,6 +171,22 @@ def read_frame(message: bytes) -> Frame:
         )
     assert numbers == []
     return Frame(generation, step, where, blocks)
+
+
+def small_frame(
+    step: int, generation: int = 1, instances: int = 1, joints: int = 2, balls: int = 1, mark: float = 0.0
+) -> bytes:
+    """A frame message whose figures are all `mark` and whose placements are all zero."""
+    block = InstanceBlock(np.full(8, mark), np.zeros((joints, 7)), np.zeros(joints), np.zeros((balls, 3)))
+    return pack_frame(generation, step, np.zeros((balls, 7)), [block] * instances)
+
+
+def recorded(frames: Iterable[bytes]) -> Recording:
+    """A recording of frames that came at 60 per second."""
+    recording = Recording()
+    for number, frame in enumerate(frames):
+        recording.add(frame, number / 60)
+    return recording
 
 
 def snapshot(session: Session) -> str:

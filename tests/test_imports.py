@@ -25,8 +25,6 @@ EXCEPTIONS = {
     ("model.robot_model", "solving.solution"),
     ("model.robot_model", "solvers.base"),
     ("model.robot_model", "problem.targets"),
-    ("viewer.protocol.recording", "viewer.web.scene"),
-    ("viewer.protocol.frames", "viewer.web.scene"),
 }
 # Package → the modules and rooms that alone may import it.
 ONLY_THERE = {
@@ -36,7 +34,7 @@ ONLY_THERE = {
     "PIL": {"picture.draw"},
     "meshcat": set(),  # of meshcat the page takes the JavaScript; the Python package brings IPython and ZeroMQ
     "zmq": set(),
-    "tornado": {"viewer.web.server", "viewer.web.live_view"},
+    "tornado": {"viewer.web.server", "viewer.web.later", "viewer.web.live_view"},
     "umsgpack": {"viewer.web.scene", "viewer.web.shape_cache"},
 }
 HEAVY = {"yourdfpy", "trimesh", "scipy", "PIL", "meshcat", "matplotlib", "typer", "rich", "tornado", "umsgpack"}

@@ -125,7 +125,7 @@ def test_what_is_malformed_is_said_in_words_and_changes_nothing(begun, kind):
     ],
 )
 def test_what_is_no_message_is_refused(text):
-    with pytest.raises(pinik.InputError, match="a message is a JSON object"):
+    with pytest.raises(pinik.InputError, match="a message must be a JSON object"):
         parse(text)
 
 
@@ -140,7 +140,7 @@ def test_no_nesting_is_too_deep_to_be_refused_in_words(begun, brackets):
             '{"type":"ball","index":0,"position":%s}',
             '{"type":"parameter","instance":0,"name":"max_step","value":%s}',
         ):
-            with pytest.raises(pinik.InputError, match="a message is a JSON object"):
+            with pytest.raises(pinik.InputError, match="a message must be a JSON object"):
                 apply(begun, parse(message % deep))
 
 
@@ -254,7 +254,7 @@ def test_the_ends_of_a_range_belong_to_it(arm, name):
     for end, beyond in zip(RANGES[name], (-1, 1), strict=True):
         after(arm, kind, **{field: end}, **others)
         further = end + beyond if name == "iterations" else math.nextafter(end, beyond * math.inf)
-        with pytest.raises(pinik.InputError, match=re.escape(f"{kind}: {field} is a number from")):
+        with pytest.raises(pinik.InputError, match=re.escape(f"{kind}: {field} must be a number from")):
             after(arm, kind, **{field: further}, **others)
     assert FARTHEST == 100.0
 

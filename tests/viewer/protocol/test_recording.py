@@ -1,87 +1,12 @@
-"""The last twenty seconds as a page of its own."""
+"""A recording keeps the last 20 seconds, at most 30 frames per second."""
 
 from __future__ import annotations
 
-import base64
-import json
-import math
 import struct
-from html.parser import HTMLParser
-from pathlib import Path
 
-import numpy as np
 import pytest
 
-from pinik.viewer.protocol import recording as recording_module
-from pinik.viewer.protocol.recording import Recording, animation_page
-from pinik.viewer.simulation.session import Session
-from pinik.viewer.web.scene import InstanceBlock, Shapes, make_shapes, pack_frame, robot_message
-from pinik.viewer.web.show import Show
-
-CHROMIUM = Path("/usr/bin/chromium")
-FLAGS = [
-    "--no-sandbox",
-    "--use-angle=swiftshader",
-    "--enable-unsafe-swiftshader",
-    "--disable-quic",
-    "--no-first-run",
-    "--disable-background-networking",
-]
-
-# A stand-in for the page: as the real one, with a module that tells in the title what it found.
-PLAYER_HTML = """<!DOCTYPE html>
-<html><head><meta charset="utf-8"><title>{{title}}</title><style>{{style}}</style>
-<script type="importmap">{{importmap}}</script>
-<script>{{meshcat}}</script>
-<script type="application/json" id="recording">{{recording}}</script>
-</head><body><script type="module">import "pinik/player.js";</script></body></html>
-"""
-PLAYER_JS = """
-import { told } from "pinik/words.js";
-const recording = JSON.parse(document.getElementById("recording").textContent);
-const viewer = new MeshCat.Viewer(document.body);
-for (const command of recording.commands) {
-    viewer.handle_command_bytearray(Uint8Array.from(atob(command), (c) => c.charCodeAt(0)));
-}
-const found = recording.shapes.parts.map(({ link, path }) => {
-    let mesh = null;
-    viewer.scene_tree.find(path.split("/").filter(Boolean)).object.traverse((o) => { if (o.isMesh) mesh = o; });
-    mesh.geometry.computeBoundingBox();
-    const { position, normal } = mesh.geometry.attributes;
-    return {
-        link, triangles: mesh.geometry.index.count / 3, vertices: position.count, normals: normal.count,
-        box: [mesh.geometry.boundingBox.min.toArray(), mesh.geometry.boundingBox.max.toArray()],
-        material: mesh.material.type, color: mesh.material.color.getHex(), opacity: mesh.material.opacity,
-        transparent: mesh.material.transparent, vertexColors: mesh.material.vertexColors,
-    };
-});
-document.title = told({ name: recording.robot.name, frames: atob(recording.frames).length, found });
-"""
-WORDS_JS = """
-// {{title}} and {{recording}} stand in other files' places only; so does </script><!-- <script>.
-export const told = JSON.stringify;
-"""
-AWKWARD = "</script><!-- <script>{{style}} & \u2028 ü"
-
-
-@pytest.fixture
-def page(tmp_path):
-    folder = tmp_path / "page"
-    folder.mkdir()
-    for name, text in {
-        "player.html": PLAYER_HTML,
-        "player.js": PLAYER_JS,
-        "words.js": WORDS_JS,
-        "style.css": "body > p::after { content: '{{meshcat}}'; }",
-        "index.html": "<p>another page</p>",
-    }.items():
-        (folder / name).write_text(text, "utf-8")
-    return folder
-
-
-def frame(step, generation=1, instances=1, joints=2, balls=1, mark=0.0):
-    block = InstanceBlock(np.full(8, mark), np.zeros((joints, 7)), np.zeros(joints), np.zeros((balls, 3)))
-    return pack_frame(generation, step, np.zeros((balls, 7)), [block] * instances)
+from stand_ins import recorded, small_frame
 
 
 def steps(recording):
@@ -90,21 +15,14 @@ def steps(recording):
     return [struct.unpack_from("<4x5f", recording.frames, k * size)[1] for k in range(count)]
 
 
-def recorded(frames):
-    recording = Recording()
-    for number, each in enumerate(frames):
-        recording.add(each, number / 60)
-    return recording
-
-
 def test_every_second_frame_is_kept_as_it_came():
-    recording = recorded(frame(k, mark=0.5) for k in range(7))
+    recording = recorded(small_frame(k, mark=0.5) for k in range(7))
     assert steps(recording) == [0, 2, 4, 6]
-    assert recording.frames == b"".join(frame(k, mark=0.5) for k in (0, 2, 4, 6))
+    assert recording.frames == b"".join(small_frame(k, mark=0.5) for k in (0, 2, 4, 6))
 
 
 def test_twenty_seconds_are_kept_and_no_more():
-    recording = recorded(frame(k) for k in range(60 * 21))
+    recording = recorded(small_frame(k) for k in range(60 * 21))
     assert len(recording) == 20 * 30
     assert steps(recording) == list(range(60, 60 * 21, 2))
 
@@ -115,165 +33,15 @@ def test_twenty_seconds_are_kept_and_no_more():
     ids=str,
 )
 def test_a_frame_of_another_layout_starts_anew(change):
-    recording = recorded([*(frame(k) for k in range(5)), frame(5, **change), frame(6, **change), frame(7, **change)])
+    changed = [small_frame(k, **change) for k in (5, 6, 7)]
+    recording = recorded([*map(small_frame, range(5)), *changed])
     assert steps(recording) == [5, 7]
-    assert recording.frame_bytes == len(frame(5, **change))
+    assert recording.frame_bytes == len(changed[0])
 
 
 def test_what_was_cleared_is_gone_and_the_next_frame_kept():
-    recording = recorded(frame(k) for k in range(3))
+    recording = recorded(small_frame(k) for k in range(3))
     recording.clear()
     assert (len(recording), recording.frames, recording.frame_bytes) == (0, b"", 0)
-    recording.add(frame(3), 1.0)
+    recording.add(small_frame(3), 1.0)
     assert steps(recording) == [3]
-
-
-class Scripts(HTMLParser):
-    """The scripts, the style and the title of a page, as an HTML parser tells them apart."""
-
-    def __init__(self, text):
-        super().__init__()
-        self.found, self._inside = [], None
-        self.feed(text)
-        self.close()
-
-    def handle_starttag(self, tag, attrs):
-        if tag in ("script", "style", "title"):
-            self._inside = [tag, dict(attrs), ""]
-            self.found.append(self._inside)
-
-    def handle_endtag(self, tag):
-        self._inside = None
-
-    def handle_data(self, data):
-        if self._inside:
-            self._inside[2] += data
-
-
-def content(html, tag, **attributes):
-    ((_, _, text),) = [each for each in Scripts(html).found if each[0] == tag and attributes.items() <= each[1].items()]
-    return text
-
-
-def messages(robot):
-    return {"type": "hello", "words": AWKWARD}, robot_message(robot, 5), {"type": "state", "message": AWKWARD}
-
-
-def test_the_page_holds_all_that_is_played(two_link, page):
-    hello, robot, state = messages(two_link)
-    robot["name"] = AWKWARD
-    shapes = Shapes(((0, "/pinik/shapes/0/0"),), (b"\x83\xff\x00",), ("a </script> is left out",))
-    recording = recorded(frame(k) for k in range(4))
-    html = animation_page(hello, robot, shapes, state, recording, page)
-    document = json.loads(content(html, "script", id="recording"))
-    assert {key: document.pop(key) for key in ("hello", "robot", "state")} == {
-        "hello": hello,
-        "robot": robot,
-        "state": state,
-    }
-    assert base64.b64decode(document.pop("frames")) == frame(0) + frame(2)
-    assert list(map(base64.b64decode, document.pop("commands"))) == [b"\x83\xff\x00"]
-    assert document == {
-        "shapes": {
-            "type": "shapes",
-            "generation": 5,
-            "warnings": ["a </script> is left out"],
-            "parts": [{"link": 0, "path": "/pinik/shapes/0/0"}],
-        },
-        "frame_bytes": len(frame(0)),
-        "frames_per_second": 30,
-    }
-    assert content(html, "title") == f"{AWKWARD} – pinik"
-    assert content(html, "style") == (page / "style.css").read_text()
-    modules = json.loads(content(html, "script", type="importmap"))["imports"]
-    kind = "data:text/javascript;base64,"
-    assert {name: base64.b64decode(url.removeprefix(kind)).decode() for name, url in modules.items()} == {
-        "pinik/player.js": PLAYER_JS,
-        "pinik/words.js": WORDS_JS,
-    }
-
-
-def test_nothing_is_left_to_be_fetched(two_link, page):
-    hello, robot, state = messages(two_link)
-    html = animation_page(hello, robot, Shapes((), (), ()), state, Recording(), page)
-    assert [attributes for _, attributes, _ in Scripts(html).found if {"src", "href"} & set(attributes)] == []
-
-
-def test_meshcats_script_cannot_end_its_element(two_link, page, tmp_path, monkeypatch):
-    script = tmp_path / "main.min.js"
-    script.write_text('const a = "</SCRIPT><p>", b = "<!--<script>", c = a < b, d = "</div>";', "utf-8")
-    monkeypatch.setattr(recording_module, "meshcat_script", lambda: script)
-    hello, robot, state = messages(two_link)
-    html = animation_page(hello, robot, Shapes((), (), ()), state, Recording(), page)
-    (text,) = [each[2] for each in Scripts(html).found if each[0] == "script" and not each[1]]
-    assert text == r'const a = "\x3c/SCRIPT><p>", b = "\x3c!--\x3cscript>", c = a < b, d = "</div>";'
-
-
-def test_numbers_that_are_no_json_are_refused(two_link, page):
-    hello, robot, state = messages(two_link)
-    state["position_error"] = math.nan
-    with pytest.raises(ValueError, match="JSON"):
-        animation_page(hello, robot, Shapes((), (), ()), state, Recording(), page)
-
-
-@pytest.fixture
-def tab():
-    """A page of a browser; its `faults` are errors, and whatever it asked a server for."""
-    if not CHROMIUM.exists():
-        pytest.skip(f"there is no {CHROMIUM}")
-    sync_api = pytest.importorskip("playwright.sync_api")
-    with sync_api.sync_playwright() as playwright:
-        browser = playwright.chromium.launch(executable_path=CHROMIUM, args=FLAGS)
-        opened = browser.new_page()
-        opened.faults = []
-        opened.on("pageerror", lambda error: opened.faults.append(str(error)))
-        opened.on("console", lambda line: opened.faults.append(line.text) if line.type == "error" else None)
-        opened.on("request", lambda request: opened.faults.append(request.url) if is_fetched(request.url) else None)
-        yield opened
-        browser.close()
-
-
-def is_fetched(url):
-    return not url.startswith(("file:", "data:", "blob:"))
-
-
-def test_a_browser_plays_the_file_with_meshcats_own_viewer(panda, page, tmp_path, tab):
-    hello, robot, state = messages(panda)
-    shapes = make_shapes(panda)
-    recording = recorded(frame(k, generation=5, joints=10) for k in range(4))
-    file = tmp_path / "animation.html"
-    file.write_text(animation_page(hello, robot, shapes, state, recording, page), "utf-8")
-    tab.goto(file.as_uri())
-    tab.wait_for_function("document.title.startsWith('{')", timeout=60_000)
-    told = json.loads(tab.title())
-    assert tab.faults == []
-    assert (told["name"], told["frames"]) == ("panda", 2 * len(frame(0, joints=10)))
-    assert [each["link"] for each in told["found"]] == [link for link, _ in shapes.parts]
-    assert sum(each["triangles"] for each in told["found"]) > 100_000
-    base = [each["box"] for each in told["found"] if each["link"] == 0]
-    assert np.min([low for low, _ in base], axis=0)[2] == pytest.approx(0, abs=0.01)
-    for each in told["found"]:
-        assert each["vertices"] == each["normals"] > 0
-        assert each["material"] == "MeshStandardMaterial"
-        assert (each["opacity"], each["transparent"], each["vertexColors"]) == (1, False, False)
-    assert len({each["color"] for each in told["found"]}) >= 4
-
-
-def test_a_saved_session_plays_without_a_server(two_link, tmp_path, monkeypatch, tab):
-    monkeypatch.setenv("PINIK_CACHE_DIR", str(tmp_path / "cache"))
-    session = Session(two_link, view=2)
-    session.set_motion("curve")
-    session.running = True
-    now = 0.0
-    show = Show(session, later=lambda work, then: then(work()), clock=lambda: now)
-    for step in range(60):
-        now = step / 60
-        show.tick()
-    file = tmp_path / "animation.html"
-    file.write_text(show.animation(), "utf-8")
-    tab.goto(file.as_uri())
-    clock = "document.getElementById('clock').textContent"
-    tab.wait_for_function(f"/^0\\.[1-9] s of 1\\.0 s$/.test({clock})", timeout=60_000)
-    assert tab.title().startswith("two_link")
-    assert tab.faults == []
-    assert len(tab.locator("#canvas canvas").screenshot()) > 10_000  # a PNG of one colour would be smaller

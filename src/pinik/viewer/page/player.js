@@ -16,7 +16,7 @@ class Player {
         this._rate = recording.frames_per_second;
         this._at = 0;
         this._shown = -1;
-        this._before = performance.now();
+        this._before = null;
         addPresets(byId("presets"), this._show);
         this._show.setHello(recording.hello);
         this._show.setRobot(recording.robot);
@@ -61,7 +61,8 @@ class Player {
 
     _tick(now) {
         if (this._playing) {
-            this._at += ((now - this._before) / 1000) * this._rate * Number(byId("rate").value);
+            const passed = Math.max(0, now - (this._before ?? now));
+            this._at += (passed / 1000) * this._rate * Number(byId("rate").value);
             if (this._at >= this._count) {
                 this._at = 0;
                 this._show.clearTrails();

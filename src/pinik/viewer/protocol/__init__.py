@@ -1,1 +1,1 @@
-"""What the page and the server say to each other."""
+"""The messages that the page and the server exchange."""

@@ -1,4 +1,4 @@
-"""A session's frame: where everything is at this step, for the page to draw."""
+"""A session's frame message: where everything is at this step."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from ...robot import Robot
 from ..simulation.instance import STATUSES, Instance
 from ..simulation.session import Session
-from ..web.scene import InstanceBlock, JointPlacements, pack_frame
+from .packing import InstanceBlock, JointPlacements, pack_frame
 
 __all__ = ["FrameMaker"]
 
@@ -20,7 +20,7 @@ _SIDES = {"lower": -1.0, "upper": 1.0, "both": 2.0}
 
 
 class FrameMaker:
-    """Makes the frame messages of one robot's session; `generation` is the robot's number."""
+    """Makes the frame messages of one robot's session; `generation` is the robot's number in messages."""
 
     def __init__(self, robot: Robot, generation: int) -> None:
         self._robot = robot
@@ -29,7 +29,7 @@ class FrameMaker:
         self._joint_ids = {joint.name: joint.id for joint in robot.joints}
 
     def frame(self, session: Session) -> bytes:
-        """The message, as docs/live-protocol.md lays it out."""
+        """Return the frame message of the session's current step; docs/live-protocol.md describes its layout."""
         balls = np.array([ball.placement for ball in session.balls])
         frames = [self._robot.frame_id(ball.frame) for ball in session.balls]
         blocks = [self._block(instance, frames) for instance in session.seen]

@@ -1,4 +1,4 @@
-"""What a page may ask of a session: every message checked, field by field, before anything happens."""
+"""The page's requests: every field is checked before anything changes."""
 
 from __future__ import annotations
 
@@ -19,9 +19,9 @@ RANGES: dict[str, tuple[float, float]] = {
     "position_tolerance": (1e-6, 1.0),
     "orientation_tolerance": (1e-6, 3.2),
 }
-"""What numbers may be; the page's sliders show it."""
+"""Name → lowest and highest value; the page's sliders have these ends."""
 FARTHEST = 100.0
-"""[m] A ball stays within this of the world's origin."""
+"""How far from the world's origin a ball may be [m]."""
 _LONGEST_NAME = 200
 _LARGEST_ANGLE = 100.0  # [rad]
 _DEEPEST = 8
@@ -30,30 +30,29 @@ Check = Callable[[str, Any], Any]
 
 
 def parse(text: str) -> dict[str, Any]:
-    """One message from its text: a JSON object with a `type`.
+    """Read a message: a JSON object with a `type`.
 
     Raises:
-        InputError: It is something else.
+        InputError: The text is something else.
     """
-
     try:
         message = read_json(text)
     except ValueError as error:
-        raise InputError(f"a message is a JSON object; this is none: {error}") from None
+        raise InputError(f"a message must be a JSON object: {error}") from None
     if not isinstance(message, dict) or not isinstance(message.get("type"), str):
-        raise InputError('a message is a JSON object with a "type"')
+        raise InputError('a message must be a JSON object with a "type"')
     return message
 
 
 def read_json(text: str) -> Any:
-    """A JSON value that nests no deeper than anything here does: what is wrong with it can be shown in words.
+    """Read JSON that nests at most eight levels deep, which is more than any message needs.
 
     Raises:
-        ValueError: It is none, or holds NaN or an infinity by name.
+        ValueError: The text is not JSON, nests too deeply, or contains NaN or an infinity by name.
     """
 
     def refuse(word: str) -> None:
-        raise ValueError(f"{word} is no JSON number")
+        raise ValueError(f"{word} is not a JSON number")
 
     try:
         value = json.loads(text, parse_constant=refuse)
@@ -72,10 +71,10 @@ def _parts(outer: list[Any] | dict[str, Any]) -> Iterable[Any]:
 
 
 def apply(session: Session, message: Mapping[str, Any]) -> None:
-    """Do what a message says; nothing when it is not well formed.
+    """Do what a message asks, or nothing if it is malformed.
 
     Raises:
-        InputError, UnknownNameError: The message is unknown, a field is missing, too many, or out of its range.
+        InputError, UnknownNameError: The message is unknown, or a field is missing, unexpected or out of range.
     """
     kind = message["type"]
     if kind not in _MESSAGES:
@@ -85,7 +84,11 @@ def apply(session: Session, message: Mapping[str, Any]) -> None:
 
 
 def checked(kind: str, message: Mapping[str, Any], fields: Mapping[str, Check]) -> dict[str, Any]:
-    """The fields of a message, each checked: exactly those that belong to it."""
+    """Check that a message has exactly these fields, and return their checked values.
+
+    Raises:
+        InputError: A field is missing, unexpected or out of range.
+    """
     given = {name: value for name, value in message.items() if name != "type"}
     if set(given) != set(fields):
         wanted = ", ".join(fields) or "no fields"
@@ -94,22 +97,22 @@ def checked(kind: str, message: Mapping[str, Any], fields: Mapping[str, Check]) 
 
 
 def text(what: str, value: Any) -> str:
-    """A name, not too long."""
+    """Check that a value is a text of at most 200 characters."""
     if not isinstance(value, str) or len(value) > _LONGEST_NAME:
-        raise InputError(f"{what} is a text of at most {_LONGEST_NAME} characters; got {str(value)[:60]!r}")
+        raise InputError(f"{what} must be a text of at most {_LONGEST_NAME} characters; got {str(value)[:60]!r}")
     return value
 
 
 def _truth(what: str, value: Any) -> bool:
     if not isinstance(value, bool):
-        raise InputError(f"{what} is true or false; got {value!r}")
+        raise InputError(f"{what} must be true or false; got {value!r}")
     return value
 
 
 def whole_number(what: str, value: Any) -> int:
-    """A whole number."""
+    """Check that a value is a whole number."""
     if isinstance(value, bool) or not isinstance(value, int):
-        raise InputError(f"{what} is a whole number; got {value!r}")
+        raise InputError(f"{what} must be a whole number; got {value!r}")
     return value
 
 
@@ -118,7 +121,7 @@ def _in_range(name: str, *, whole: bool = False) -> Check:
         low, high = RANGES[name]
         number = whole_number(what, value) if whole else as_finite_number(value, what)
         if not low <= number <= high:
-            raise InputError(f"{what} is a number from {low:g} to {high:g}; got {value!r}")
+            raise InputError(f"{what} must be a number from {low:g} to {high:g}; got {value!r}")
         return number
 
     return check
@@ -127,21 +130,21 @@ def _in_range(name: str, *, whole: bool = False) -> Check:
 def _point(what: str, value: Any) -> Any:
     point = as_vector(value, 3, what)
     if abs(point).max() > FARTHEST:
-        raise InputError(f"{what} is a point within {FARTHEST:g} m of the origin; got {point.tolist()}")
+        raise InputError(f"{what} must be a point within {FARTHEST:g} m of the origin; got {point.tolist()}")
     return point
 
 
 def _angles(what: str, value: Any) -> Any:
     angles = as_vector(value, 3, what, "roll, pitch, yaw in radians")
     if abs(angles).max() > _LARGEST_ANGLE:
-        raise InputError(f"{what} is three angles of at most {_LARGEST_ANGLE:g} rad; got {angles.tolist()}")
+        raise InputError(f"{what} must be three angles of at most {_LARGEST_ANGLE:g} rad; got {angles.tolist()}")
     return angles
 
 
 def _parameter_value(what: str, value: Any) -> Any:
-    """Anything plain that is small enough to look at; the solver itself checks its range."""
+    """Limit the size of the value; the solver itself checks its kind and range."""
     if isinstance(value, Mapping) and len(value) > 1000:
-        raise InputError(f"{what} names more joints than any robot has")
+        raise InputError(f"{what} must name at most 1000 joints; got {len(value)}")
     return value
 
 

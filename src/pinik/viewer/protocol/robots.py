@@ -1,4 +1,4 @@
-"""Which robots a page may choose: the catalogue's, and the one that the view was opened with."""
+"""The robots that a page may choose: those of the catalogue, and the one that the view was opened with."""
 
 from __future__ import annotations
 
@@ -13,10 +13,10 @@ ROOTS = ("fixed", "free_flyer", "planar")
 
 
 class RobotMenu:
-    """Robots by name; a page can name nothing else, no file and no folder.
+    """Robots by name. A page can name nothing else, no file and no folder.
 
     Attributes:
-        own_names: Of robots that the catalogue does not have.
+        own_names: Names of robots that are not in the catalogue.
     """
 
     def __init__(self, first: Robot) -> None:
@@ -24,10 +24,10 @@ class RobotMenu:
         self.own_names = [] if first.name in catalog() else [first.name]
 
     def check(self, name: str, root: str) -> None:
-        """See that there is such a robot and such a root.
+        """Check that a robot and a root exist.
 
         Raises:
-            UnknownNameError: There is not.
+            UnknownNameError: One of them does not.
         """
         names = [*self.own_names, *catalog()]
         if name not in names:
@@ -36,7 +36,7 @@ class RobotMenu:
             raise UnknownNameError("root", root, ROOTS)
 
     def load(self, name: str, root: str) -> Robot:
-        """The robot of that name; the first one's name means that one, whatever file it came from.
+        """Load a robot by name; the name of the first robot means that robot, whichever file it came from.
 
         Raises:
             RobotLoadError: Its description is faulty.

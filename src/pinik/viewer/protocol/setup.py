@@ -1,4 +1,4 @@
-"""A session's set-up as the text behind the # of its address, so that a link opens it again."""
+"""A session's set-up as text for the address bar, so that a link restores it."""
 
 from __future__ import annotations
 
@@ -18,12 +18,13 @@ __all__ = ["Setup", "apply_setup", "read_setup", "write_setup"]
 
 Setup = dict[str, str]
 _LONGEST = 20_000
+_JSON_NAMES = {list: "array", dict: "object"}
 _KEYS = ("robot", "root", "view", "methods", "parameters", "motion", "curve", "speed", "limits", "iterations",
          "tolerance", "balls", "run")  # fmt: skip
 
 
 def write_setup(session: Session) -> str:
-    """The set-up as "name=value&…"; what stands at its default is left out, but for robot, view and methods."""
+    """Return the set-up as "name=value&…", mostly without settings that have their default value."""
     chase, motion, default = session.chase, session.motion, Chase()
     setup = {
         "robot": session.robot.name,
@@ -51,10 +52,10 @@ def write_setup(session: Session) -> str:
 
 
 def _ball(session: Session, index: int) -> list[Any]:
-    """[frame, mode, and where it is unless a motion decides that, and its orientation where asked for]."""
+    """Return [frame, mode, position, rpy], without the position if the motion decides it, and rpy only if asked for."""
     ball = session.balls[index]
-    led = ball.mode == "off" or (session.motion.kind != "hand" and ball.mode == "on")
-    position = None if led else [round(float(x), 4) for x in ball.position]
+    moved = ball.mode == "off" or (session.motion.kind != "hand" and ball.mode == "on")
+    position = None if moved else [round(float(x), 4) for x in ball.position]
     rpy = [round(float(x), 4) for x in ball.rpy] if ball.oriented else None
     parts = [ball.frame, ball.mode, position, rpy]
     while parts[-1] is None:
@@ -63,7 +64,7 @@ def _ball(session: Session, index: int) -> list[Any]:
 
 
 def _short(number: float) -> str:
-    """As few digits as say exactly this number."""
+    """Return the shortest text that reads back as exactly this number."""
     return repr(float(number)).removesuffix(".0")
 
 
@@ -72,30 +73,29 @@ def _compact(value: Any) -> str:
 
 
 def read_setup(text: str) -> Setup:
-    """The set-up's parts by name.
+    """Split a set-up into its parts, by name.
 
     Raises:
-        InputError: It is too long, or names a part twice.
-        UnknownNameError: It names a part that there is not.
+        InputError: It is too long or contains a part twice.
+        UnknownNameError: It contains an unknown part.
     """
     if len(text) > _LONGEST:
-        raise InputError(f"a set-up has at most {_LONGEST} characters; got {len(text)}")
+        raise InputError(f"a set-up must have at most {_LONGEST} characters; got {len(text)}")
     setup: Setup = {}
     for name, value in parse_qsl(text.lstrip("#"), keep_blank_values=True):
         if name not in _KEYS:
             raise UnknownNameError("part of a set-up", name, _KEYS)
         if name in setup:
-            raise InputError(f"the set-up says {name!r} twice")
+            raise InputError(f"the set-up contains {name!r} twice")
         setup[name] = value
     return setup
 
 
 def apply_setup(session: Session, setup: Setup) -> None:
-    """Bring a session to a set-up; what already stands so stays untouched, its statistics too. The robot is the
-    session's own.
+    """Change a session to match a set-up, all but its robot. Whatever matches already keeps its statistics.
 
     Raises:
-        InputError, UnknownNameError: A part that cannot be; the parts before it are done.
+        InputError, UnknownNameError: A part is wrong; the parts before it have been applied.
     """
     for message in _messages(session, setup):
         apply(session, message)
@@ -104,21 +104,21 @@ def apply_setup(session: Session, setup: Setup) -> None:
 def _messages(session: Session, setup: Setup) -> Iterator[dict[str, Any]]:
     if "view" in setup:
         yield {"type": "view", "count": _whole("view", setup["view"])}
-    if "balls" in setup:  # first of all: which methods there are depends on them
+    if "balls" in setup:  # before the methods, because the methods on offer depend on the balls
         yield from _ball_messages(session, _parsed("balls", setup["balls"], list))
     if "parameters" in setup and "methods" not in setup:
-        raise InputError("set-up: parameters say nothing without the methods that have them")
+        raise InputError("set-up: parameters need the methods that they belong to")
     if "methods" in setup:
         changed = _parsed("parameters", setup.get("parameters", "{}"), dict)
         methods = setup["methods"].split(",")
         if len(methods) > len(session.instances):
-            raise InputError(f"set-up: there are {len(session.instances)} methods at most; got {len(methods)}")
+            raise InputError(f"set-up: methods must be at most {len(session.instances)}; got {len(methods)}")
         for index, method in enumerate(methods):
             if session.instances[index].solver.name != method:
                 yield {"type": "method", "instance": index, "method": method}
             wanted = changed.get(str(index), {})
             if not isinstance(wanted, dict):
-                raise InputError(f"set-up: the parameters of instance {index} are an object; got {wanted!r}")
+                raise InputError(f"set-up: the parameters of instance {index} must be an object; got {wanted!r}")
             described = describe_parameters(session.instances[index].solver)
             defaults = {p["name"]: p["default"] for p in described if p["value"] != p["default"]}
             for name, value in (defaults | wanted).items():
@@ -142,18 +142,18 @@ def _messages(session: Session, setup: Setup) -> Iterator[dict[str, Any]]:
 
 
 def _ball_messages(session: Session, balls: list[Any]) -> Iterator[dict[str, Any]]:
-    """Frames first, so that every ball has its number; then mode, place and orientation of each."""
+    """Yield the balls' frames first, so that every ball has its number, then mode, position and orientation of each."""
     for ball in balls:
         if not (isinstance(ball, list) and 2 <= len(ball) <= 4):
-            raise InputError(f"set-up: a ball is [frame, mode, position, rpy]; got {ball!r}")
+            raise InputError(f"set-up: a ball must be [frame, mode, position, rpy]; got {ball!r}")
     wanted = [ball[0] for ball in balls]
     if not wanted:
-        raise InputError("set-up: balls are at least one")
+        raise InputError("set-up: balls must contain at least one ball")
     yield from _removals(session, wanted)
     for frame in wanted:
         if frame not in [ball.frame for ball in session.balls]:
             yield {"type": "add_effector", "frame": frame}
-        yield from _removals(session, wanted)  # now the last ball may go too
+        yield from _removals(session, wanted)  # a ball that had to stay as the last one can go now
     session.balls.sort(key=lambda ball: wanted.index(ball.frame))
     for frame, mode, position, rpy in ([*ball, None, None][:4] for ball in balls):
         index = [ball.frame for ball in session.balls].index(frame)
@@ -168,7 +168,7 @@ def _ball_messages(session: Session, balls: list[Any]) -> Iterator[dict[str, Any
 
 
 def _removals(session: Session, wanted: list[Any]) -> Iterator[dict[str, Any]]:
-    """All balls whose frame is not wanted; the last ball stays."""
+    """Yield the removal of every ball whose frame is not wanted; one ball always stays."""
     for index in reversed(range(len(session.balls))):
         if session.balls[index].frame not in wanted and len(session.balls) > 1:
             yield {"type": "remove_effector", "index": index}
@@ -176,23 +176,23 @@ def _removals(session: Session, wanted: list[Any]) -> Iterator[dict[str, Any]]:
 
 def _on(name: str, text: str) -> bool:
     if text not in ("on", "off"):
-        raise InputError(f"set-up: {name} is on or off; got {text[:60]!r}")
+        raise InputError(f"set-up: {name} must be on or off; got {text[:60]!r}")
     return text == "on"
 
 
-def _parsed(name: str, text: str, kind: type) -> Any:
+def _parsed(name: str, text: str, kind: type[list[Any]] | type[dict[str, Any]]) -> Any:
     try:
         value = read_json(text)
     except ValueError:
         value = None
     if not isinstance(value, kind):
-        raise InputError(f"set-up: {name} is JSON; got {text[:60]!r}")
+        raise InputError(f"set-up: {name} must be a JSON {_JSON_NAMES[kind]}; got {text[:60]!r}")
     return value
 
 
 def _whole(name: str, text: str) -> int:
     if not text.isdecimal() or len(text) > 9:
-        raise InputError(f"set-up: {name} is a whole number; got {text[:60]!r}")
+        raise InputError(f"set-up: {name} must be a whole number; got {text[:60]!r}")
     return int(text)
 
 
@@ -202,5 +202,5 @@ def _numbers(name: str, text: str, count: int) -> list[float]:
     except ValueError:
         numbers = []
     if len(numbers) != count:
-        raise InputError(f"set-up: {name} is {count} number{'s' if count > 1 else ''}; got {text[:60]!r}")
+        raise InputError(f"set-up: {name} must be {count} number{'s' if count > 1 else ''}; got {text[:60]!r}")
     return numbers

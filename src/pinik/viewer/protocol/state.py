@@ -1,4 +1,4 @@
-"""A session as JSON: what there is to choose from, and where everything stands."""
+"""The `hello` and `state` messages: what a page can choose, and the session's settings and results."""
 
 from __future__ import annotations
 
@@ -19,7 +19,13 @@ __all__ = ["hello_message", "session_state"]
 
 
 def hello_message(version: str, methods: dict[str, type[Solver]], own_robots: list[str]) -> dict[str, Any]:
-    """What there is to choose from; `own_robots` are names that the catalogue does not have."""
+    """Return the `hello` message: everything that a page can choose.
+
+    Args:
+        version: pinik's version.
+        methods: Short name → class of every method.
+        own_robots: Names of robots that are not in the catalogue.
+    """
     return {
         "type": "hello",
         "schema": 1,
@@ -37,7 +43,7 @@ def hello_message(version: str, methods: dict[str, type[Solver]], own_robots: li
 
 
 def session_state(session: Session) -> dict[str, Any]:
-    """Everything but what the server adds: generation, pace, loading, set-up."""
+    """Return the `state` message without what the server adds: generation, pace, loading, set-up."""
     chase, motion = session.chase, session.motion
     return {
         "type": "state",

@@ -1,1 +1,1 @@
-"""The live view's simulation: no socket, no drawing."""
+"""The live view's simulation: no sockets, no drawing."""

@@ -1,1 +1,1 @@
-"""The live view's server and scene."""
+"""The live view's server, and everything that it sends."""

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import asyncio
 import concurrent.futures
-import errno
 import html
 import json
 import os
@@ -27,15 +26,15 @@ from ...picture.camera import Camera
 from ...picture.draw import Picture
 from ...robot import Robot
 from ..simulation.session import STEPS_PER_SECOND, Methods, Session
+from .later import later_in_threads
 from .notebook import as_html, draw_beside
-from .server import later_in_threads, make_application
+from .server import make_application
 from .show import Show
+from .sockets import addressed, listen
 
 __all__ = ["LiveView"]
 
 T = TypeVar("T")
-
-_PORTS = range(7007, 7027)
 
 
 class LiveView:
@@ -66,9 +65,9 @@ class LiveView:
         session = Session(robot, methods, view=view)
         session.set_motion(motion)
         session.running = running
-        sockets = _bind(host, port)
+        sockets = listen(host, port)
         self.port: int = sockets[0].getsockname()[1]
-        self.url = f"http://{_addressed(host)}:{self.port}/"
+        self.url = f"http://{addressed(host)}:{self.port}/"
         self._mark = secrets.token_hex(8)
         self._workers = ThreadPoolExecutor(2, thread_name_prefix="pinik-live-worker")
         self._closed = threading.Event()
@@ -212,62 +211,3 @@ def _plain(value: Any) -> Any:
     if hasattr(value, "tolist"):
         return value.tolist()
     raise errors.InputError(f"a message holds plain numbers, texts and lists; got {value!r}")
-
-
-def _addressed(host: str) -> str:
-    """How a browser on this machine addresses a server that listens on `host`."""
-    if host in ("", "0.0.0.0", "::"):
-        return "127.0.0.1"
-    return f"[{host}]" if ":" in host else host
-
-
-def _bind(host: str, port: int | None) -> list[socket.socket]:
-    """Listen on a port, or on the first free one of ours when None.
-
-    Raises:
-        InputError: The port is taken, is none, or there is no such address here.
-    """
-    if port is not None and not (type(port) is int and 0 <= port <= 65535):
-        raise errors.InputError(f"a port is a number from 0 to 65535; got {port!r}")
-    if not isinstance(host, str) or not host:
-        raise errors.InputError(f"a host is an address of this machine, such as '127.0.0.1'; got {host!r}")
-    for candidate in (*_PORTS, 0) if port is None else (port,):
-        try:
-            return _listen(host, candidate)
-        except (OSError, UnicodeError) as error:
-            fault = getattr(error, "strerror", None) or str(error)
-    hint = "; leave the port out and pinik finds a free one" if port else ""
-    where = host if port is None else f"{host}, port {port}"
-    raise errors.InputError(f"cannot listen on {where}: {fault}{hint}")
-
-
-def _listen(host: str, port: int) -> list[socket.socket]:
-    """A socket for each address that the host's name stands for, all on one port.
-
-    Tornado's `bind_sockets` does the same, but leaves a socket open where the port is taken.
-    """
-    sockets: list[socket.socket] = []
-    try:
-        found = socket.getaddrinfo(host, port, type=socket.SOCK_STREAM, flags=socket.AI_PASSIVE)
-        for family, kind, protocol, _, address in dict.fromkeys(found):
-            listening = socket.socket(family, kind, protocol)
-            sockets.append(listening)
-            listening.setblocking(False)
-            if os.name != "nt":
-                listening.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
-            if family == socket.AF_INET6:
-                listening.setsockopt(socket.IPPROTO_IPV6, socket.IPV6_V6ONLY, 1)
-            port = port or (sockets[0].getsockname()[1] if len(sockets) > 1 else 0)
-            try:
-                listening.bind((address[0], port, *address[2:]))
-            except OSError as error:
-                if error.errno != errno.EADDRNOTAVAIL or len(found) == 1:
-                    raise
-                sockets.pop().close()  # such as ::1 for "localhost", where there is no IPv6
-                continue
-            listening.listen(128)
-    except BaseException:
-        for listening in sockets:
-            listening.close()
-        raise
-    return sockets

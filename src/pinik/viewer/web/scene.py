@@ -1,4 +1,4 @@
-"""Robots, their shapes and their motion as what the page gets (docs/live-protocol.md)."""
+"""A robot's shapes as meshcat commands, and meshcat's viewer that draws them."""
 
 from __future__ import annotations
 
@@ -6,45 +6,29 @@ import importlib.util
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
-import pinocchio
 import umsgpack
 from numpy.typing import NDArray
 
 from ...errors import EngineError
-from ...model.home import robot_size
 from ...robot import Robot
 
 if TYPE_CHECKING:
     from ...shapes.meshes import Color, Shape
 
-__all__ = [
-    "FRAME_MAGIC",
-    "InstanceBlock",
-    "JointPlacements",
-    "Shapes",
-    "make_shapes",
-    "meshcat_script",
-    "pack_frame",
-    "robot_message",
-]
+__all__ = ["Shapes", "make_shapes", "meshcat_script"]
 
-Array = NDArray[np.float64]
-
-FRAME_MAGIC = b"PNKF"
-"""The first four bytes of a frame message."""
-
-# What three.js calls them; as msgpack extension types, msgpack-lite's numbers for typed arrays.
+# dtype → three.js's name, and the msgpack extension type that msgpack-lite gives this typed array.
 _TYPED_ARRAYS = {"<f4": ("Float32Array", 0x17), "<u4": ("Uint32Array", 0x16)}
 
 
 def meshcat_script() -> Path:
-    """The JavaScript of meshcat's viewer, found without importing meshcat (which takes IPython and ZeroMQ in).
+    """Find the JavaScript of meshcat's viewer without importing meshcat, which would import IPython and ZeroMQ.
 
     Raises:
-        EngineError: It is not there; the message says what would put it there.
+        EngineError: The file is missing; the message says what to install.
     """
     spec = importlib.util.find_spec("meshcat")
     for folder in (spec and spec.submodule_search_locations) or ():
@@ -56,52 +40,14 @@ def meshcat_script() -> Path:
     )
 
 
-def robot_message(robot: Robot, generation: int) -> dict[str, Any]:
-    """The `robot` message: joints, links and frames by name and place.
-
-    `size` [m] is `robot_size`. `frames` are the links that something moves, those at the ends first (all
-    links, where nothing moves).
-    """
-    model = robot.model
-    by_id = {joint.id: joint for joint in robot.joints}
-    links = [model.frames[robot.frame_id(name)] for name in robot.description.links]
-    moved = [link.name for link in links if link.parentJoint]
-    carriers = {joint.parent for joint in robot.description.joints}
-    return {
-        "type": "robot",
-        "generation": generation,
-        "name": robot.name,
-        "root": robot.root,
-        "joints": [
-            {
-                "name": name,
-                "parent": model.parents[joint_id],
-                "kind": by_id[joint_id].kind if joint_id else "fixed",
-                "placement": _seven(model.jointPlacements[joint_id]),
-            }
-            for joint_id, name in enumerate(model.names)
-        ],
-        "links": [
-            {"name": link.name, "joint": link.parentJoint, "placement": _seven(link.placement)} for link in links
-        ],
-        "frames": sorted(moved, key=carriers.__contains__) or list(robot.description.links),
-        "size": robot_size(robot),
-        "warnings": list(robot.warnings),
-    }
-
-
-def _seven(placement: pinocchio.SE3) -> list[float]:
-    return list(map(float, pinocchio.SE3ToXYZQUATtuple(placement)))
-
-
 @dataclass(frozen=True)
 class Shapes:
-    """A robot's shapes as meshcat commands, one for each link and colour.
+    """A robot's shapes as meshcat commands, one per link and colour.
 
     Attributes:
-        parts: (index of the link in the `robot` message, path of the object in meshcat's tree).
-        commands: meshcat's `set_object` of each part, msgpack.
-        warnings: A sentence about each shape that could not be read.
+        parts: For each part, the index of its link in the `robot` message and its path in meshcat's tree.
+        commands: For each part, meshcat's `set_object` command as msgpack.
+        warnings: One sentence per shape that could not be read.
     """
 
     parts: tuple[tuple[int, str], ...]
@@ -119,8 +65,8 @@ class Shapes:
 
 
 def make_shapes(robot: Robot) -> Shapes:
-    """Read a robot's visual shapes and convert them; imports trimesh, and takes seconds for a large robot."""
-    from ...shapes.meshes import load_shapes  # over a second to import
+    """Read and convert a robot's visual shapes. This imports trimesh and takes seconds for a large robot."""
+    from ...shapes.meshes import load_shapes  # takes over a second to import
 
     shapes, warnings = load_shapes(robot)
     by_link: dict[str, dict[Color, list[Shape]]] = {}
@@ -136,7 +82,10 @@ def make_shapes(robot: Robot) -> Shapes:
 
 
 def _merged(shapes: Sequence[Shape]) -> tuple[NDArray[np.float32], NDArray[np.uint32]]:
-    """Vertices (n, 6), position [m] and normal in the link's frame, and faces (m, 3); equal vertices are one."""
+    """Merge shapes into vertices (n, 6), position [m] and normal in the link's frame, and faces (m, 3).
+
+    Equal vertices become one.
+    """
     vertices, faces, count = [], [], 0
     for shape in shapes:
         R, p = shape.placement[:3, :3], shape.placement[:3, 3]
@@ -151,7 +100,7 @@ def _merged(shapes: Sequence[Shape]) -> tuple[NDArray[np.float32], NDArray[np.ui
 
 
 def _set_object(path: str, vertices: NDArray[np.float32], faces: NDArray[np.uint32], color: Color) -> bytes:
-    """meshcat's command that puts a mesh at `path`, in three.js's object format 4.5."""
+    """Return meshcat's command that puts a mesh at `path`, in three.js's object format 4.5."""
     red, green, blue, opacity = (min(max(channel, 0.0), 1.0) for channel in color)
     attributes = {"position": _typed(vertices[:, :3]), "normal": _typed(vertices[:, 3:])}
     geometry = {
@@ -168,7 +117,7 @@ def _set_object(path: str, vertices: NDArray[np.float32], faces: NDArray[np.uint
         "transparent": opacity < 1.0,
         "opacity": opacity,
         "vertexColors": False,
-        "side": 2,  # THREE.DoubleSide: many files have faces that look inwards
+        "side": 2,  # THREE.DoubleSide, because many files have faces that point inwards
     }
     lowered = {
         "metadata": {"version": 4.5, "type": "Object"},
@@ -187,62 +136,3 @@ def _set_object(path: str, vertices: NDArray[np.float32], faces: NDArray[np.uint
 def _typed(array: NDArray[Any]) -> dict[str, Any]:
     name, code = _TYPED_ARRAYS[array.dtype.str]
     return {"itemSize": 3, "type": name, "array": umsgpack.Ext(code, array.tobytes()), "normalized": False}
-
-
-class JointPlacements:
-    """Where all joints of a robot are, for one thread, as numbers to send.
-
-    Args:
-        robot: Whose; the working memory is this object's own.
-    """
-
-    def __init__(self, robot: Robot) -> None:
-        self._model = robot.model
-        self._data = robot.model.createData()
-        # The elements stay where they are and show each new result; indexing them anew costs as much as reading.
-        self._joints = [self._data.oMi[joint_id] for joint_id in range(robot.model.njoints)]
-
-    def at(self, q: Array) -> Array:
-        """World placements (J, 7) of all joints at `q`, the universe first: x, y, z [m], qx, qy, qz, qw."""
-        pinocchio.forwardKinematics(self._model, self._data, q)
-        return np.array([pinocchio.SE3ToXYZQUATtuple(joint) for joint in self._joints])
-
-    def points(self, frames: Sequence[int]) -> Array:
-        """Origins (B, 3) in the world [m] of the frames with these indices, at the `q` that `at` had last."""
-        origins = [pinocchio.updateFramePlacement(self._model, self._data, frame).translation for frame in frames]
-        return np.array(origins).reshape(-1, 3)
-
-
-class InstanceBlock(NamedTuple):
-    """One instance's part of a frame.
-
-    Attributes:
-        figures: The eight figures of docs/live-protocol.md.
-        joints: World placements (J, 7).
-        sides: At which limit each joint sits (J,).
-        points: The effectors' origins (B, 3) [m].
-    """
-
-    figures: Sequence[float]
-    joints: Array
-    sides: Array
-    points: Array
-
-
-def pack_frame(generation: int, step: int, balls: Array, blocks: Sequence[InstanceBlock]) -> bytes:
-    """The message of one frame.
-
-    Args:
-        generation: Which robot it shows.
-        step: Counts up.
-        balls: Placements (B, 7): x, y, z [m], qx, qy, qz, qw.
-        blocks: One for each instance, all of the same robot.
-    """
-    joints = len(blocks[0].joints) if blocks else 0
-    pieces = [np.array([generation, step, len(blocks), joints, len(balls)]), np.ravel(balls)]
-    for block in blocks:
-        pieces += [np.ravel(part) for part in block]
-    numbers = np.concatenate(pieces, dtype="<f4", casting="same_kind")
-    if numbers.size != 5 + 7 * len(balls) + len(blocks) * (8 + 8 * joints + 3 * len(balls)):
-        raise ValueError("a frame's blocks are eight figures, and alike in their numbers of joints and points")
-    return FRAME_MAGIC + numbers.tobytes()

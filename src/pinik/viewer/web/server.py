@@ -1,34 +1,34 @@
-"""The live view's server: the page, one websocket a tab, and who may talk to them."""
+"""The live view's web server: the page, one websocket per tab, and who may connect."""
 
 from __future__ import annotations
 
-import ipaddress
 import json
-import re
 import secrets
-import socket
-from collections.abc import Callable
-from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from typing import Any
-from urllib.parse import urlsplit
 
-import tornado.ioloop
 import tornado.web
 import tornado.websocket
 
+from .hosts import frame_ancestors, is_own_host
 from .scene import meshcat_script
-from .show import Later, Show
+from .show import Show
+from .statistics_csv import statistics_csv
 
-__all__ = ["is_own_host", "later_in_threads", "make_application"]
+__all__ = ["make_application"]
 
 PAGE = Path(__file__).parents[1] / "page"
-_LARGEST_MESSAGE = 65_536  # bytes; the longest set-up is a third of it
-_LOOPBACK = ("localhost", "127.0.0.1", "::1")
+_LARGEST_MESSAGE = 65_536  # bytes; about three times the longest set-up
 
 
 def make_application(show: Show, host: str, mark: str = "") -> tornado.web.Application:
-    """The routes of one show, for requests that address `host`; `mark` is what a notebook knows it by."""
+    """Return the routes of one show.
+
+    Args:
+        show: The show.
+        host: The host that the server listens on; requests must address it.
+        mark: Identifies this server to a notebook that embeds its page.
+    """
     common = {"show": show, "host": host}
     return tornado.web.Application(
         [
@@ -47,58 +47,8 @@ def make_application(show: Show, host: str, mark: str = "") -> tornado.web.Appli
     )
 
 
-def is_own_host(host_header: str, served: str) -> bool:
-    """Whether a request addresses this server by a name that nobody else's DNS can give it.
-
-    That is localhost or an address of the loopback, whatever the port; where the server was told to listen
-    elsewhere also any bare address, its own name, and the name it was given.
-    """
-    name = urlsplit(f"//{host_header}").hostname or ""
-    if name in _LOOPBACK:
-        return True
-    if served in _LOOPBACK:
-        return False
-    return name in (served.lower(), socket.gethostname().lower()) or _is_address(name)
-
-
-def _framers(host_header: str) -> str:
-    """Who may show the page in a frame: pages of the machine it is on, such as Jupyter's, and VS Code's.
-
-    Any other could replace what runs by the set-up in the frame's address. An IPv6 address cannot be told to browsers.
-    """
-    hosts = dict.fromkeys(("localhost", "127.0.0.1", urlsplit(f"//{host_header}").hostname or ""))
-    named = [host for host in hosts if re.fullmatch(r"[a-z0-9-]+(\.[a-z0-9-]+)*", host)]
-    origins = [f"{scheme}://{host}:*" for host in named for scheme in ("http", "https")]
-    return " ".join((*origins, "vscode-webview:", "vscode-file:"))
-
-
-def _is_address(name: str) -> bool:
-    try:
-        ipaddress.ip_address(name)
-    except ValueError:
-        return False
-    return True
-
-
-def later_in_threads(loop: tornado.ioloop.IOLoop, workers: ThreadPoolExecutor) -> Later:
-    """Do work in the workers' threads, and what follows it on the loop."""
-
-    def later(work: Callable[[], Any], then: Callable[[Any], None]) -> None:
-        def run() -> None:
-            result: Any
-            try:
-                result = work()
-            except Exception as error:
-                result = error
-            loop.add_callback(then, result)
-
-        workers.submit(run)
-
-    return later
-
-
 class _Guarded(tornado.web.RequestHandler):
-    """A request is answered only when it addresses this server by its own name."""
+    """Refuses requests that do not address this server by its own name."""
 
     _host: str
 
@@ -108,7 +58,7 @@ class _Guarded(tornado.web.RequestHandler):
         except ValueError:
             own = False
         if not own:
-            raise tornado.web.HTTPError(403, reason="This server does not go by that name")
+            raise tornado.web.HTTPError(403, reason="This server does not have that name")
 
     def set_default_headers(self) -> None:
         self.set_header("X-Content-Type-Options", "nosniff")
@@ -132,15 +82,13 @@ class _Index(_Handler):
         here = self.request.host
         policy = {
             "default-src": "'self'",
-            # The page evaluates no text, and takes away meshcat's one command that does; programs that drive
-            # browsers, such as playwright, evaluate theirs.
-            "script-src": f"'self' 'nonce-{nonce}' 'unsafe-eval'",
+            "script-src": f"'self' 'nonce-{nonce}'",
             "style-src": "'self' 'unsafe-inline'",
             "img-src": "'self' data: blob:",
             "connect-src": f"'self' ws://{here} wss://{here}",
             "object-src": "'none'",
             "base-uri": "'none'",
-            "frame-ancestors": f"'self' {_framers(here)}",
+            "frame-ancestors": f"'self' {frame_ancestors(here)}",
         }
         self.set_header("Content-Security-Policy", "; ".join(f"{name} {value}" for name, value in policy.items()))
         self.set_header("Content-Type", "text/html; charset=utf-8")
@@ -154,7 +102,7 @@ class _File(_Guarded, tornado.web.StaticFileHandler):
 
 
 class _Alive(_Handler):
-    """An image of nothing, for a notebook that asks whether the view it showed is still there."""
+    """An empty image, by which a notebook finds out whether the view that it showed is still running."""
 
     def get(self) -> None:
         self.set_header("Content-Type", "image/svg+xml")
@@ -169,7 +117,7 @@ class _State(_Handler):
 
 class _StatisticsTable(_Handler):
     def get(self) -> None:
-        self._as_download(self.show.statistics_csv(), "text/csv; charset=utf-8", "statistics.csv")
+        self._as_download(statistics_csv(self.show.session), "text/csv; charset=utf-8", "statistics.csv")
 
     def _as_download(self, content: str, kind: str, name: str) -> None:
         self.set_header("Content-Type", kind)
@@ -183,7 +131,7 @@ class _Animation(_StatisticsTable):
 
 
 class _Socket(_Handler, tornado.websocket.WebSocketHandler):
-    """One tab. That its page comes from here is seen to by tornado: Origin and Host have to agree."""
+    """One tab. Tornado checks that its page comes from this server: Origin and Host must agree."""
 
     def open(self, *args: str, **kwargs: str) -> None:
         self.set_nodelay(True)
@@ -196,7 +144,7 @@ class _Socket(_Handler, tornado.websocket.WebSocketHandler):
         self.show.leave(self)
 
     def send(self, message: str | bytes) -> None:
-        """Give a message on its way; one to a tab that has just gone is lost, as it would be a moment later."""
+        """Send a message without waiting for it; one to a tab that has just closed is lost."""
         try:
             sent = self.write_message(message, binary=isinstance(message, bytes))
         except tornado.websocket.WebSocketClosedError:

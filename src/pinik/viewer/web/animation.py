@@ -1,0 +1,77 @@
+"""The saved animation: one HTML file that plays a recording without a server."""
+
+from __future__ import annotations
+
+import base64
+import html
+import json
+import re
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+from ..protocol.recording import FRAMES_PER_SECOND, Recording
+from .scene import Shapes, meshcat_script
+
+__all__ = ["animation_page"]
+
+_PAGE = Path(__file__).parents[1] / "page"
+
+
+def animation_page(
+    hello: Mapping[str, Any],
+    robot: Mapping[str, Any],
+    shapes: Shapes,
+    state: Mapping[str, Any],
+    recording: Recording,
+    page: Path = _PAGE,
+) -> str:
+    """Build one HTML file that plays a recording without a server.
+
+    Args:
+        hello, robot, state: The current messages of these types.
+        shapes: The robot's shapes.
+        recording: The frames to play.
+        page: The folder with `player.html`, `style.css` and the modules.
+
+    Raises:
+        ValueError: A message contains a number that is not finite.
+    """
+    document = {
+        "hello": hello,
+        "robot": robot,
+        "shapes": shapes.message(robot["generation"]),
+        "state": state,
+        "commands": list(map(_base64, shapes.commands)),
+        "frames": _base64(recording.frames),
+        "frame_bytes": recording.frame_bytes,
+        "frames_per_second": FRAMES_PER_SECOND,
+    }
+    modules = {
+        f"pinik/{module.name}": f"data:text/javascript;base64,{_base64(module.read_bytes())}"
+        for module in sorted(page.glob("*.js"))
+    }
+    pieces = {
+        "title": html.escape(f"{robot['name']} – pinik"),
+        "style": (page / "style.css").read_text("utf-8"),
+        "importmap": _json_in_html({"imports": modules}),
+        "meshcat": _script_in_html(meshcat_script().read_text("utf-8")),
+        "recording": _json_in_html(document),
+    }
+    # A single pass, so that a placeholder inside one of the pieces is never replaced.
+    player = (page / "player.html").read_text("utf-8")
+    return re.sub(r"\{\{(\w+)\}\}", lambda place: pieces[place[1]], player)
+
+
+def _base64(data: bytes) -> str:
+    return base64.b64encode(data).decode("ascii")
+
+
+def _json_in_html(value: object) -> str:
+    """Return JSON that cannot end the script element around it or open a comment in it."""
+    return json.dumps(value, allow_nan=False).replace("<", "\\u003c")
+
+
+def _script_in_html(text: str) -> str:
+    """Do the same for JavaScript, where these words can occur only in strings, patterns and comments."""
+    return re.sub(r"<(?=/script|script|!--)", r"\\x3c", text, flags=re.IGNORECASE)
