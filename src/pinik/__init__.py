@@ -8,6 +8,7 @@ from .closed_form.recognise import TwoBone, TwoBoneConfigurations
 from .closed_form.two_bone import TwoBoneAnswers, two_bone
 from .description.catalog import catalog
 from .errors import EngineError, InputError, PinikError, RobotLoadError, SolveError, UnknownNameError, UrdfWarning
+from .extras import MissingExtraError
 from .loading import load
 from .model.joint import Joint
 from .model.robot_model import Robot
@@ -41,6 +42,7 @@ __all__ = [
     "Joint",
     "Kinematics",
     "Linearization",
+    "MissingExtraError",
     "Patience",
     "Picture",
     "PinikError",

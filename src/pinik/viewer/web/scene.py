@@ -14,6 +14,7 @@ import umsgpack
 from numpy.typing import NDArray
 
 from ...errors import EngineError
+from ...extras import needed_by
 from ...model.home import robot_size
 from ...model.robot_model import Robot
 
@@ -120,7 +121,8 @@ class Shapes:
 
 def make_shapes(robot: Robot) -> Shapes:
     """Read a robot's visual shapes and convert them; imports trimesh, and takes seconds for a large robot."""
-    from ...shapes.meshes import load_shapes  # over a second to import
+    with needed_by("the robot's shape", "live"):
+        from ...shapes.meshes import load_shapes  # over a second to import
 
     shapes, warnings = load_shapes(robot)
     by_link: dict[str, dict[Color, list[Shape]]] = {}
