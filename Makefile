@@ -49,7 +49,7 @@ $(python):
 
 $(VENV)/installed: pyproject.toml $(engine) $(python)
 	@echo "Installing pinik into $(VENV) (two or three minutes, as its engine is compiled)"
-	@$(pip) install --editable .
+	@$(pip) install --editable '.[all]'
 	@touch $@
 
 $(VENV)/installed-dev: pyproject.toml $(engine) $(python)

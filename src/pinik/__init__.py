@@ -8,6 +8,7 @@ from .closed_form.robot_bones import TwoBone, TwoBoneConfigurations
 from .closed_form.two_bone import TwoBoneAnswers, two_bone
 from .description.catalog import catalog
 from .errors import EngineError, InputError, PinikError, RobotLoadError, SolveError, UnknownNameError, UrdfWarning
+from .extras import MissingExtraError
 from .loading import load
 from .model.joint import Joint
 from .picture.draw import Picture, draw
@@ -42,6 +43,7 @@ __all__ = [
     "Joint",
     "Kinematics",
     "Linearization",
+    "MissingExtraError",
     "Patience",
     "Picture",
     "PinikError",

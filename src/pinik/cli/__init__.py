@@ -1,6 +1,29 @@
 """The `pinik` command: data on stdout, words on stderr, and an exit status that says how it went."""
 
-from .app import main
+from __future__ import annotations
+
+import sys
+from collections.abc import Sequence
+
+from ..extras import MissingExtraError, needed_by
 from .terminal.exits import ExitStatus
 
 __all__ = ["ExitStatus", "main"]
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Run one command line.
+
+    Args:
+        arguments: Everything after "pinik"; this process's own when None.
+
+    Returns:
+        The exit status, see `ExitStatus`.
+    """
+    try:
+        with needed_by("the pinik command", "cli"):
+            from . import app
+    except MissingExtraError as error:
+        print(f"error: {error}", file=sys.stderr)
+        return ExitStatus.WRONG_USAGE
+    return app.main(arguments)

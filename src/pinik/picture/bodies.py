@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..errors import UrdfWarning
+from ..extras import needed_by
 from ..model.home import robot_size
 from ..robot import Robot
 from .solids import Solid, ball, rod
@@ -74,7 +75,8 @@ def bodies_of(robot: Robot, q: Array) -> list[Body]:
 def _parts(robot: Robot) -> list[_Part]:
     """Read once for each robot: it takes seconds for a large one."""
     if robot not in _PARTS:
-        from ..shapes.meshes import load_shapes  # over a second to import
+        with needed_by("a picture", "pictures"):
+            from ..shapes.meshes import load_shapes  # over a second to import
 
         shapes, faults = load_shapes(robot)
         for fault in faults:

@@ -14,6 +14,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from ..checks import as_length
 from ..errors import InputError
+from ..extras import needed_by
 from ..model.home import robot_size
 from ..robot import Robot
 from .arguments import (
@@ -90,7 +91,8 @@ class Picture:
             InputError: The name ends in nothing that Pillow can write.
             OSError: There the file cannot be written.
         """
-        from PIL import Image
+        with needed_by("a picture's file", "pictures"):
+            from PIL import Image
 
         if not isinstance(path, (str, os.PathLike)) or not isinstance(os.fspath(path), str):
             raise InputError(f"path is a file's name, such as 'robot.png'; got {path!r}")
@@ -106,7 +108,8 @@ class Picture:
 
     def png(self, colors: int | None = None) -> bytes:
         """It as the bytes of a PNG file; with at most so many `colors`, 2 to 256, it takes half the space."""
-        from PIL import Image
+        with needed_by("a picture's file", "pictures"):
+            from PIL import Image
 
         opaque = bool((self.pixels[..., 3] == 255).all())
         image = Image.fromarray(self.pixels[..., :3] if opaque else self.pixels)
@@ -164,6 +167,7 @@ def draw(
     Raises:
         UnknownNameError: No such view.
         InputError: Something else that is not as above.
+        MissingExtraError: The packages of pinik[pictures] are not installed.
 
     Warns:
         UrdfWarning: Shapes that could not be read are left out.

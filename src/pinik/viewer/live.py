@@ -6,6 +6,7 @@ import os
 from collections.abc import Iterable
 from typing import TYPE_CHECKING
 
+from ..extras import needed_by
 from ..loading import load
 from ..robot import Robot
 from ..solvers.base import Solver
@@ -50,8 +51,10 @@ def live(
     Raises:
         RobotLoadError, UnknownNameError: As `pinik.load`; or no such method.
         InputError: More than four methods, another view, or a port that cannot be had.
+        MissingExtraError: The packages of pinik[live] are not installed.
     """
-    from .web.live_view import LiveView
+    with needed_by("the live view", "live"):
+        from .web.live_view import LiveView
 
     machine = robot if isinstance(robot, Robot) else load(robot, root=root, package_dirs=package_dirs)
     return LiveView(

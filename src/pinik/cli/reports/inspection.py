@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 from ...description import packages
 from ...description import reader as urdf
 from ...errors import RobotLoadError, UnknownNameError
+from ...extras import needed_by
 from ...loading import locate
 from ...robot import Robot
 
@@ -123,7 +124,8 @@ def _fault(error: RobotLoadError) -> Fault:
 
 def _shapes(robot: Robot) -> tuple[int, list[str]]:
     """How many shapes can be drawn, and a sentence about each one that cannot."""
-    from ...shapes.meshes import load_shapes
+    with needed_by("pinik check", "check"):
+        from ...shapes.meshes import load_shapes
 
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")  # of the mesh readers; what cannot be read is in the sentences
@@ -136,6 +138,7 @@ def _shapes(robot: Robot) -> tuple[int, list[str]]:
 
 
 def _second_opinion(robot: Robot, path: Path) -> SecondOpinion:
-    from ...shapes.second_opinion import ask_yourdfpy
+    with needed_by("pinik check", "check"):
+        from ...shapes.second_opinion import ask_yourdfpy
 
     return ask_yourdfpy(robot, path)

@@ -13,6 +13,7 @@ import umsgpack
 from numpy.typing import NDArray
 
 from ...errors import EngineError
+from ...extras import needed_by
 from ...robot import Robot
 
 if TYPE_CHECKING:
@@ -66,7 +67,8 @@ class Shapes:
 
 def make_shapes(robot: Robot) -> Shapes:
     """Read and convert a robot's visual shapes. This imports trimesh and takes seconds for a large robot."""
-    from ...shapes.meshes import load_shapes  # takes over a second to import
+    with needed_by("the robot's shape", "live"):
+        from ...shapes.meshes import load_shapes  # over a second to import
 
     shapes, warnings = load_shapes(robot)
     by_link: dict[str, dict[Color, list[Shape]]] = {}
