@@ -68,12 +68,20 @@ def judge(robot: pinik.Robot, targets: Any, q: ArrayLike) -> Errors:
     `targets` is a Target, a mapping of Target's keywords, or several of these. With a mapping the judge converts
     rpy, quaternions and named axes itself, so that pinik's own conversion is judged as well.
     """
-    several = [targets] if isinstance(targets, (pinik.Target, Mapping)) else list(targets)
     plain, angles, free, off = _read(robot, np.asarray(q, dtype=np.float64))
+    errors = judge_angles(plain, targets, angles, free)
+    return errors._replace(outside=off | errors.outside)
+
+
+def judge_angles(
+    plain: PlainRobot, targets: Any, angles: Mapping[str, float], free: Mapping[str, Array] | None = None
+) -> Errors:
+    """Return the errors of joint angles [rad or m] and entries of q of floating and planar joints, by name."""
+    several = [targets] if isinstance(targets, (pinik.Target, Mapping)) else list(targets)
     wishes = [asked(target) for target in several]
     named = [name for wish in wishes for name in (wish.frame, wish.relative_to) if name is not None]
     frames = dict(zip(named, plain.placements(named, angles, free), strict=True))
-    return Errors(tuple(_miss(frames, wish) for wish in wishes), off | plain.outside(angles))
+    return Errors(tuple(_miss(frames, wish) for wish in wishes), plain.outside(angles))
 
 
 def is_good(

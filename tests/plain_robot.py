@@ -97,13 +97,13 @@ class PlainRobot:
             self._limits[names] = {name: self._cut(name, names) for name in names}
         return self._limits[names]
 
-    def outside(self, angles: Mapping[str, float], slack: float = 0.0) -> dict[str, float]:
+    def outside(self, angles: Mapping[str, float]) -> dict[str, float]:
         """Joint → its distance from its limits [rad or m], for those outside; NaN for a NaN."""
         limits = self.limits(angles)
         return {
             name: float(np.maximum(limits[name][0] - angle, angle - limits[name][1]))
             for name, angle in angles.items()
-            if not limits[name][0] - slack <= angle <= limits[name][1] + slack
+            if not limits[name][0] <= angle <= limits[name][1]
         }
 
     def _cut(self, name: str, free: frozenset[str]) -> tuple[float, float]:
