@@ -11,6 +11,7 @@ from comparison.verdicts import Verdict, verdict_on
 
 from by_hand import homogeneous, rotation_about
 from pinik.description.catalog import find
+from plain_robot import PlainRobot
 
 
 @pytest.fixture(scope="module", params=["ur5", "talos"])
@@ -58,8 +59,6 @@ def test_no_answer_and_no_number_are_missed(arm):
 
 
 def test_the_peers_file_places_the_tip_where_the_robots_own_file_does(arm):
-    from plain_robot import PlainRobot
-
     source = ARMS[arm.name]
     whole = PlainRobot(find(source.robot).urdf.read_bytes())
     q = arm.random(np.random.default_rng(2))

