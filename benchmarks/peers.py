@@ -14,6 +14,7 @@ import json
 import math
 import platform
 import statistics
+import sys
 import tempfile
 import textwrap
 from contextlib import ExitStack
@@ -21,12 +22,15 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+
+sys.path.append(str(Path(__file__).parents[1] / "tests"))  # the judge
+
 from comparison.arms import ARMS, Arm, write_arm
 from comparison.environments import CannotInstallError, python_with
-from comparison.judge import NEAR, STRICT, judged
 from comparison.peer_list import PEERS, Peer, pinik_by
 from comparison.problems import TASKS, Problems, make_problems
 from comparison.tables import Measured, Row, as_json, as_text, row_of
+from comparison.verdicts import NEAR, STRICT, verdict_on
 from comparison.workers import Worker, WorkerError
 
 
@@ -93,7 +97,7 @@ class Contestant:
         measured = self.measured
         begin = len(measured.verdicts)
         for target, answer in zip(self._problems.targets[begin:], reply["answers"], strict=False):
-            measured.verdicts.append(judged(self._arm, target, answer))
+            measured.verdicts.append(verdict_on(self._arm, target, answer))
         measured.nanoseconds += reply["nanoseconds"]
         measured.wall += reply["wall"]
         if reply["errors"] and not measured.note:

@@ -12,17 +12,23 @@ from __future__ import annotations
 import argparse
 import json
 import platform
+import sys
 import time
 import warnings
 from dataclasses import asdict, dataclass
 from multiprocessing import Pool
+from pathlib import Path
 
 import numpy as np
 import pinocchio
 
 import pinik
 
-POSITION, ORIENTATION = 1e-3, 1e-2  # [m], [rad]: what the judge accepts
+sys.path.append(str(Path(__file__).parents[1] / "tests"))  # the judge
+
+from judge import is_good
+
+NEAR = (1e-3, 1e-2)  # [m], [rad]: what counts as solved
 
 PAWS = ("left_fore_paw", "right_fore_paw", "left_hind_paw", "right_hind_paw", "nose", "tail_tip")
 ARMS = {
@@ -73,11 +79,12 @@ def measure(job: tuple[str, str, str, str, int, int, dict]) -> Row:
     for _ in range(poses):
         wanted = robot.placement(frame, robot.random(rng))
         start = robot.random(rng)
-        target = pinik.Target(frame, wanted.translation, rotation=wanted.rotation if kind == "pose" else None)
+        asked = {"frame": frame, **({"placement": wanted} if kind == "pose" else {"position": wanted.translation})}
+        target = pinik.Target(**asked)
         began = time.perf_counter()
         s = pinik.solve(robot, target, method, q0=start, **options)
         times.append(time.perf_counter() - began)
-        right = judged(robot, s.q, frame, wanted, kind)
+        right = is_good(robot, asked, s.q, NEAR)
         solved += right
         claimed += s.success
         wrong += s.success and not right
@@ -89,17 +96,6 @@ def measure(job: tuple[str, str, str, str, int, int, dict]) -> Row:
         float(np.median(ms)), float(ms.mean()), float(np.percentile(ms, 99)),
         float(np.mean(iterations)), float(np.mean(restarts)),
     )  # fmt: skip
-
-
-def judged(robot: pinik.Robot, q: np.ndarray, frame: str, wanted: pinocchio.SE3, kind: str) -> bool:
-    """Whether plain Pinocchio finds the frame where it was wanted, with every joint inside its limits."""
-    model, data = robot.model, robot.model.createData()
-    pinocchio.framesForwardKinematics(model, data, q)
-    found = data.oMf[model.getFrameId(frame, pinocchio.BODY)]
-    inside = bool(((q >= robot.lower_q) & (q <= robot.upper_q)).all())
-    near = np.linalg.norm(found.translation - wanted.translation) <= POSITION
-    turned = kind == "position" or np.linalg.norm(pinocchio.log3(wanted.rotation.T @ found.rotation)) <= ORIENTATION
-    return bool(inside and near and turned)
 
 
 def main() -> None:

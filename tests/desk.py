@@ -15,8 +15,8 @@ import numpy as np
 import pinocchio
 import pytest
 
+from judge import plain_placement
 from pinik.viewer.web.live_view import LiveView
-from stand_ins import plain_placement
 
 if TYPE_CHECKING:
     from playwright.sync_api import BrowserContext, Locator, Page

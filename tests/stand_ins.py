@@ -9,12 +9,13 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-import pinocchio
 from numpy.typing import NDArray
 
 import pinik
 from pinik.viewer.protocol.packing import InstanceBlock, pack_frame
 from pinik.viewer.protocol.recording import Recording
+from judge import is_inside as is_inside
+from judge import plain_placement as plain_placement
 from pinik.viewer.protocol.setup import write_setup
 from pinik.viewer.protocol.state import session_state
 from pinik.viewer.simulation.session import Session
@@ -201,14 +202,3 @@ def snapshot(session: Session) -> str:
             [ball.home.tolist() for ball in session.balls],
         ]
     )
-
-
-def plain_placement(robot: pinik.Robot, frame: str, q: NDArray[np.float64]) -> pinocchio.SE3:
-    """oMf by Pinocchio alone."""
-    data = robot.model.createData()
-    pinocchio.framesForwardKinematics(robot.model, data, q)
-    return data.oMf[robot.model.getFrameId(frame, pinocchio.BODY)].copy()
-
-
-def is_inside(robot: pinik.Robot, q: NDArray[np.float64]) -> bool:
-    return bool((q >= robot.lower_q).all() and (q <= robot.upper_q).all())

@@ -1,1 +1,1 @@
-"""The parts of `benchmarks/peers.py`: arms and problems, peers and their environments, the judge, the tables."""
+"""The parts of `benchmarks/peers.py`: arms and problems, peers and their environments, verdicts, tables."""

@@ -11,6 +11,7 @@ import pinocchio
 from numpy.typing import NDArray
 
 from pinik.description import catalog as robot_catalog
+from plain_robot import PlainRobot
 
 __all__ = ["ARMS", "Arm", "ArmSource", "write_arm"]
 
@@ -49,7 +50,7 @@ ARMS = {
 
 
 class Arm:
-    """An arm as the peers know it, and plain Pinocchio's model of it.
+    """An arm as the peers know it, and the judge's own reading of its file.
 
     Attributes:
         name: Its short name.
@@ -60,6 +61,7 @@ class Arm:
         joints: The n joints in between that move, from base to tip.
         lower: Their lower limits (n,) [rad].
         upper: Their upper limits (n,) [rad].
+        plain: Pinocchio's model of the file, and the limits in it.
     """
 
     def __init__(self, name: str, source: ArmSource, urdf: Path) -> None:
@@ -71,20 +73,15 @@ class Arm:
         for joint in joints:
             self.elements += [joint.attrib["name"], _link(joint, "child")]
         self.joints = [joint.attrib["name"] for joint in joints if joint.attrib["type"] != "fixed"]
-        self._model = pinocchio.buildModelFromUrdf(str(urdf))
-        self._data = self._model.createData()
-        self._frame = self._model.getFrameId(self.tip, pinocchio.BODY)
-        ids = [self._model.getJointId(joint) for joint in self.joints]
-        self._places = np.array([self._model.joints[i].idx_q for i in ids])
-        self._q = pinocchio.neutral(self._model)
-        self.lower: Array = self._model.lowerPositionLimit[self._places]
-        self.upper: Array = self._model.upperPositionLimit[self._places]
+        self.plain = PlainRobot(urdf.read_bytes())
+        limits = self.plain.limits(self.joints)
+        self.lower: Array = np.array([limits[joint][0] for joint in self.joints])
+        self.upper: Array = np.array([limits[joint][1] for joint in self.joints])
 
     def placement(self, q: Array) -> pinocchio.SE3:
         """Where joint values (n,) put the tip, with respect to the base."""
-        self._q[self._places] = q
-        pinocchio.forwardKinematics(self._model, self._data, self._q)
-        return pinocchio.SE3(pinocchio.updateFramePlacement(self._model, self._data, self._frame))
+        angles = dict(zip(self.joints, q, strict=True))
+        return pinocchio.SE3(*self.plain.placements([self.tip], angles))
 
     def random(self, rng: np.random.Generator) -> Array:
         """Joint values (n,) uniform between the limits."""

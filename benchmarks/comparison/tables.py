@@ -8,8 +8,8 @@ from typing import Any
 
 import numpy as np
 
-from .judge import Verdict
 from .peer_list import REFERENCES, Peer
+from .verdicts import Verdict
 
 __all__ = ["Measured", "Row", "as_json", "as_text", "row_of"]
 

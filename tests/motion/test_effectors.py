@@ -8,12 +8,12 @@ import pytest
 
 import pinik
 from by_hand import two_hinges
+from judge import is_inside, plain_placement
 from pinik.model.home import home_configuration, lowest_point
 from pinik.motion.curves import CURVES, polyline
 from pinik.motion.effectors import principal_frames
 from pinik.motion.tracks import curve_axes
 from robots import load_quietly
-from stand_ins import is_inside, plain_placement
 from urdf_texts import joint, link, robot
 
 SOME = ["arm", "lion", "two_link", "panda", "ur5", "z1", "tiago", "hector", "simple_humanoid", "solo12"]

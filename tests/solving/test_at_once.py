@@ -12,6 +12,7 @@ from hypothesis import strategies as st
 
 import pinik
 from hinges import two_hinges
+from judge import is_inside, plain_placement
 from pinik import Status, Target
 from pinik.solving.at_once import lands_at_once
 from robots import load_quietly
@@ -23,11 +24,7 @@ ranges = st.tuples(st.floats(-7.0, 7.0), st.floats(0.0, 9.0)).map(lambda r: (r[0
 
 
 def plain_positions(robot: pinik.Robot, frame: str, q: np.ndarray) -> np.ndarray:
-    data, found = robot.model.createData(), []
-    for each in q:
-        pinocchio.framesForwardKinematics(robot.model, data, each)
-        found.append(data.oMf[robot.model.getFrameId(frame, pinocchio.BODY)].translation.copy())
-    return np.array(found)
+    return np.array([plain_placement(robot, frame, each).translation for each in q])
 
 
 def are_alike(robot, together, alone):
@@ -63,7 +60,7 @@ def test_the_answers_are_those_of_single_solves(first, second, asked, limits, el
     assert many.position_error == pytest.approx(np.linalg.norm(reached - places, axis=1), abs=1e-14)
     assert (many.success == (many.position_error <= tolerance[0])).all()
     if limits:
-        assert ((many.q >= robot.lower_q) & (many.q <= robot.upper_q)).all()
+        assert all(is_inside(robot, q) for q in many.q)
     for k, (place, start) in enumerate(zip(places, starts, strict=True)):
         are_alike(robot, many[k], robot.solve("hand", place, q0=start, **options))
 
@@ -97,7 +94,7 @@ def test_a_pair_inside_a_longer_chain_is_answered_in_its_own_axes(ur5):
     many = pinik.solve_many(ur5, pattern, places, "two_bone", q0=starts)
     assert many.success.all()
     for q, start, place in zip(many.q, starts, places, strict=True):
-        reached = (ur5.placement("forearm_link", q, relative_to="shoulder_link") * tool).translation
+        reached = (plain_placement(ur5, "forearm_link", q, "shoulder_link") * tool).translation
         assert np.linalg.norm(reached - place) < 1e-12
         assert (q[[0, 3, 4, 5]] == start[[0, 3, 4, 5]]).all()
 
@@ -120,7 +117,8 @@ def test_more_than_a_block_of_them_are_all_answered(two_link):
     missed = np.linalg.norm(plain_positions(two_link, "tip", many.q) - places, axis=1)
     assert (many.success == (missed <= 1e-4)).all()
     assert many.success.mean() > 0.5
-    assert many.time == pytest.approx(np.full(count, many.total_time / count), rel=0.5)
+    assert (many.time > 0.0).all()
+    assert many.time.sum() <= many.total_time
     for k in (0, 8191, 8192, count - 1):
         assert are_alike(two_link, many[k], two_link.solve("tip", places[k], method="two_bone", q0=starts[k]))
 

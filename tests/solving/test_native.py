@@ -18,6 +18,7 @@ import pytest
 
 import pinik
 from engines import REQUIRED, WHY_NOT, needs_native
+from judge import assert_honest, plain_placement
 from pinik import Status, Target
 from pinik.solving.native import codec, module
 
@@ -47,7 +48,17 @@ def test_the_engine_is_there_where_it_is_required():
     """With PINIK_REQUIRE_NATIVE set nothing is skipped for want of an engine."""
     if REQUIRED:
         assert WHY_NOT is None
-    assert needs_native.args == (WHY_NOT is not None and not REQUIRED,)
+    program = (
+        "import sys; sys.modules['pinik._native'] = None\n"
+        "import engines; print(engines.WHY_NOT is not None, engines.needs_native.args[0])"
+    )
+    for required, printed in (("", "True True"), ("1", "True False")):
+        path = os.pathsep.join(map(str, (Path(__file__).parents[1], Path(pinik.__file__).parents[1])))
+        environment = os.environ | {"PINIK_REQUIRE_NATIVE": required, "PYTHONPATH": path}
+        done = subprocess.run(
+            [sys.executable, "-c", program], env=environment, capture_output=True, text=True, check=True
+        )
+        assert done.stdout.strip() == printed
 
 
 @needs_native
@@ -142,33 +153,18 @@ def test_auto_takes_the_compiled_engine_for_the_four_methods(panda):
 @needs_native
 @pytest.mark.parametrize("method", METHODS)
 def test_a_success_is_one_by_plain_pinocchio(method, panda, arm, kinova, tiago):
-    """Of 300 random questions: each answer's errors, verdict and limits, judged by Pinocchio alone."""
+    """Every answer's errors, verdict and limits, judged by Pinocchio alone."""
     rng = np.random.default_rng(5)
     solved = 0
     hands = ("panda_hand_tcp", "tip", "j2s6s200_end_effector", "arm_tool_link")
     for robot, frame in zip((panda, arm, kinova, tiago), hands, strict=True):
-        model = robot.model
-        data, number = model.createData(), model.getFrameId(frame)
         for _ in range(19):
-            wanted = placement(model, data, number, robot.random(rng))
+            wanted = plain_placement(robot, frame, robot.random(rng))
             wanted.translation = wanted.translation + rng.choice([0.0, 0.0, 0.5]) * rng.normal(size=3)
             s = robot.solve(frame, placement=wanted, method=method, engine="native", restarts=8, q0=robot.random(rng))
-            got = placement(model, data, number, s.q)
-            off = np.linalg.norm(wanted.translation - got.translation)
-            turned = np.linalg.norm(pinocchio.log3(wanted.rotation @ got.rotation.T))
-            assert s.success == (off <= 1e-4 and turned <= 1e-3)
-            assert s.position_error == pytest.approx(off, abs=1e-12)
-            assert s.orientation_error == pytest.approx(turned, abs=1e-9)
-            for joint in robot.joints:
-                if joint.has_one_axis and joint.nq == 1:
-                    assert joint.lower <= s.q[joint.idx_q] <= joint.upper
+            assert_honest(s, {"frame": frame, "placement": wanted})
             solved += s.success
     assert solved > 30
-
-
-def placement(model, data, number, q):
-    pinocchio.forwardKinematics(model, data, q)
-    return pinocchio.updateFramePlacement(model, data, number).copy()
 
 
 @needs_native
@@ -215,10 +211,13 @@ def test_the_interpreter_runs_on_during_a_long_solve(method, panda):
 
     thread = threading.Thread(target=count)
     thread.start()
-    before = counted
     try:
-        s = pinik.solve(panda, opposed, method, engine="native", restarts=10**6, time_limit=0.5)
-        during = counted - before
+        for _ in range(20):  # a busy machine may give the thread no turn for a while
+            before = counted
+            s = pinik.solve(panda, opposed, method, engine="native", restarts=10**6, time_limit=0.2)
+            during = counted - before
+            if during > 20:
+                break
     finally:
         running.clear()
         thread.join()
@@ -231,22 +230,16 @@ def test_the_interpreter_runs_on_during_a_long_solve(method, panda):
 def test_the_time_limit_ends_a_hopeless_solve(method, panda, lion):
     for robot, frame in ((panda, "panda_hand_tcp"), (lion, "nose")):
         opposed = [Target(frame, [0.4, y, 0.5]) for y in (-0.2, 0.2)]
-        took = []
-        for _ in range(3):  # a busy machine may hold one up
-            began = time.perf_counter()
-            s = pinik.solve(robot, opposed, method, engine="native", restarts=10**9, time_limit=0.1)
-            took.append(time.perf_counter() - began)
-            assert s.status is Status.TIME_LIMIT
-            assert s.message.startswith("out of time")
-            assert s.time >= 0.1
-        assert min(took) < 0.2
-
-
-def stacks_can_grow() -> bool:
-    return subprocess.run(["sh", "-c", "ulimit -s 524288"], capture_output=True, check=False).returncode == 0
+        began = time.thread_time()  # processor time, which other processes do not use up
+        s = pinik.solve(robot, opposed, method, engine="native", restarts=10**9, time_limit=0.1)
+        assert time.thread_time() - began < 0.3
+        assert s.status is Status.TIME_LIMIT
+        assert s.message.startswith("out of time")
+        assert s.time >= 0.1
 
 
 @needs_native
+@pytest.mark.skipif(sys.platform != "linux", reason="only Linux lets a process limit its memory and enlarge its stacks")
 def test_more_threads_than_the_system_gives_do_the_work_all_the_same():
     code = (
         "import resource, numpy as np, pinik\n"
@@ -257,8 +250,7 @@ def test_more_threads_than_the_system_gives_do_the_work_all_the_same():
         "resource.setrlimit(resource.RLIMIT_AS, (used + 5 * 2**28,) * 2)\n"
         "print(pinik.solve_many(panda, 'panda_hand_tcp', places, threads=1000).success.all())"
     )
-    if not os.path.exists("/proc/self/statm") or not stacks_can_grow():
-        pytest.skip("needs Linux, where a process can limit its memory and enlarge its stacks")
-    large_stacks = ["sh", "-c", 'ulimit -s 524288 && exec "$0" -W ignore -c "$1"', sys.executable, code]
+    largest = 'ulimit -s 524288 2>/dev/null || ulimit -s "$(ulimit -H -s)"'  # where 512 MB are not allowed
+    large_stacks = ["sh", "-c", f'{largest}; exec "$0" -W ignore -c "$1"', sys.executable, code]
     done = subprocess.run(large_stacks, capture_output=True, text=True, check=False)
     assert done.stdout.split() == ["True"], done.stderr

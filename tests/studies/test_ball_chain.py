@@ -7,9 +7,9 @@ import math
 import numpy as np
 import pytest
 
+from judge import plain_placement
 from pinik.errors import InputError
 from pinik.studies.ball_chain import BallChain, ProgramChase
-from stand_ins import plain_placement
 
 AT = {"unit": 1.0, "tolerance": 1e-6, "damping": 1.1, "max_angle": math.pi / 16, "max_iterations": 1, "alpha": 0.01}
 

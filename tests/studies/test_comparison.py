@@ -5,11 +5,11 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from judge import plain_placement
 from pinik.model.home import home_configuration
 from pinik.problem.targets import Tolerance
 from pinik.studies.comparison import COMPARISONS, Comparison, bones, chain_length, compare, places
 from pinik.studies.steps import Rules, Step
-from stand_ins import plain_placement
 
 RULES = Rules(tolerance=Tolerance())
 

@@ -9,9 +9,9 @@ import pinocchio
 import pytest
 
 import pinik
+from judge import plain_placement
 from pinik.problem.targets import Tolerance
 from pinik.studies.steps import Rules, Step, chase_with, in_pieces
-from stand_ins import plain_placement
 
 NEAR = Tolerance(1e-4, 1e-3)
 
