@@ -9,7 +9,7 @@ from xml.etree import ElementTree
 import pinocchio
 
 from ..description.reader import Description
-from ..errors import InputError, RobotLoadError
+from ..errors import Flaw, InputError, RobotLoadError
 
 __all__ = ["MAX_DEGREES_OF_FREEDOM", "MAX_LINKS", "build_model"]
 
@@ -63,7 +63,10 @@ def build_model(
         for tag in description.joints
         if mimic and tag.mimic is not None
     }
-    warnings = tuple(f"joint {name!r}: {cause}; it is left free" for name, cause in causes.items() if cause)
+    common = "it mimics a joint that comes after it in Pinocchio's order of joints; it is left free"
+    warnings = tuple(
+        Flaw(f"joint {name!r}", f"{cause}; it is left free", common=common) for name, cause in causes.items() if cause
+    )
     honoured = {name for name, cause in causes.items() if cause is None}
     if not honoured:
         return free, warnings

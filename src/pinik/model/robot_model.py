@@ -16,7 +16,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from ..checks import as_finite_number, as_many, as_se3, as_vector
 from ..description import reader as urdf
-from ..errors import InputError, RobotLoadError, UnknownNameError
+from ..errors import Flaw, InputError, RobotLoadError, UnknownNameError
 from .build import build_model
 from .joint import Joint, joints_of, limits_cut_by_followers
 from .poses import read_poses
@@ -383,7 +383,7 @@ class Robot:
                 )
             if lower == upper and joint.lower < joint.upper:
                 words = "the limits of the joints that mimic it leave it only the value"
-                self.warnings += (f"joint {joint.name!r}: {words} {lower:g}",)
+                self.warnings += (Flaw(f"joint {joint.name!r}", f"{words} {lower:g}"),)
         return np.array([lower for lower, _ in cut]), np.array([upper for _, upper in cut])
 
     def _configuration_limits(self) -> tuple[Array, Array]:

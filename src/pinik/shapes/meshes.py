@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 from ..description import reader as urdf
 from ..description.packages import resolve
 from ..description.xml import Element, parse
-from ..errors import InputError
+from ..errors import Flaw, InputError
 from ..model.robot_model import Robot
 
 __all__ = ["Color", "Shape", "load_shapes"]
@@ -51,7 +51,7 @@ class Shape:
 
 def load_shapes(
     robot_or_urdf: Robot | str | os.PathLike[str], package_dirs: Iterable[str | os.PathLike[str]] = ()
-) -> tuple[list[Shape], list[str]]:
+) -> tuple[list[Shape], list[Flaw]]:
     """Read the visual shapes of a robot.
 
     Args:
@@ -82,7 +82,7 @@ def load_shapes(
         if material.tag == "material" and (color := _material_color(material)) is not None
     }
     shapes: list[Shape] = []
-    warnings: list[str] = []
+    warnings: list[Flaw] = []
     files: dict[str, list[Part]] = {}
     for link in robot.named("link"):
         link_name = link.attributes["name"]
@@ -91,12 +91,19 @@ def load_shapes(
                 placement, given = _origin(visual), _visual_color(visual, named)
                 parts = _parts(visual, description.path, folders, files)
             except Exception as fault:  # a shape is never worth an error, whatever its file makes trimesh raise
-                warnings.append(f"link '{link_name}': a shape is left out: {fault}")
+                missing = fault.address if isinstance(fault, _MeshNotFoundError) else None
+                warnings.append(Flaw(f"link {link_name!r}", f"a shape is left out: {fault}", mesh=missing))
                 continue
             for part, (mesh, own) in enumerate(parts):
                 name = f"{link_name}/{index}" + (f"/{part}" if len(parts) > 1 else "")
                 shapes.append(Shape(link_name, name, placement, mesh, given or own or GREY))
     return shapes, warnings
+
+
+class _MeshNotFoundError(Exception):
+    def __init__(self, address: str) -> None:
+        self.address = address
+        super().__init__(f"there is no mesh {address!r}")
 
 
 def _child(element: Element, tag: str) -> Element | None:
@@ -177,7 +184,7 @@ def _load_file(address: str, urdf_path: Path | None, package_dirs: Sequence[Path
     """A mesh file as one mesh for each colour in it, in its own frame [m]."""
     path = resolve(address, urdf_path=urdf_path, package_dirs=package_dirs)
     if path is None:
-        raise FileNotFoundError(f"there is no mesh '{address}'")
+        raise _MeshNotFoundError(address)
     scene = trimesh.load_scene(path)
     by_color: dict[Color | None, list[trimesh.Trimesh]] = {}
     for mesh in scene.dump():

@@ -8,14 +8,14 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ..checks import as_names
+from ..checks import as_count, as_names
 from ..errors import InputError
 from ..model.limits import Limits
 from ..model.robot_model import Robot
 from ..problem.targets import TARGET_KEYWORDS, Target, Tolerance, as_targets
 from ..solvers.base import Solver
 from ..solvers.registry import SOLVERS, make_solver
-from .prepared import Prepared, as_count, check_joint_names, prepare
+from .prepared import Prepared, check_joint_names, prepare
 from .run import TO_THE_END, compiled_for, run
 from .solution import Solution
 from .state import State

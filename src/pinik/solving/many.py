@@ -12,7 +12,7 @@ import numpy as np
 import pinocchio
 from numpy.typing import ArrayLike, NDArray
 
-from ..checks import as_many, as_numbers, as_points, as_rotations, as_se3
+from ..checks import as_count, as_many, as_numbers, as_points, as_rotations, as_se3
 from ..errors import InputError
 from ..model.robot_model import Robot
 from ..problem.reach import shortfall
@@ -21,7 +21,7 @@ from ..solvers.base import Solver
 from . import native
 from .at_once import attempt_at_once, lands_at_once
 from .attempts import Outcome, attempt_all
-from .prepared import Prepared, as_count, prepare
+from .prepared import Prepared, prepare
 from .solution import Solution
 from .state import Status, measure_errors
 

@@ -11,7 +11,7 @@ import numpy as np
 import pinocchio
 from numpy.typing import ArrayLike, NDArray
 
-from ..checks import as_finite_number, as_names
+from ..checks import as_count, as_names, as_positive_number
 from ..errors import EngineError, InputError, UnknownNameError
 from ..model.limits import Limits
 from ..model.robot_model import Robot
@@ -24,7 +24,7 @@ from .run import compiled_for
 from .solution import Solution
 from .starts import Starts
 
-__all__ = ["ENGINES", "Prepared", "as_count", "check_joint_names", "prepare"]
+__all__ = ["ENGINES", "Prepared", "check_joint_names", "prepare"]
 
 Array = NDArray[np.float64]
 
@@ -76,7 +76,7 @@ def prepare(
         seed=as_count(seed, "seed", least=0),
         max_iterations=None if max_iterations is None else as_count(max_iterations, "max_iterations"),
         tolerance=Tolerance.of(tolerance),
-        time_limit=math.inf if time_limit is None else _seconds(time_limit),
+        time_limit=math.inf if time_limit is None else as_positive_number(time_limit, "time_limit", "seconds"),
         engine=engine,
         trace=bool(trace),
     )
@@ -90,20 +90,6 @@ def check_joint_names(robot: Robot, solver: Solver) -> None:
                 joint = robot.settable_joint(name)
                 if parameter == "rest_posture" and not joint.has_one_axis:
                     raise InputError(f"rest_posture: joint {name!r} is {joint.kind} and has no angle")
-
-
-def as_count(value: object, what: str, least: int = 1) -> int:
-    """`value` as a whole number of at least `least`; InputError for anything else."""
-    if isinstance(value, bool) or not isinstance(value, (int, np.integer)) or value < least:
-        raise InputError(f"{what} is a whole number of at least {least}; got {value!r}")
-    return int(value)
-
-
-def _seconds(value: object) -> float:
-    seconds = as_finite_number(value, "time_limit")
-    if seconds <= 0.0:
-        raise InputError(f"time_limit is a positive number of seconds; got {value!r}")
-    return seconds
 
 
 class Prepared:

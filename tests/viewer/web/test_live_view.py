@@ -184,7 +184,7 @@ def test_a_busy_port_is_said_in_words(two_link):
         ({"host": ""}, "a host is an address of this machine"),
         ({"host": None}, "a host is an address of this machine"),
         ({"host": 5}, "a host is an address of this machine"),
-        ({"methods": ["ccdd"]}, "no method 'ccdd'; near: 'ccd'"),
+        ({"methods": ["ccdd"]}, "no method 'ccdd'; did you mean 'ccd'"),
         ({"methods": []}, "one to four methods; got 0"),
         ({"methods": ["ccd"] * 5}, "one to four methods; got 5"),
         ({"methods": [pinik.CCD(stiffness={"nope": 0.5})]}, "no joint 'nope'"),

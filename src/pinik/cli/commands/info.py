@@ -1,4 +1,4 @@
-"""`pinik info`: what a robot has."""
+"""`pinik info`: joints, limits, frames and poses of a robot."""
 
 from __future__ import annotations
 
@@ -30,9 +30,9 @@ def info(
     package_dir: PackageDirs = None,
     as_json: AsJson = False,
 ) -> ExitStatus:
-    """Show a robot's joints with their limits, its frames and its named poses.
+    """Show the joints of a robot with their limits, its frames and its named poses.
 
-    Angles are radians, or degrees with --deg.
+    Angles are in radians, or in degrees with --deg.
 
     Example:
 
@@ -71,7 +71,7 @@ def _fields(robot: Robot) -> dict[str, Any]:
 
 
 def _engine() -> str:
-    """The engine that `engine="auto"` takes for pinik's own methods."""
+    """The engine that `engine="auto"` uses for pinik's own methods."""
     return "python" if native.why_not() else "native"
 
 
@@ -91,7 +91,7 @@ def _joint_fields(robot: Robot, joint: Joint) -> dict[str, Any]:
 
 
 def _limits(robot: Robot, joint: Joint) -> tuple[float | None, float | None]:
-    """A joint's limits as they hold: its leader's where it follows; None where there are none."""
+    """The effective limits of a joint, which a follower inherits from its leader; None if it has no single axis."""
     if not joint.has_one_axis:
         return None, None
     index = robot.joint_names.index(joint.leader or joint.name)
