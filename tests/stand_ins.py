@@ -11,11 +11,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-import pinik
-from pinik.viewer.protocol.packing import InstanceBlock, pack_frame
-from pinik.viewer.protocol.recording import Recording
 from judge import is_inside as is_inside
 from judge import plain_placement as plain_placement
+from pinik.viewer.protocol.packing import InstanceBlock, pack_frame
+from pinik.viewer.protocol.recording import Recording
 from pinik.viewer.protocol.setup import write_setup
 from pinik.viewer.protocol.state import session_state
 from pinik.viewer.simulation.session import Session

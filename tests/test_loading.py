@@ -28,7 +28,7 @@ def test_the_home_folder_is_expanded(home: Path) -> None:
 
 @pytest.mark.parametrize("path", ["panda.urdf", "no/such/panda.urdf", Path("panda")])
 def test_a_mistyped_path_suggests_the_robot_of_that_name(path: str | Path) -> None:
-    with pytest.raises(pinik.RobotLoadError, match="no such file; the catalogue has a robot 'panda'"):
+    with pytest.raises(pinik.RobotLoadError, match="no such file, but the catalogue has a robot 'panda'"):
         pinik.load(path)
 
 

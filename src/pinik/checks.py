@@ -1,4 +1,4 @@
-"""Checks of what people hand in: numbers, vectors, rotations, placements; each error says what would be right."""
+"""Checks of arguments: numbers, vectors, rotations, placements. Errors name the argument and what it must be."""
 
 from __future__ import annotations
 
@@ -14,6 +14,7 @@ from .errors import InputError
 
 __all__ = [
     "as_array",
+    "as_count",
     "as_finite_number",
     "as_length",
     "as_many",
@@ -21,6 +22,7 @@ __all__ = [
     "as_numbers",
     "as_point",
     "as_points",
+    "as_positive_number",
     "as_rotation",
     "as_rotations",
     "as_se3",
@@ -28,7 +30,7 @@ __all__ = [
     "as_vector",
 ]
 
-_FARTHEST = 1e9  # [m]: beyond, squares of distances lose all meaning
+_FARTHEST = 1e9  # [m]: beyond it, squared distances lose all precision
 
 _IDENTITY = np.eye(3)
 _NO_NUMBERS = (str, bytes, bool, np.bool_)
@@ -43,22 +45,39 @@ def as_finite_number(value: object, what: str) -> float:
             raise TypeError
         number = float(value)  # type: ignore[arg-type]
     except (TypeError, ValueError, OverflowError):
-        raise InputError(f"{what} is a finite number; got {value!r}") from None
+        raise InputError(f"must be a finite number; got {value!r}", argument=what) from None
     if isinstance(value, _NO_NUMBERS) or not math.isfinite(number):
-        raise InputError(f"{what} is a finite number; got {value!r}")
+        raise InputError(f"must be a finite number; got {value!r}", argument=what)
     return number
 
 
+def as_positive_number(value: object, what: str, unit: str = "") -> float:
+    """`value` as a float; InputError unless it is one finite number above zero."""
+    number = as_finite_number(value, what)
+    if number <= 0.0:
+        raise InputError(f"must be a positive number{f' of {unit}' if unit else ''}; got {value!r}", argument=what)
+    return number
+
+
+def as_count(value: object, what: str, least: int = 1, most: int | None = None) -> int:
+    """`value` as an int; InputError unless it is a whole number of at least `least` and at most `most`."""
+    whole = isinstance(value, (int, np.integer)) and not isinstance(value, bool)
+    if not whole or value < least or (most is not None and value > most):  # type: ignore[operator]
+        bounds = f"of at least {least}" if most is None else f"from {least} to {most}"
+        raise InputError(f"must be a whole number {bounds}; got {value!r}", argument=what)
+    return int(value)  # type: ignore[call-overload, no-any-return]
+
+
 def as_length(value: object, what: str) -> float:
-    """`value` as a length [m]; InputError also for one over a million kilometres."""
+    """`value` as a length [m]; InputError also if it exceeds a million kilometres."""
     length = as_finite_number(value, what)
     if abs(length) > _FARTHEST:
-        raise InputError(f"{what} is in metres, at most {_FARTHEST:g}; got {length:g}")
+        raise InputError(f"must be within ±{_FARTHEST:g} m; got {length:g}", argument=what)
     return length
 
 
 def as_array(value: ArrayLike, shape: tuple[int, ...], what: str, of: str = "") -> Array:
-    """A fresh float64 array of that shape; InputError for other shapes, kinds, NaN and infinities."""
+    """A new float64 array of that shape; InputError for other shapes or types, NaN and infinities."""
     size = "×".join(map(str, shape))
     expected = f"{size} finite numbers" + (f" ({of})" if of else "")
     try:
@@ -67,38 +86,38 @@ def as_array(value: ArrayLike, shape: tuple[int, ...], what: str, of: str = "") 
             () if isinstance(value, np.ndarray) and numbers.dtype.kind != "O" else np.asarray(value, dtype=object).flat
         )
         if numbers.dtype.kind not in "iufO" or any(isinstance(item, _NO_NUMBERS) for item in items):
-            raise TypeError  # such as texts and truth values, which numpy would convert
+            raise TypeError  # such as strings and booleans, which numpy would convert
         array = np.array(numbers, dtype=np.float64)
     except (TypeError, ValueError, OverflowError):
-        raise InputError(f"{what} takes {expected}; got {value!r}") from None
+        raise InputError(f"must be {expected}; got {value!r}", argument=what) from None
     if array.shape != shape:
-        raise InputError(f"{what} takes {expected}; got an array of shape {array.shape}")
+        raise InputError(f"must be {expected}; got an array of shape {array.shape}", argument=what)
     if not np.isfinite(array).all():
-        raise InputError(f"{what} takes {expected}; got {array.tolist()}")
+        raise InputError(f"must be {expected}; got {array.tolist()}", argument=what)
     return array
 
 
 def as_many(values: ArrayLike, shape: tuple[int, ...], what: str) -> Array:
-    """`values` as a fresh float64 array (n, *shape); InputError names the first that is not finite."""
+    """`values` as a new float64 array (n, *shape); InputError names the first entry that is not finite."""
     size = "×".join(map(str, shape))
     array = as_numbers(values, what)
     if array.shape[1:] != shape or array.ndim != len(shape) + 1:
-        raise InputError(f"{what} takes N times {size} finite numbers; got an array of shape {array.shape}")
+        raise InputError(f"must be N times {size} finite numbers; got an array of shape {array.shape}", argument=what)
     finite = np.isfinite(array).all(axis=tuple(range(1, array.ndim)))
     if not finite.all():
         k = int(np.argmin(finite))
-        raise InputError(f"{what}[{k}] takes {size} finite numbers; got {array[k].tolist()}")
+        raise InputError(f"must be {size} finite numbers; got {array[k].tolist()}", argument=f"{what}[{k}]")
     return array.astype(np.float64)
 
 
 def as_numbers(values: ArrayLike, what: str) -> NDArray[Any]:
-    """`values` as an array of real numbers, whatever its shape."""
+    """`values` as an array of real numbers of any shape."""
     try:
         array = np.asarray(values)
     except ValueError:
-        raise InputError(f"{what} takes an array of numbers; got rows of different lengths") from None
+        raise InputError("must be an array of numbers; got rows of different lengths", argument=what) from None
     if array.dtype.kind not in "iuf":
-        raise InputError(f"{what} takes an array of numbers; got {values!r}")
+        raise InputError(f"must be an array of numbers; got {values!r}", argument=what)
     return array
 
 
@@ -108,17 +127,17 @@ def as_vector(value: ArrayLike, size: int, what: str, of: str = "") -> Array:
 
 
 def as_point(value: ArrayLike, what: str) -> Array:
-    """`value` as a point (3,) [m]; InputError also for one farther than a million kilometres off."""
+    """`value` as a point (3,) [m]; InputError also if a coordinate exceeds a million kilometres."""
     point = as_vector(value, 3, what)
     if np.abs(point).max() > _FARTHEST:
-        raise InputError(f"{what} is a point in metres, at most {_FARTHEST:g} away; got {point.tolist()}")
+        raise InputError(f"must be a point within {_FARTHEST:g} m of the origin; got {point.tolist()}", argument=what)
     return point
 
 
 def as_names(value: Iterable[str], what: str) -> tuple[str, ...]:
-    """`value` as a tuple; InputError for a single string, and for what is no list at all."""
+    """`value` as a tuple; InputError for a single string and for anything that is not iterable."""
     if isinstance(value, str) or not isinstance(value, Iterable):
-        raise InputError(f"{what} takes a list of joint names; got {value!r}")
+        raise InputError(f"must be a list of joint names; got {value!r}", argument=what)
     return tuple(value)
 
 
@@ -127,7 +146,7 @@ def as_unit_vector(value: ArrayLike, what: str) -> Array:
     vector = as_vector(value, 3, what)
     scale = np.abs(vector).max()
     if scale < 1e-300:
-        raise InputError(f"{what} is a direction and cannot be zero")
+        raise InputError(f"must not be zero, as it is a direction; got {vector.tolist()}", argument=what)
     vector = vector / scale
     return np.array(vector / np.linalg.norm(vector))
 
@@ -135,10 +154,11 @@ def as_unit_vector(value: ArrayLike, what: str) -> Array:
 def as_rotation(value: ArrayLike, what: str) -> Array:
     """`value` as a rotation matrix (3, 3); InputError unless it is orthonormal to 1e-6 and right-handed."""
     matrix = as_array(value, (3, 3), what, "a rotation matrix")
-    small = np.abs(matrix).max() < 2.0  # else the product could overflow
+    small = np.abs(matrix).max() < 2.0  # otherwise the product could overflow
     off = np.abs(matrix.dot(matrix.T) - _IDENTITY).max() if small else math.inf
     if off > 1e-6 or _determinant(matrix) < 0.0:
-        raise InputError(f"{what} is a rotation matrix (orthonormal, determinant +1); got {matrix.tolist()}")
+        requirement = f"must be a rotation matrix (orthonormal, determinant +1); got {matrix.tolist()}"
+        raise InputError(requirement, argument=what)
     if off < 1e-14:
         return matrix
     left, _, right = np.linalg.svd(matrix)
@@ -146,16 +166,18 @@ def as_rotation(value: ArrayLike, what: str) -> Array:
 
 
 def as_points(values: ArrayLike, what: str) -> Array:
-    """`values` as points (n, 3) [m], each as `as_point` takes it."""
+    """`values` as points (n, 3) [m], each checked as by `as_point`."""
     points = as_many(values, (3,), what)
     _refuse_the_first(np.abs(points).max(axis=1, initial=0.0) > _FARTHEST, points, as_point, what)
     return points
 
 
 def as_rotations(values: ArrayLike, what: str) -> Array:
-    """`values` as rotation matrices (n, 3, 3), each as `as_rotation` takes it."""
+    """`values` as rotation matrices (n, 3, 3), each checked as by `as_rotation`."""
     matrices = as_many(values, (3, 3), what)
-    a, b, c = np.ascontiguousarray(matrices.transpose(1, 2, 0))  # rows of all; many times faster than N small products
+    a, b, c = np.ascontiguousarray(
+        matrices.transpose(1, 2, 0)
+    )  # one row of every matrix: far faster than N small products
     with np.errstate(over="ignore", invalid="ignore"):
         off = np.zeros(len(matrices))
         for one, other, product in ((a, a, 1.0), (b, b, 1.0), (c, c, 1.0), (a, b, 0.0), (a, c, 0.0), (b, c, 0.0)):
@@ -171,21 +193,23 @@ def as_rotations(values: ArrayLike, what: str) -> Array:
 def _refuse_the_first(
     wrong: NDArray[np.bool_], values: Array, check: Callable[[ArrayLike, str], object], what: str
 ) -> None:
-    """Let the check of one value say what is wrong with the first that is."""
+    """Run the check of a single value on the first wrong one, which raises the error."""
     for k in np.flatnonzero(wrong)[:1]:
         check(values[k], f"{what}[{k}]")
 
 
 def _determinant(matrix: Array) -> float:
-    """Of a 3×3 matrix; numpy's own takes ten times as long for so few numbers."""
+    """The determinant of a 3×3 matrix; numpy takes ten times as long for so few numbers."""
     (a, b, c), (d, e, f), (g, h, i) = matrix.tolist()
     return float(a * (e * i - f * h) + b * (f * g - d * i) + c * (d * h - e * g))
 
 
 def as_se3(value: pinocchio.SE3 | ArrayLike, what: str) -> pinocchio.SE3:
-    """`value`, a `pinocchio.SE3` or a homogeneous 4×4 matrix, as a fresh SE3."""
+    """`value`, a `pinocchio.SE3` or a homogeneous 4×4 matrix, as a new SE3."""
     matrix = value.homogeneous if isinstance(value, pinocchio.SE3) else value
     array = as_array(matrix, (4, 4), what, "an SE3 or a homogeneous matrix")
     if np.abs(array[3] - (0.0, 0.0, 0.0, 1.0)).max() > 1e-9:
-        raise InputError(f"{what}: the last row of a homogeneous matrix is 0 0 0 1; got {array[3].tolist()}")
+        raise InputError(
+            f"must be a homogeneous matrix, whose last row is 0 0 0 1; got {array[3].tolist()}", argument=what
+        )
     return pinocchio.SE3(as_rotation(array[:3, :3], what), as_point(array[:3, 3], what))

@@ -1,71 +1,86 @@
-"""Everything pinik raises: a `PinikError` that is also the builtin it resembles."""
+"""Every error and warning of pinik. Each error is a `PinikError` and also the builtin that it resembles."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from difflib import get_close_matches
 from functools import partial
 from typing import Any
 
 __all__ = [
     "EngineError",
+    "Flaw",
     "InputError",
     "PinikError",
     "RobotLoadError",
     "SolveError",
     "UnknownNameError",
     "UrdfWarning",
+    "near_names",
 ]
+
+_MOST_SHOWN = 12
 
 
 class PinikError(Exception):
-    """The root of all errors that pinik raises on purpose."""
+    """The base class of all errors that pinik raises on purpose."""
 
 
 class RobotLoadError(PinikError, ValueError):
-    """A robot description that cannot become a model; the message names the element and the cause.
+    """A robot description cannot become a model; the message names the element and the cause.
 
     Attributes:
         source: The file (or "<text>") that was read.
-        element: The faulty element, such as "joint 'elbow'", or None where the whole document is at fault.
+        element: The faulty element, such as "joint 'elbow'", or None if the whole document is at fault.
+        cause: What is wrong, without source and element.
     """
 
     def __init__(self, message: str, *, source: str = "<text>", element: str | None = None) -> None:
         self.source = source
         self.element = element
-        self._message = message
+        self.cause = message
         where = f"{source}: {element}" if element else source
         super().__init__(f"{where}: {message}")
 
     def __reduce__(self) -> tuple[Any, ...]:
-        return partial(type(self), source=self.source, element=self.element), (self._message,)
+        return partial(type(self), source=self.source, element=self.element), (self.cause,)
 
 
 class InputError(PinikError, ValueError):
-    """An argument of the wrong shape, kind or range; the message says what would be right."""
+    """An argument has the wrong shape, type or range; the message says what it must be.
+
+    Attributes:
+        argument: The argument at fault, such as "restarts"; None if it is not a single one.
+        requirement: The message without the argument: "must be a whole number of at least 0; got -1".
+    """
+
+    def __init__(self, message: str, *, argument: str | None = None) -> None:
+        """With `argument` the message starts with it: `InputError("must be positive", argument="time_limit")`."""
+        self.argument = argument
+        self.requirement = message
+        super().__init__(message if argument is None else f"{argument} {message}")
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return partial(type(self), argument=self.argument), (self.requirement,)
 
 
 class UnknownNameError(PinikError, KeyError):
-    """A name that the robot (or a registry) does not have.
+    """The robot, or a registry, has no such name.
 
     Attributes:
-        kind: What was asked for: "frame", "joint", "robot", "method", "parameter".
+        kind: What was looked up: "frame", "joint", "robot", "method", "parameter".
         name: The name given.
-        valid: The names that would have been right.
+        valid: The names that exist.
     """
 
     def __init__(self, kind: str, name: object, valid: Iterable[str], hint: str = "") -> None:
+        """The message suggests similar names, or lists the valid ones; `hint` adds a remark."""
         self.kind = kind
         self.name = name
         self.valid = tuple(valid)
         self._hint = hint
-        near = get_close_matches(str(name), self.valid, n=4, cutoff=0.6)
-        if near:
-            help_ = "near: " + ", ".join(repr(n) for n in near)
-        else:
-            shown = ", ".join(repr(n) for n in self.valid[:12]) or "none"
-            help_ = f"there are: {shown}" + (f" and {len(self.valid) - 12} more" if len(self.valid) > 12 else "")
-        super().__init__(f"no {kind} {name!r}; {help_}" + (f"; {hint}" if hint else ""))
+        remark = f" ({hint})" if hint else ""
+        super().__init__(f"no {kind} {name!r}; {_advice(name, self.valid)}{remark}")
 
     def __str__(self) -> str:
         return str(self.args[0])
@@ -74,8 +89,37 @@ class UnknownNameError(PinikError, KeyError):
         return type(self), (self.kind, self.name, self.valid, self._hint)
 
 
+def near_names(name: object, valid: Iterable[str], most: int = 4) -> tuple[str, ...]:
+    """The valid names that a mistyped one resembles, the likeliest first.
+
+    Names that begin with the given word come first, then close matches, then names that the word begins with.
+    Upper and lower case count as equal.
+    """
+    word = str(name).casefold()
+    if not word:
+        return ()
+    names: dict[str, str] = {}
+    for one in valid:
+        names.setdefault(one.casefold(), one)
+    longer = sorted((one for one in names if one.startswith(word)), key=len)
+    shorter = sorted((one for one in names if one and word.startswith(one)), key=len, reverse=True)
+    ranked = dict.fromkeys([*longer, *get_close_matches(word, names, n=most, cutoff=0.6), *shorter])
+    return tuple(names[one] for one in ranked)[:most]
+
+
+def _advice(name: object, valid: Sequence[str]) -> str:
+    near = [repr(one) for one in near_names(name, valid)]
+    if near:
+        *others, last = near
+        return f"did you mean {', '.join(others)} or {last}?" if others else f"did you mean {last}?"
+    if not valid:
+        return "there are none"
+    more = len(valid) - _MOST_SHOWN
+    return f"available: {', '.join(map(repr, valid[:_MOST_SHOWN]))}" + (f" and {more} more" if more > 0 else "")
+
+
 class SolveError(PinikError, RuntimeError):
-    """Raised by `Solution.raise_for_status` when the targets were missed.
+    """Raised by `Solution.raise_for_status` if a target was missed.
 
     Attributes:
         solution: The `Solution` with the best configuration found.
@@ -90,8 +134,34 @@ class SolveError(PinikError, RuntimeError):
 
 
 class EngineError(PinikError, RuntimeError):
-    """The engine that was asked for is not there; the message says why."""
+    """The requested engine is not available; the message says why."""
 
 
 class UrdfWarning(UserWarning):
-    """Something in a robot description that pinik mended or left out, named in words."""
+    """pinik repaired or ignored something in a robot description."""
+
+
+class Flaw(str):
+    """What pinik repaired or ignored in a robot description: a sentence that also knows its parts.
+
+    Attributes:
+        element: The element, such as "joint 'elbow'".
+        cause: The sentence without it.
+        common: The cause without the names in it, equal for all flaws of the same sort.
+        mesh: The address of a mesh that was not found; None for all other flaws.
+    """
+
+    element: str
+    cause: str
+    common: str
+    mesh: str | None
+
+    def __new__(cls, element: str, cause: str, *, common: str | None = None, mesh: str | None = None) -> Flaw:
+        """The sentence "element: cause"."""
+        self = super().__new__(cls, f"{element}: {cause}")
+        self.element, self.cause, self.mesh = element, cause, mesh
+        self.common = cause if common is None else common
+        return self
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return partial(type(self), common=self.common, mesh=self.mesh), (self.element, self.cause)

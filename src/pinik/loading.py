@@ -27,17 +27,18 @@ def load(
 
     Args:
         source: A catalogue name ("arm", "lion", "panda", …: `pinik.catalog()`), a path to a .urdf file, or URDF text.
-        root: How the root link hangs in the world: "fixed", "free_flyer" or "planar".
-        package_dirs: Folders in which `package://` addresses of meshes are looked for first.
-        mimic: Whether mimic joints follow their leaders; False leaves them all free.
+        root: How the root link is attached to the world: "fixed", "free_flyer" or "planar".
+        package_dirs: Folders that are searched first for `package://` addresses of meshes.
+        mimic: Whether mimic joints follow their leaders; with False they are all free.
 
     Raises:
         RobotLoadError: The description is faulty; the message names the element and the cause.
-        UnknownNameError: No robot of that name.
-        InputError: An unknown root, a source that is neither name nor path nor text, or one folder for a list.
+        UnknownNameError: The catalogue has no robot of that name.
+        InputError: An unknown root, a source that is neither a name, a path nor text, or a single folder instead of a
+            list.
 
     Warns:
-        UrdfWarning: For whatever was mended or left out, and for meshes that were not found.
+        UrdfWarning: pinik repaired or ignored something, or did not find a mesh.
     """
     robot = load_in_silence(source, root=root, package_dirs=package_dirs, mimic=mimic)
     for words in robot.warnings:
@@ -52,13 +53,13 @@ def load_in_silence(
     package_dirs: Iterable[str | os.PathLike[str]] = (),
     mimic: bool = True,
 ) -> Robot:
-    """`load` for whoever shows `Robot.warnings` in a way of his own."""
+    """`load` without Python warnings, for callers that show `Robot.warnings` themselves."""
     if isinstance(package_dirs, (str, os.PathLike)) or not isinstance(package_dirs, Iterable):
-        raise InputError(f"package_dirs takes a list of folders; got {package_dirs!r}")
+        raise InputError(f"must be a list of folders; got {package_dirs!r}", argument="package_dirs")
     folders = tuple(package_dirs)
     for folder in folders:
         if not isinstance(folder, (str, os.PathLike)):
-            raise InputError(f"package_dirs takes a list of folders; got {folder!r} among them")
+            raise InputError(f"must be a list of folders; got {folder!r} in it", argument="package_dirs")
     homes = tuple(_home_expanded(Path(folder)) for folder in folders)
     name, srdf, path_or_text = locate(source)
     description = urdf.read(path_or_text)
@@ -67,21 +68,21 @@ def load_in_silence(
     if missing:
         count = "1 mesh was" if len(missing) == 1 else f"{len(missing)} meshes were"
         robot.warnings += (
-            f"{count} not found ({missing[0]}{', …' if len(missing) > 1 else ''}); kinematics needs none",
+            f"{count} not found ({missing[0]}{', …' if len(missing) > 1 else ''}); kinematics works without them",
         )
     return robot
 
 
 def locate(source: str | os.PathLike[str]) -> tuple[str | None, Path | None, str | Path]:
-    """(catalogue name, SRDF, path or text) for what a person gave.
+    """(catalogue name or None, SRDF or None, path or text) of a source.
 
     Raises:
-        UnknownNameError: No robot of that name.
-        RobotLoadError: There is no such file, and the catalogue has a robot that may be meant.
-        InputError: Neither name nor path nor text.
+        UnknownNameError: The catalogue has no robot of that name.
+        RobotLoadError: There is no such file, but a robot of that name in the catalogue.
+        InputError: The source is neither a name, a path nor text.
     """
     if not isinstance(source, (str, os.PathLike)):
-        raise InputError(f"a robot is a catalogue name, a path or URDF text; got {source!r}")
+        raise InputError(f"a robot must be a catalogue name, a path or URDF text; got {source!r}")
     if isinstance(source, str):
         if source.lstrip("\ufeff \t\r\n").startswith("<"):
             return None, None, source
@@ -91,13 +92,13 @@ def locate(source: str | os.PathLike[str]) -> tuple[str | None, Path | None, str
             return entry.name, entry.srdf, entry.urdf
     path = _home_expanded(Path(source))
     if path.stem in robot_catalog.catalog() and not os.path.lexists(path):
-        raise RobotLoadError(f"there is no such file; the catalogue has a robot {path.stem!r}", source=str(path))
+        raise RobotLoadError(f"no such file, but the catalogue has a robot {path.stem!r}", source=str(path))
     srdf = path.with_suffix(".srdf") if path.name else None
     return None, srdf if srdf and srdf.is_file() else None, path
 
 
 def _home_expanded(path: Path) -> Path:
-    """The path with "~" as the shell reads it; as it is where there is no such home."""
+    """The path with "~" expanded; unchanged if there is no such home folder."""
     try:
         return path.expanduser()
     except RuntimeError:

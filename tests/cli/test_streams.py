@@ -31,10 +31,10 @@ def test_data_on_stdout_and_nothing_else(run_process):
 def test_words_on_stderr_and_nothing_else(run_process):
     wrong = run_process("solve", "arm", "--frame", "tipp", "--position", "0", "0", "1", "--json")
     assert (wrong.status, wrong.out) == (2, "")
-    assert wrong.err == "error: no frame 'tipp'; near: 'tip'\n"
+    assert wrong.err == "error: no frame 'tipp'; did you mean 'tip'?\n"
     none = run_process("solve", "armm", "--frame", "tip", "--position", "0", "0", "1", "--json")
     assert (none.status, none.out) == (3, "")
-    assert none.err.startswith("error: no robot 'armm'; near: 'arm'")
+    assert none.err.startswith("error: no robot 'armm'; did you mean 'arm' or")
 
 
 def test_warnings_do_not_mix_with_the_data(run_process):
@@ -78,7 +78,7 @@ def test_a_full_disk_is_said_in_words(environment):
             check=False,
         )
     assert done.returncode == 2
-    assert done.stderr.decode() == "error: the answer cannot be written: No space left on device\n"
+    assert done.stderr.decode() == "error: cannot write the answer: No space left on device\n"
 
 
 def test_an_interrupt_is_one_word_and_status_130(environment):

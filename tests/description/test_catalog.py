@@ -65,7 +65,7 @@ def test_a_robot_has_the_name_that_people_expect(name: str, file: str) -> None:
 
 
 def test_an_unknown_name_brings_near_ones() -> None:
-    with pytest.raises(UnknownNameError, match=r"no robot 'anymal'; near: .*'anymal_b'") as caught:
+    with pytest.raises(UnknownNameError, match=r"no robot 'anymal'; did you mean .*'anymal_b'") as caught:
         find("anymal")
     assert caught.value.valid == tuple(catalog())
 

@@ -258,7 +258,7 @@ class TestAngles:
             panda.settable_joint("panda_finger_joint2")
 
     def test_an_unknown_joint_is_refused_with_near_names(self, panda):
-        with pytest.raises(UnknownNameError, match=r"no joint 'panda_jont4'; near: .*'panda_joint4'") as caught:
+        with pytest.raises(UnknownNameError, match=r"no joint 'panda_jont4'; did you mean .*'panda_joint4'") as caught:
             panda.configuration({"panda_jont4": 0.0})
         assert (caught.value.kind, caught.value.name) == ("joint", "panda_jont4")
         assert "panda_joint4" in caught.value.valid
@@ -528,13 +528,13 @@ class TestRandom:
 
 class TestNames:
     def test_of_an_unknown_frame_brings_near_ones(self, lion):
-        with pytest.raises(UnknownNameError, match=r"no frame 'left_paw'; near: .*'left_fore_paw'") as caught:
+        with pytest.raises(UnknownNameError, match=r"no frame 'left_paw'; did you mean .*'left_fore_paw'") as caught:
             lion.placement("left_paw", lion.neutral())
         assert caught.value.kind == "frame"
         assert isinstance(caught.value, KeyError)
-        with pytest.raises(UnknownNameError, match="no frame 'nos'; near: 'nose'"):
+        with pytest.raises(UnknownNameError, match="no frame 'nos'; did you mean 'nose'"):
             lion.placement("tail_tip", lion.neutral(), relative_to="nos")
-        with pytest.raises(UnknownNameError, match="no frame 'noose'; near: 'nose'"):
+        with pytest.raises(UnknownNameError, match="no frame 'noose'; did you mean 'nose'"):
             lion.jacobian("noose", lion.neutral())
 
     @pytest.mark.parametrize("strange", ["", "\n", "tip ", "TIP", 3, None, ("tip",), ["tip"], {}])
@@ -686,7 +686,7 @@ class TestLoad:
         assert pinik.load("arm").name == "arm"
 
     def test_an_unknown_name_brings_near_ones(self):
-        with pytest.raises(UnknownNameError, match="no robot 'pandas'; near: 'panda'"):
+        with pytest.raises(UnknownNameError, match="no robot 'pandas'; did you mean 'panda'"):
             pinik.load("pandas")
         with pytest.raises(UnknownNameError):
             pinik.load("")

@@ -480,7 +480,7 @@ def test_a_folder_that_is_not_there_is_the_system_s_to_tell(two_link, tmp_path):
         ({"offset": [1.0, 2.0]}, "offset takes 3 finite numbers"),
         ({"offset": [1e300, 0.0, 0.0]}, "offset is a point in metres, at most 1e+09 away"),
         ({"offset": np.zeros((2, 3))}, "offset takes 1×3 finite numbers (one for each q)"),
-        ({"view": "back"}, "no view 'back'; there are: 'angle', 'front', 'side', 'top'"),
+        ({"view": "back"}, "no view 'back'; available: 'angle', 'front', 'side', 'top'"),
         ({"view": 1.0}, "view takes 2 finite numbers (the camera's azimuth and elevation in radians)"),
         ({"view": None}, "view takes 2 finite numbers"),
         ({"view": (0.0, 2.0)}, "view: the camera's elevation is between -π/2 and π/2 [rad]; got 2"),

@@ -318,7 +318,7 @@ class TestLocked:
         target = Target("panda_hand", (1, 0, 0))
         with pytest.raises(InputError, match="'panda_finger_joint2' mimics 'panda_finger_joint1'"):
             Kinematics(panda, [target], locked=["panda_finger_joint2"])
-        with pytest.raises(UnknownNameError, match="near: 'panda_joint1'"):
+        with pytest.raises(UnknownNameError, match="did you mean 'panda_joint1'"):
             Kinematics(panda, [target], locked=["panda_jont1"])
         with pytest.raises(InputError, match="list of joint names; got 'panda_joint1'"):
             Kinematics(panda, [target], locked="panda_joint1")
@@ -448,9 +448,9 @@ def test_linearizing_leaves_the_configuration_alone(arm):
 def test_nothing_to_solve_and_unknown_frames_are_refused(arm):
     with pytest.raises(InputError, match="at least one target"):
         Kinematics(arm, [])
-    with pytest.raises(UnknownNameError, match="no frame 'tipp'; near: 'tip'"):
+    with pytest.raises(UnknownNameError, match="no frame 'tipp'; did you mean 'tip'"):
         Kinematics(arm, [Target("tipp", (1, 0, 0))])
-    with pytest.raises(UnknownNameError, match="no frame 'bones3'; near: 'bone3'"):
+    with pytest.raises(UnknownNameError, match="no frame 'bones3'; did you mean 'bone3'"):
         Kinematics(arm, [Target("tip", (1, 0, 0), relative_to="bones3")])
 
 

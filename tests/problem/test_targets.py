@@ -254,7 +254,7 @@ class TestJson:
         assert target.weight == 2.0
 
     def test_with_an_unknown_key_is_refused_with_near_ones(self):
-        with pytest.raises(UnknownNameError, match="no target keyword 'positon'; near: 'position'") as caught:
+        with pytest.raises(UnknownNameError, match="no target keyword 'positon'; did you mean 'position'") as caught:
             Target.from_dict({"frame": "tip", "positon": [1, 2, 3]})
         assert "quat_xyzw" in caught.value.valid
 

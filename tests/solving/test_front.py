@@ -351,9 +351,9 @@ def test_a_target_sent_in_moves_while_it_runs(method, arm):
         ({"max_iterations": 2.5}, "max_iterations is a whole number"),
         ({"time_limit": 0}, "time_limit is a positive number"),
         ({"locked": "bone1_x"}, "locked takes a list"),
-        ({"locked": ["bone1_q"]}, "near: 'bone1_z'|near: 'bone1_x'"),
-        ({"method": "newton"}, "no method 'newton'; there are: 'ccd'"),
-        ({"damp": 3}, "no parameter 'damp'; near: 'damping'; the method is 'dls'"),
+        ({"locked": ["bone1_q"]}, "did you mean 'bone1_z'|did you mean 'bone1_x'"),
+        ({"method": "newton"}, "no method 'newton'; available: 'ccd'"),
+        ({"damp": 3}, "no parameter 'damp'; did you mean 'damping'. .the method is 'dls'."),
         ({"engine": "cuda"}, "no engine 'cuda'"),
     ],
     ids=str,
@@ -390,7 +390,7 @@ def test_targets_may_come_from_a_generator(arm):
 
 
 def test_an_unknown_frame_lists_near_ones(arm):
-    with pytest.raises(pinik.UnknownNameError, match="no frame 'tipp'; near: 'tip'"):
+    with pytest.raises(pinik.UnknownNameError, match="no frame 'tipp'; did you mean 'tip'"):
         arm.solve("tipp", position=[0, 0, 1])
 
 

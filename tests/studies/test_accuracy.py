@@ -31,7 +31,7 @@ def test_problems_lie_where_their_case_says_and_are_the_same_for_a_seed():
 
 @pytest.mark.parametrize("edge", [0.0, 1.01, float("nan")])
 def test_an_edge_beyond_reach_is_refused(edge):
-    with pytest.raises(pinik.InputError, match="a part of the chain's reach"):
+    with pytest.raises(pinik.InputError, match="a part of the chain's length"):
         problems(CHAIN, EDGE, 1, edge=edge)
 
 

@@ -7,9 +7,10 @@ import pytest
 
 from judge import plain_placement
 from pinik.model.home import home_configuration
+from pinik.motion.figures import StepFigures
 from pinik.problem.targets import Tolerance
 from pinik.studies.comparison import COMPARISONS, Comparison, bones, chain_length, compare, places
-from pinik.studies.steps import Rules, Step
+from pinik.studies.steps import Rules
 
 RULES = Rules(tolerance=Tolerance())
 
@@ -28,7 +29,7 @@ class Scripted:
         return self.steps[(len(self.places) - 1) % len(self.steps)]
 
 
-STILL = Step(0.0, 0, 0, True, 0.0, 0.0)
+STILL = StepFigures(0.0, 0, 0, True, 0.0, 0.0)
 
 
 def rows(robot, chase, rules=RULES, **options):
@@ -89,7 +90,7 @@ def test_all_methods_and_both_limits_see_the_same_ball(arm):
 
 
 def test_a_row_holds_the_means_and_the_largest(arm):
-    fast, slow = Step(0.001, 1, 6, True, 0.01, 0.1), Step(0.003, 4, 12, False, 0.05, 0.5)
+    fast, slow = StepFigures(0.001, 1, 6, True, 0.01, 0.1), StepFigures(0.003, 4, 12, False, 0.05, 0.5)
     (row,) = rows(arm, Scripted(fast, fast, fast, slow))
     assert row.time == pytest.approx(0.0015)
     assert (row.iterations, row.joint_updates, row.efficiency) == (1.75, 7.5, 0.75)
@@ -126,7 +127,11 @@ def test_a_ball_in_pieces_comes_from_where_it_was(arm):
     [("ccd", "python", (1.0 + 1.0 + 3.5) / 3), ("ccd", "program", (1.0 + 2.0 + 7.0) / 3), ("dls", "python", 3.0)],
 )
 def test_it_counts_bones_of_ccd_and_steps_of_the_others_and_one_at_least(arm, method, engine, counted):
-    chase = Scripted(*(Step(0.0, n, updates, True, 0.0, 0.0) for n, updates in ((0, 0), (2, 2), (6, 7))))
+    joint_updates = (0, 2, 7) if method == "ccd" else (0, 0, 0)
+    figures = [
+        StepFigures(0.0, n, updates, True, 0.0, 0.0) for n, updates in zip((0, 2, 6), joint_updates, strict=True)
+    ]
+    chase = Scripted(*figures)
     chase.engine = engine
     (row,) = compare(arm, "tip", [method], lambda *_: chase, RULES, steps=3, comparisons=COMPARISONS[:1])
     assert row.counted == pytest.approx(counted)

@@ -10,8 +10,9 @@ import pytest
 
 import pinik
 from judge import plain_placement
+from pinik.motion.figures import StepFigures
 from pinik.problem.targets import Tolerance
-from pinik.studies.steps import Rules, Step, chase_with, in_pieces
+from pinik.studies.steps import Rules, chase_with, in_pieces
 
 NEAR = Tolerance(1e-4, 1e-3)
 
@@ -92,7 +93,7 @@ def test_a_bare_step_does_nothing_where_the_ball_is_reached_already(arm, method)
 
 
 def test_the_bare_loop_is_python_s(arm):
-    with pytest.raises(pinik.EngineError, match="Python's alone"):
+    with pytest.raises(pinik.EngineError, match="in the Python engine only"):
         chase_with(arm, "tip", pinik.CCD(), limits=True, rules=bare(), start=arm.poses["relaxed"], engine="native")
 
 
@@ -107,11 +108,11 @@ class Recorder:
     def step(self, place):
         self.places.append(place.tolist())
         number = len(self.places)
-        return Step(0.5, 2, 3, number == 4, 1.0 / number, 5.0 - number)
+        return StepFigures(0.5, 2, 3, number == 4, 1.0 / number, 5.0 - number)
 
 
 def test_a_way_in_pieces_is_cut_evenly_and_summed():
     chase = Recorder()
     step = in_pieces(chase, np.array([4.0, 0.0, -8.0]), np.array([0.0, 0.0, 0.0]), 4)
     assert chase.places == [[1, 0, -2], [2, 0, -4], [3, 0, -6], [4, 0, -8]]
-    assert step == Step(2.0, 8, 12, True, 0.25, 4.0)
+    assert step == StepFigures(2.0, 8, 12, True, 0.25, 4.0)

@@ -56,7 +56,7 @@ def test_the_mismatch_is_the_mean_of_points_and_of_factors():
     assert mismatch([]) is None
 
 
-@pytest.mark.parametrize(("frame", "why"), [("base", "no chain"), ("bone1_x", "no chain")])
+@pytest.mark.parametrize(("frame", "why"), [("base", "no length"), ("bone1_x", "no length")])
 def test_a_frame_that_no_chain_moves_is_refused(arm, frame, why):
     with pytest.raises(InputError, match=why):
         contest(arm, frame)

@@ -1,4 +1,4 @@
-"""The `pinik` command: data on stdout, words on stderr, and an exit status that says how it went."""
+"""The `pinik` command: data on stdout, messages on stderr, and an exit status that tells the outcome."""
 
 from __future__ import annotations
 

@@ -1,9 +1,9 @@
-"""All commands put together, and how their errors become exit statuses."""
+"""The command line as a whole: all commands together, and the exit status of every error."""
 
 from __future__ import annotations
 
 import sys
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import Annotated, Any
 
 import typer
@@ -11,37 +11,48 @@ import typer
 from ..errors import PinikError
 from ..version import __version__
 from .commands import accuracy, check, compare, fk, info, jacobian, live, robots, solve
+from .reports.solver_help import solvers_help
 from .terminal import output
 from .terminal.exits import CommandError, ExitStatus, in_words
 
 __all__ = ["main"]
 
-_app = typer.Typer(
-    name="pinik",
-    rich_markup_mode="rich",
-    add_completion=False,
-    context_settings={"help_option_names": ["--help", "-h"]},
-)
-_app.command("solve", epilog=solve.EPILOG)(solve.solve)
-_app.command("fk")(fk.fk)
-_app.command("jacobian")(jacobian.jacobian)
-_app.command("info")(info.info)
-_app.command("check")(check.check)
-_app.command("robots")(robots.robots)
-_app.command("live")(live.live)
-_app.command("compare", epilog=compare.EPILOG)(compare.compare)
-_app.command("accuracy")(accuracy.accuracy)
+_COMMANDS: dict[str, Callable[..., ExitStatus]] = {
+    "solve": solve.solve,
+    "fk": fk.fk,
+    "jacobian": jacobian.jacobian,
+    "info": info.info,
+    "check": check.check,
+    "robots": robots.robots,
+    "live": live.live,
+    "compare": compare.compare,
+    "accuracy": accuracy.accuracy,
+}
 
 
-@_app.callback(invoke_without_command=True)
+def _application() -> typer.Typer:
+    """The commands with their help, which names the methods that are registered now."""
+    app = typer.Typer(
+        name="pinik",
+        rich_markup_mode="rich",
+        add_completion=False,
+        context_settings={"help_option_names": ["--help", "-h"]},
+    )
+    epilogs = {"solve": solvers_help(), "compare": compare.EPILOG}
+    for name, command in _COMMANDS.items():
+        app.command(name, epilog=epilogs.get(name))(command)
+    app.callback(invoke_without_command=True)(_pinik)
+    return app
+
+
 def _pinik(
     context: typer.Context,
     version: Annotated[bool, typer.Option("--version", help="Show the version and exit.")] = False,
 ) -> None:
-    """Inverse kinematics on any URDF: where its frames are, and which joint angles put them elsewhere.
+    """Inverse and forward kinematics for any robot with a URDF file.
 
-    Exit status: 0 solved or answered, 1 a target missed (the best answer is still
-    printed), 2 wrong usage or bad input, 3 the robot could not be loaded, 130 interrupted.
+    Exit status: 0 for success, 1 if a target was missed (the best answer is still
+    printed), 2 for wrong usage or bad input, 3 if the robot cannot be loaded, 130 if interrupted.
 
     Example:
 
@@ -51,7 +62,7 @@ def _pinik(
         output.emit(f"pinik {__version__}")
         raise typer.Exit(ExitStatus.ANSWERED)
     if context.invoked_subcommand is None:
-        raise CommandError("no command given; 'pinik --help' lists them")
+        raise CommandError("no command given; 'pinik --help' lists the commands")
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -68,8 +79,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
         output.prepare_streams()
         if not {"--help", "-h"}.isdisjoint(words):
             _keep_help_texts_plain()
-        command = typer.main.get_command(_app)
-        # The commands return their status; --help and --version, which leave early, come back as one too.
+        command = typer.main.get_command(_application())
+        # The commands return their status, and so do --help and --version, which end early.
         returned = command.main(args=words, prog_name="pinik", standalone_mode=False)
         status = ExitStatus(returned or ExitStatus.ANSWERED)
         output.finish()
@@ -77,7 +88,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         status = _wrong_usage(error, words)
     except CommandError as error:
         status = output.say_error(str(error), error.status)
-    except SystemExit:  # Typer's, and rich's: the reader of the help has gone
+    except SystemExit:  # raised by Typer and rich when the reader of the help has gone
         output.abandon_stdout()
         status = ExitStatus.ANSWERED
     except (PinikError, OSError) as error:
@@ -85,14 +96,14 @@ def main(arguments: Sequence[str] | None = None) -> int:
     except (KeyboardInterrupt, typer.Abort):
         status = ExitStatus.INTERRUPTED
     except Exception as error:
-        status = output.say_error(f"unforeseen, please report it: {in_words(error)}", ExitStatus.WRONG_USAGE)
+        status = output.say_error(f"unexpected, please report it: {in_words(error)}", ExitStatus.WRONG_USAGE)
     if status is ExitStatus.INTERRUPTED:
         output.say("interrupted")
     return status
 
 
 def _keep_help_texts_plain() -> None:
-    """Let the help paint the names of options alone, not every hyphen in a text."""
+    """Let the help colour the names of options only, not every hyphen in a text."""
     from typer import rich_utils
 
     rich_utils.OptionHighlighter.highlights = [r"^(?P<option>--[\w-]+)$", r"^(?P<switch>-\w)$", "(?P<usage>Usage: )"]
@@ -102,8 +113,7 @@ def _wrong_usage(error: typer.TyperException, words: Sequence[str]) -> ExitStatu
     context = getattr(error, "ctx", None)
     command = context.command_path if context is not None else "pinik"
     if command == "pinik":  # some errors do not know their command
-        names = {info.name for info in _app.registered_commands}
-        command = " ".join(["pinik", *[word for word in words if word in names][:1]])
+        command = " ".join(["pinik", *[word for word in words if word in _COMMANDS][:1]])
     message = error.format_message().rstrip(".")
     faults: list[Any] = getattr(error.__cause__, "errors", list)()
     if faults and isinstance(error, typer.BadParameter):

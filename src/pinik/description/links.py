@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from ..errors import Flaw
 from .values import Vector, attribute_text, bad_value, number, numbers, only_child, read_origin, required_name, vector
 from .xml import Element
 
@@ -91,7 +92,7 @@ def _read_inertial(element: Element, owner: str, warnings: list[str]) -> Inertia
             inertia.append(number(inertia_element, attribute, owner) or 0.0)
     if mass is None or inertia_element is None:
         absent = "mass" if mass is None else "inertia"
-        warnings.append(f"{owner}: <inertial> has no <{absent}>; the link is taken as massless")
+        warnings.append(Flaw(owner, f"<inertial> has no <{absent}>; the link is taken as massless"))
         return None
     return Inertial(xyz, rpy, mass, tuple(inertia))
 
@@ -103,7 +104,7 @@ def _read_shape(shape: Element, owner: str, warnings: list[str]) -> tuple[str, .
     solid = geometry.children[0] if geometry is not None and geometry.children else None
     if solid is None or solid.tag not in SHAPE_SIZES:
         what = "has no shape" if solid is None else f"<{solid.tag}> is no shape of URDF"
-        warnings.append(f"{owner}: {what}; it is left out")
+        warnings.append(Flaw(owner, f"{what}; it is left out"))
         return ()
     for attribute, count in SHAPE_SIZES[solid.tag]:
         attribute_text(solid, attribute, owner)

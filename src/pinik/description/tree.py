@@ -6,6 +6,7 @@ import math
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 
+from ..errors import Flaw
 from .joints import ONE_AXIS_KINDS, JointTag, Mimic
 from .values import required_name
 from .xml import DocumentError, Element
@@ -74,16 +75,19 @@ def resolved_mimics(joints: Sequence[JointTag], warnings: list[str]) -> list[Joi
         if joint.mimic is None or joint.kind == "fixed":
             continue
         leader = by_name.get(joint.mimic.leader)
+        common = None
         if joint.kind not in ONE_AXIS_KINDS:
             cause = f"a {joint.kind} joint cannot mimic another; its mimic is ignored"
         elif leader is None:
             cause = f"it mimics {joint.mimic.leader!r}, and there is no such joint; it is left free"
+            common = "it mimics a joint that does not exist; it is left free"
         elif leader.kind not in ONE_AXIS_KINDS:
             cause = f"it mimics {leader.name!r}, which is a {leader.kind} joint; it is left free"
+            common = f"it mimics a {leader.kind} joint; it is left free"
         else:
             followers[joint.name] = joint.mimic
             continue
-        warnings.append(f"joint {joint.name!r}: {cause}")
+        warnings.append(Flaw(f"joint {joint.name!r}", cause, common=common))
     circle = _cycle({name: mimic.leader for name, mimic in followers.items()})
     if circle:
         cause = "it mimics itself" if len(circle) == 1 else f"joints mimic in a circle: {_listed(circle)}"

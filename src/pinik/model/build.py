@@ -10,7 +10,7 @@ import pinocchio
 
 from ..description.reader import Description
 from ..description.writer import UNLIMITED
-from ..errors import InputError, RobotLoadError
+from ..errors import Flaw, InputError, RobotLoadError
 from .joint import joints_of
 from .ranges import set_position_limits
 
@@ -66,7 +66,10 @@ def build_model(
         for tag in description.joints
         if mimic and tag.mimic is not None
     }
-    warnings = tuple(f"joint {name!r}: {cause}; it is left free" for name, cause in causes.items() if cause)
+    common = "it mimics a joint that comes after it in Pinocchio's order of joints; it is left free"
+    warnings = tuple(
+        Flaw(f"joint {name!r}", f"{cause}; it is left free", common=common) for name, cause in causes.items() if cause
+    )
     honoured = {name for name, cause in causes.items() if cause is None}
     if honoured:
         leaders = {tag.mimic.leader for tag in description.joints if tag.mimic is not None and tag.name in honoured}

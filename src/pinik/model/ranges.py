@@ -1,4 +1,4 @@
-"""How far each joint may go: its own limits, cut by those of the joints that mimic it; written into the model"""
+"""How far each joint may go: its own limits, cut by those of the joints that mimic it; written into the model."""
 
 from __future__ import annotations
 
@@ -9,6 +9,7 @@ import numpy as np
 import pinocchio
 from numpy.typing import NDArray
 
+from ..errors import Flaw
 from .joint import Joint
 
 __all__ = ["configuration_limits", "set_position_limits"]
@@ -19,7 +20,7 @@ _ONE_VALUE = 1e-9  # [rad or m]: a range this narrow holds a single value
 _FREE_TRANSLATION = {"floating": 3, "planar": 2}  # entries of q
 
 
-def set_position_limits(model: pinocchio.Model, joints: Sequence[Joint]) -> tuple[str, ...]:
+def set_position_limits(model: pinocchio.Model, joints: Sequence[Joint]) -> tuple[Flaw, ...]:
     """Write the limits that hold on a robot into `model.lowerPositionLimit` and `model.upperPositionLimit`.
 
     Each joint with one entry in q gets its own limits, cut where a follower would leave its own; they are infinite
@@ -35,7 +36,7 @@ def set_position_limits(model: pinocchio.Model, joints: Sequence[Joint]) -> tupl
         Warnings that name the followers whose limits are ignored, because they would stop their leader.
     """
     lower, upper = np.array(model.lowerPositionLimit), np.array(model.upperPositionLimit)
-    warnings: list[str] = []
+    warnings: list[Flaw] = []
     for joint in joints:
         if joint.nq == 1:
             followers = (follower for follower in joints if follower.leader == joint.name)
@@ -57,7 +58,7 @@ def configuration_limits(model: pinocchio.Model, joints: Iterable[Joint]) -> tup
     return lower, upper
 
 
-def _cut_by_followers(joint: Joint, followers: Iterable[Joint], warnings: list[str]) -> tuple[float, float]:
+def _cut_by_followers(joint: Joint, followers: Iterable[Joint], warnings: list[Flaw]) -> tuple[float, float]:
     """The limits of a joint [rad or m] that keep its followers inside theirs.
 
     A follower whose limits would leave the joint nothing, or a single value out of a range, does not count;
@@ -71,10 +72,10 @@ def _cut_by_followers(joint: Joint, followers: Iterable[Joint], warnings: list[s
         low, high = max(lower, min(ends)), min(upper, max(ends))
         if low > high or high - low <= _ONE_VALUE < joint.upper - joint.lower:
             room = "no room" if low > high else f"only the value {low + 0.0:g}"
-            warnings.append(
-                f"joint {follower.name!r}: its limits {follower.lower:g}…{follower.upper:g} are ignored, because they "
-                f"would leave {joint.name!r}, which it mimics, {room}"
-            )
+            own = f"its limits {follower.lower:g}…{follower.upper:g} are ignored, because they would leave"
+            cause = f"{own} {joint.name!r}, which it mimics, {room}"
+            common = "its limits are ignored, because they would leave the joint that it mimics no room, or a single value"
+            warnings.append(Flaw(f"joint {follower.name!r}", cause, common=common))
         else:
             lower, upper = low, high
     return lower + 0.0, upper + 0.0  # a negative multiplier turns 0 into −0, which numpy holds to be below 0

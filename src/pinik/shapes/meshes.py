@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 from ..description import reader as urdf
 from ..description.packages import resolve
 from ..description.xml import Element, parse
-from ..errors import InputError
+from ..errors import Flaw, InputError
 from ..model.robot_model import RobotModel
 from . import triangles
 from .triangles import Color
@@ -49,7 +49,7 @@ class Shape:
 
 def load_shapes(
     robot_or_urdf: RobotModel | str | os.PathLike[str], package_dirs: Iterable[str | os.PathLike[str]] = ()
-) -> tuple[list[Shape], list[str]]:
+) -> tuple[list[Shape], list[Flaw]]:
     """Read the visual shapes of a robot.
 
     Args:
@@ -80,7 +80,7 @@ def load_shapes(
         if material.tag == "material" and (color := _material_color(material)) is not None
     }
     shapes: list[Shape] = []
-    warnings: list[str] = []
+    warnings: list[Flaw] = []
     files: dict[str, list[triangles.Part]] = {}
     for link in robot.named("link"):
         link_name = link.attributes["name"]
@@ -89,12 +89,19 @@ def load_shapes(
                 placement, given = _origin(visual), _visual_color(visual, named)
                 parts = _parts(visual, description.path, folders, files)
             except Exception as fault:  # a shape never stops kinematics, and trimesh may raise anything
-                warnings.append(f"link '{link_name}': a shape is left out: {fault}")
+                missing = fault.address if isinstance(fault, _MeshNotFoundError) else None
+                warnings.append(Flaw(f"link {link_name!r}", f"a shape is left out: {fault}", mesh=missing))
                 continue
             for part, (mesh, own) in enumerate(parts):
                 name = f"{link_name}/{index}" + (f"/{part}" if len(parts) > 1 else "")
                 shapes.append(Shape(link_name, name, placement, mesh, given or own or GREY))
     return shapes, warnings
+
+
+class _MeshNotFoundError(Exception):
+    def __init__(self, address: str) -> None:
+        self.address = address
+        super().__init__(f"there is no mesh {address!r}")
 
 
 def _child(element: Element, tag: str) -> Element | None:
@@ -160,5 +167,5 @@ def _parts(
 def _file(address: str, urdf_path: Path | None, package_dirs: Sequence[Path]) -> list[triangles.Part]:
     path = resolve(address, urdf_path=urdf_path, package_dirs=package_dirs)
     if path is None:
-        raise FileNotFoundError(f"there is no mesh '{address}'")
+        raise _MeshNotFoundError(address)
     return triangles.read_file(path)

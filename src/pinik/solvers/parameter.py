@@ -147,7 +147,7 @@ class Parameter:
 
     @property
     def range_in_words(self) -> str:
-        """The values allowed, such as "from 0.01 to 1.99 rad"; empty where any number is."""
+        """The values allowed, such as "0.01 to 1.99 rad"; empty where any number is."""
         if self.choices:
             return " | ".join(self.choices)
         if self.kind == "truth":
@@ -156,8 +156,8 @@ class Parameter:
         if self.low is None and self.high is None:
             return self.unit
         if self.high is None:
-            return f"from {self.low:g}{unit}"
-        return f"{'up' if self.low is None else f'{self.low:g}'} to {self.high:g}{unit}"
+            return f"at least {self.low:g}{unit}"
+        return f"at most {self.high:g}{unit}" if self.low is None else f"{self.low:g} to {self.high:g}{unit}"
 
     @property
     def default_in_words(self) -> str:

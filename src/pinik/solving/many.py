@@ -12,7 +12,7 @@ import numpy as np
 import pinocchio
 from numpy.typing import ArrayLike, NDArray
 
-from ..checks import as_many, as_numbers, as_points, as_rotations, as_se3
+from ..checks import as_count, as_many, as_numbers, as_points, as_rotations, as_se3
 from ..errors import InputError
 from ..model.robot_model import RobotModel
 from ..problem.reach import shortfall
@@ -22,7 +22,7 @@ from .at_once import attempt_at_once, lands_at_once
 from .attempts import Outcome
 from .native.answers import Answers, attempt_many
 from .native.codec import goals_of, targets_of
-from .options import Options, as_count
+from .options import Options
 from .prepared import Prepared, is_nearest
 from .solution import Solution
 from .state import Status

@@ -11,14 +11,14 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ..checks import as_finite_number, as_names
+from ..checks import as_count, as_names, as_positive_number
 from ..errors import InputError, UnknownNameError
 from ..problem.targets import Tolerance
 from ..solvers.base import Solver
 from ..solvers.damped_least_squares import DampedLeastSquares
 from ..solvers.registry import Method, make_solver
 
-__all__ = ["ENGINES", "OPTION_NAMES", "Options", "as_count", "as_truth"]
+__all__ = ["ENGINES", "OPTION_NAMES", "Options"]
 
 ENGINES = ("auto", "python", "native")
 
@@ -26,17 +26,10 @@ ENGINES = ("auto", "python", "native")
 _TO_THE_END_AT_MOST = 5000
 
 
-def as_count(value: object, what: str, least: int = 1) -> int:
-    """`value` as a whole number of at least `least`; InputError for anything else."""
-    if isinstance(value, bool) or not isinstance(value, (int, np.integer)) or value < least:
-        raise InputError(f"{what} must be a whole number of at least {least}; got {value!r}")
-    return int(value)
-
-
-def as_truth(value: object, what: str) -> bool:
+def _truth(value: object, what: str) -> bool:
     """`value` as a truth value; InputError for anything else."""
     if not isinstance(value, (bool, np.bool_)):
-        raise InputError(f"{what} must be True or False; got {value!r}")
+        raise InputError(f"must be True or False; got {value!r}", argument=what)
     return bool(value)
 
 
@@ -57,10 +50,7 @@ def _tolerance(value: Tolerance | ArrayLike | None, what: str) -> Tolerance:
 
 
 def _seconds(value: float | None, what: str) -> float:
-    seconds = math.inf if value is None or value == math.inf else as_finite_number(value, what)
-    if seconds <= 0.0:
-        raise InputError(f"{what} must be a positive number of seconds; got {value!r}")
-    return seconds
+    return math.inf if value is None or value == math.inf else as_positive_number(value, what, "seconds")
 
 
 def _engine(value: str, what: str) -> str:
@@ -91,7 +81,7 @@ class Options:
     """
 
     method: Solver = field(default=DampedLeastSquares(), metadata={"check": lambda value, what: make_solver(value)})
-    limits: bool = field(default=True, metadata={"check": as_truth})
+    limits: bool = field(default=True, metadata={"check": _truth})
     locked: tuple[str, ...] = field(default=(), metadata={"check": _names})
     restarts: int | None = field(default=None, metadata={"check": _count_or_none(0)})
     seed: int = field(default=0, metadata={"check": _count})
@@ -99,7 +89,7 @@ class Options:
     tolerance: Tolerance = field(default=Tolerance(), metadata={"check": _tolerance})
     time_limit: float = field(default=math.inf, metadata={"check": _seconds})
     engine: str = field(default="auto", metadata={"check": _engine})
-    trace: bool = field(default=False, metadata={"check": as_truth})
+    trace: bool = field(default=False, metadata={"check": _truth})
 
     def __post_init__(self) -> None:
         """Check every option."""

@@ -1,1 +1,1 @@
-"""The seeds' results, computed anew: what their tables say, and what this machine says."""
+"""The tables and figures of the thesis and of Welman, computed again with pinik."""

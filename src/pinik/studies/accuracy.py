@@ -1,4 +1,4 @@
-"""Welman's figs. 4.4 and 4.5: what each digit of accuracy costs, well within reach and at its edge."""
+"""Welman's figs. 4.4 and 4.5: what each digit of accuracy costs, well within reach and at the edge of reach."""
 
 from __future__ import annotations
 
@@ -26,20 +26,20 @@ NEAR, EDGE = "near", "edge"
 CASES = (NEAR, EDGE)
 
 _MOST_ITERATIONS = 1_000_000
-_SLOW = 0.2  # seconds: what takes longer is solved once
-_HALFWAY = 0.5  # of the chain's length: where a near target lies
-_FIRST_BEND = 0.3  # of each joint [rad], in the problem that pictures show
-_FIRST_DIRECTION = 0.5  # of its target, seen from the base [rad]
-_BENDS = 0.6  # the largest in the others [rad]
+_SLOW = 0.2  # seconds: problems that take longer are solved only once
+_HALFWAY = 0.5  # of the chain's length: the distance of a near target
+_FIRST_BEND = 0.3  # of each joint [rad], in the first problem, which the pictures show
+_FIRST_DIRECTION = 0.5  # of the first target, seen from the base [rad]
+_BENDS = 0.6  # the largest bend in the other problems [rad]
 
 
 class Problem(NamedTuple):
-    """A position asked of the chain's tip.
+    """A target position for the tip of the chain.
 
     Attributes:
-        case: "near", well within reach, or "edge"; "drag", from where the tip is to a place beside it.
-        start: Configuration (nq,).
-        place: Where the tip should be (3,) [m].
+        case: "near", well within reach, or "edge"; or "drag", a place next to the tip.
+        start: The start configuration (nq,).
+        place: The target position (3,) [m].
     """
 
     case: str
@@ -48,14 +48,14 @@ class Problem(NamedTuple):
 
 
 class Cost(NamedTuple):
-    """What a method spent on a number of digits; medians over the problems that it solved, None where it solved none.
+    """The cost of a number of digits by one method: medians over the solved problems; None if it solved none.
 
     Attributes:
         case: "near" or "edge".
         method: The solver's short name.
-        digits: d, for a tip within 10⁻ᵈ of the chain's length.
-        engine: Which one computed.
-        solved: Share of the problems, from 0 to 1.
+        digits: d, for a tolerance of 10⁻ᵈ of the chain's length.
+        engine: The engine used.
+        solved: The share of solved problems, from 0 to 1.
         time: Seconds.
         iterations: Iterations; sweeps for CCD.
         joint_updates: Single joints updated, for CCD.
@@ -76,18 +76,18 @@ class Cost(NamedTuple):
 def problems(chain: Robot, case: str, count: int, *, edge: float = 0.999, seed: int = 0) -> list[Problem]:
     """Problems on a planar chain.
 
-    The first, which pictures show, starts from a gentle arc; the others start from random bends and ask for random
-    directions.
+    The first, which the pictures show, starts from a gentle arc. The others start from random bends and have targets in
+    random directions.
 
     Args:
         chain: From `planar_chain`.
-        case: "near": half the chain's length away from its base; "edge": the part `edge` of it.
-        count: How many.
+        case: "near" for targets at half the chain's length from its base, "edge" for targets at the part `edge` of it.
+        count: Number of problems.
         edge: From 0 to 1.
-        seed: Of the random ones.
+        seed: The seed of the random problems.
     """
     if not 0.0 < edge <= 1.0:
-        raise InputError(f"the edge is a part of the chain's reach, above 0 and at most 1; got {edge!r}")
+        raise InputError(f"must be above 0 and at most 1, a part of the chain's length; got {edge!r}", argument="edge")
     rng = np.random.default_rng([seed, CASES.index(case)])
     away = length_of(chain) * (_HALFWAY if case == NEAR else edge)
     made = []
@@ -100,7 +100,7 @@ def problems(chain: Robot, case: str, count: int, *, edge: float = 0.999, seed: 
 
 
 def random_bends(chain: Robot, rng: np.random.Generator) -> Array:
-    """A configuration (nq,) with every joint bent a little, either way."""
+    """A random configuration (nq,) with small bends in both directions."""
     return np.asarray(rng.uniform(-_BENDS, _BENDS, chain.model.nq))
 
 
@@ -112,13 +112,13 @@ def asked_of(
     max_iterations: int = _MOST_ITERATIONS,
     engine: str = "auto",
 ) -> Prepared:
-    """The bare method on the chain's tip: no restarts, no limits, as many iterations as it gets on with.
+    """The bare method for positions of the chain's tip: no restarts, no limits, iterations until it stalls.
 
     Args:
         chain: From `planar_chain`.
         solver: The method.
-        tolerance: What counts as reached [m].
-        max_iterations: Iterations at most.
+        tolerance: The largest error that counts as reached [m].
+        max_iterations: The most iterations.
         engine: As for `pinik.solve`.
     """
     return prepare(
@@ -143,16 +143,16 @@ def accuracy(
     engine: str = "auto",
     progress: Callable[[], None] = lambda: None,
 ) -> Iterator[Cost]:
-    """What every method spends on every number of digits.
+    """Measure the cost of every number of digits by every method.
 
     Args:
         chain: From `planar_chain`.
         solvers: Short name → method.
         asked: Case → problems.
-        digits: Numbers of digits.
-        repeats: Times that each is solved, slow ones once; the quickest counts.
+        digits: The numbers of digits.
+        repeats: How often each problem is solved; the fastest time counts. Slow problems are solved only once.
         engine: As for `pinik.solve`.
-        progress: Called for each cost.
+        progress: Called once for each cost.
     """
     scale = length_of(chain)
     for case, own in asked.items():
@@ -161,7 +161,7 @@ def accuracy(
                 number: asked_of(chain, solver, tolerance=scale * 10.0**-number, engine=engine) for number in digits
             }
             runs: dict[int, list[list[Solution]]] = {number: [[] for _ in own] for number in solves}
-            for repeat in range(repeats):  # all numbers in turn: a slow moment must not fall on one of them alone
+            for repeat in range(repeats):  # in turn, so that a slow moment of the machine affects all numbers of digits
                 for number, solve in solves.items():
                     for problem, done in zip(own, runs[number], strict=True):
                         if repeat == 0 or done[0].time < _SLOW:

@@ -1,4 +1,4 @@
-"""The thesis's program as its pseudo-code stands: a chain of ball joints, each turned about one axis a step."""
+"""The thesis's program, after its pseudo-code: a chain of ball joints, each turned about one axis per step."""
 
 from __future__ import annotations
 
@@ -10,28 +10,30 @@ import numpy as np
 import pinocchio
 from numpy.typing import NDArray
 
-from ..errors import InputError
+from ..errors import InputError, UnknownNameError
 from ..robot import Robot
-from ..solvers.registry import SOLVERS
-from .steps import PROGRAM, Step
+from ..motion.figures import StepFigures
+from .steps import PROGRAM
 
-__all__ = ["BallChain", "ProgramChase"]
+__all__ = ["METHODS", "BallChain", "ProgramChase"]
 
 Array = NDArray[np.float64]
 
+METHODS = ("ccd", "jt", "pinv", "dls")
+"""The four methods of the thesis, by their short names in pinik."""
 
 _NO_AXIS = 1e-12
 
 
 class BallChain:
-    """Bones end to end, each turned freely in its parent; at zero all stand along z.
+    """Bones end to end, each connected to its parent by a ball joint; at zero all of them point along z.
 
     Attributes:
         R: Each bone's orientation in its parent (n, 3, 3).
     """
 
     def __init__(self, base: Array, lengths: Array, swing: float = math.inf) -> None:
-        """A bone may lean from its parent by `swing` about its y, then about its x [rad]; it spins freely."""
+        """A bone may lean from its parent by up to `swing` about y, then about x [rad]; its spin is free."""
         self._base = base
         self._lengths = lengths
         self._swing = swing
@@ -39,10 +41,10 @@ class BallChain:
 
     @classmethod
     def of(cls, robot: Robot, frame: str, q: Array, unit: float = 1.0, swing: float = math.inf) -> BallChain:
-        """A robot's chain at `q` (nq,) with two hinges to a bone, as pinik's arm, in units of `unit` [m].
+        """The chain of a robot at `q` (nq,) with two hinges per bone, such as pinik's arm, in units of `unit` [m].
 
         Raises:
-            InputError: The chain is another.
+            InputError: The robot's chain is built differently.
         """
         model, neutral = robot.model, robot.neutral()
         data = model.createData()
@@ -53,20 +55,24 @@ class BallChain:
         hinges = [joints[id_].kind == "revolute" for id_ in chain]
         paired = all(np.allclose(a, b) for a, b in zip(points[::2], points[1::2], strict=False))
         if not chain or len(chain) % 2 or not all(hinges) or not paired:
-            raise InputError(f"the thesis's bones are two hinges about one point each; {robot.name}'s chain is another")
+            raise InputError(
+                f"the thesis's program needs bones of two hinges about one point each; {robot.name} has other joints"
+            )
         ends = np.array([*points[::2], robot.placement(frame, neutral).translation]) / unit
         lengths = np.linalg.norm(np.diff(ends, axis=0), axis=1)
         axes = np.array([data.oMi[id_].rotation @ np.array(joints[id_].axis) for id_ in chain])
         standing = np.allclose(np.diff(ends, axis=0), lengths[:, None] * (0.0, 0.0, 1.0))
         if not standing or not np.allclose(axes, np.tile(np.eye(3)[[1, 0]], (len(lengths), 1))):
-            raise InputError(f"the thesis's bones stand straight up at zero, as the arm's do; {robot.name}'s do not")
+            raise InputError(
+                f"the thesis's program needs bones that point straight up at zero; those of {robot.name} do not"
+            )
         made = cls(ends[0], lengths, swing)
         angles = np.array([joints[id_].angle(q) for id_ in chain]).reshape(-1, 2)
         made.R = np.array([_about(1, first) @ _about(0, second) for first, second in angles])
         return made
 
     def points(self) -> tuple[Array, Array]:
-        """(where the bones begin and the last one ends (n + 1, 3), the bones' parents' orientations (n, 3, 3))."""
+        """(the starts of the bones and the last one's end (n + 1, 3), the orientations of their parents (n, 3, 3))."""
         p, R = self._base, np.eye(3)
         points, parents = [p], []
         for turned, length in zip(self.R, self._lengths, strict=True):
@@ -77,13 +83,13 @@ class BallChain:
         return np.array(points), np.array(parents)
 
     def turn(self, bone: int, parent: Array, rotation: Array) -> None:
-        """Turn a bone, and all behind it, by a world rotation vector (3,) [rad]; `parent` is its parent's R."""
+        """Turn a bone and all bones after it by a world rotation vector (3,) [rad]; `parent` is its parent's R."""
         turned = parent.T @ pinocchio.exp3(rotation) @ parent @ self.R[bone]
         turned = np.asarray(pinocchio.Quaternion(turned).normalized().toRotationMatrix())
         self.R[bone] = self._leaning_less(turned) if math.isfinite(self._swing) else turned
 
     def leaning(self) -> Array:
-        """How far each bone leans about its y, then about its x (n, 2) [rad]."""
+        """The lean of each bone about y, then about x (n, 2) [rad]."""
         return np.array([_lean(R) for R in self.R])
 
     def _leaning_less(self, R: Array) -> Array:
@@ -104,12 +110,12 @@ def _about(axis: int, angle: float) -> Array:
 
 
 class ProgramChase:
-    """One of the thesis's methods at work on a chain of balls: the loop of its §4, with two printed slips mended.
+    """A chase by one of the thesis's methods on a chain of ball joints: the loop of its §4, with two errors corrected.
 
-    The loop goes on while the ball is too far off *and* attempts are left, and acts then; printed are "or" and the
-    opposite comparison. Where the ball is reached already nothing acts, and its counter still ends at one. A Jacobian's
-    column is axis × (s − p) with the axis (s − p) × (t − p), and α scales every angle after the clamp. All in the
-    thesis's units, of which `unit` says how long they are [m].
+    The loop continues while the ball is too far away *and* attempts are left; the thesis prints "or" and the opposite
+    comparison. If the ball is already reached, no joint moves, but the thesis's counter still ends at one. A column of
+    the Jacobian is axis × (s − p) with the axis (s − p) × (t − p), and α scales every angle after the clamp. Lengths
+    are in the thesis's units, each `unit` metres long.
     """
 
     engine = PROGRAM
@@ -128,27 +134,27 @@ class ProgramChase:
         unit_axes: bool = True,
         clock: Callable[[], float] = time.perf_counter,
     ) -> None:
-        """With `unit_axes` the axes have length one; printed is the bare cross product."""
-        if method not in SOLVERS:
-            raise InputError(f"the thesis has the methods {', '.join(SOLVERS)}; got {method!r}")
+        """With `unit_axes` the axes have length one; the thesis prints the plain cross product."""
+        if method not in METHODS:
+            raise UnknownNameError("method of the thesis", method, METHODS)
         self._method, self._chain, self._unit = method, chain, unit
         self._tolerance, self._most = tolerance, max_iterations
         self._alpha, self._damping, self._max_angle = alpha, damping, max_angle
         self._unit_axes = unit_axes
         self._clock = clock
 
-    def step(self, place: Array) -> Step:
-        """Chase the ball to a place (3,) [m]; `joint_updates` are bones turned by CCD."""
+    def step(self, place: Array) -> StepFigures:
+        """Chase the ball to a place (3,) [m]; `joint_updates` counts the bones that CCD turned."""
         goal = place / self._unit
         before, began = self._chain.R.copy(), self._clock()
         passes, turns = self._cycle(goal) if self._method == "ccd" else (self._iterate(goal), 0)
         spent = self._clock() - began
         error = float(np.linalg.norm(goal - self._chain.points()[0][-1]))
         turned = [np.linalg.norm(pinocchio.log3(a.T @ b)) for a, b in zip(before, self._chain.R, strict=True)]
-        return Step(spent, passes, turns, error < self._tolerance, error * self._unit, float(max(turned)))
+        return StepFigures(spent, passes, turns, error < self._tolerance, error * self._unit, float(max(turned)))
 
     def _cycle(self, goal: Array) -> tuple[int, int]:
-        """CCD: (sweeps begun, bones turned)."""
+        """CCD; returns (sweeps begun, bones turned)."""
         count, turns = len(self._chain.R), 0
         while turns < self._most * count:
             points, parents = self._chain.points()
@@ -164,7 +170,7 @@ class ProgramChase:
         return -(-turns // count), turns
 
     def _iterate(self, goal: Array) -> int:
-        """The Jacobian methods: iterations."""
+        """The Jacobian methods; returns the number of iterations."""
         for iteration in range(self._most):
             points, parents = self._chain.points()
             e = goal - points[-1]
@@ -181,7 +187,7 @@ class ProgramChase:
         return self._most
 
     def _angles(self, J: Array, e: Array) -> Array:
-        """The bones' turns (n,) before α, for J (3, n) and e (3,)."""
+        """The angles of the bones (n,) before α, for J (3, n) and e (3,)."""
         if self._method == "jt":
             return np.asarray(J.T @ e)
         if self._method == "pinv":
@@ -191,6 +197,6 @@ class ProgramChase:
 
 
 def _within_a_turn(rotation: Array) -> Array:
-    """The same rotation by at most half a turn: a pseudo-inverse near singularities asks for millions of turns."""
+    """The same rotation with an angle of at most π: near singularities the pseudo-inverse gives millions of turns."""
     angle = float(np.linalg.norm(rotation))
     return rotation if angle <= math.pi else rotation * (math.remainder(angle, 2.0 * math.pi) / angle)

@@ -1,4 +1,4 @@
-"""A chain of hinges in a plane, as Welman's figures have: any number of equal links, no limits."""
+"""The planar chain of Welman's figures: hinges and equal links, without limits."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from ..robot import Robot
 __all__ = ["TIP", "length_of", "planar_chain"]
 
 TIP = "tip"
-"""The frame at the chain's end."""
+"""The frame at the end of the chain."""
 
 _JOINT = """
   <joint name="joint{number}" type="revolute">
@@ -32,11 +32,11 @@ _LINK = """
 
 
 def planar_chain(joints: int = 7, length: float = 1.0) -> Robot:
-    """Links end to end in the world's x-y plane, along x at zero; each turns about z, named joint1 to jointN.
+    """Links end to end in the world's x-y plane, along x at zero; joint1 to jointN turn about z.
 
     Args:
-        joints: How many hinges, and links.
-        length: Of all links together [m].
+        joints: The number of hinges and links.
+        length: The length of all links together [m].
     """
     bone = length / joints
     sizes = {"bone": bone, "middle": bone / 2, "radius": bone / 12, "knob": bone / 8}
@@ -62,5 +62,5 @@ def planar_chain(joints: int = 7, length: float = 1.0) -> Robot:
 
 
 def length_of(chain: Robot) -> float:
-    """Of all its links together [m]."""
+    """The length of all links together [m]."""
     return float(chain.placement(TIP, chain.neutral()).translation[0])

@@ -1,4 +1,4 @@
-"""Methods side by side in the thesis's four comparisons: a ball on a curve or at random, limits off or on."""
+"""The four comparisons of the thesis: a ball on a curve or at random places, with limits off or on."""
 
 from __future__ import annotations
 
@@ -10,27 +10,28 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..model.home import home_configuration
-from ..motion.tracks import lay_track, random_configuration
 from ..robot import Robot
-from .steps import LAP, PROGRAM, Chase, Rules, Step, in_pieces
+from ..motion.figures import StepFigures
+from ..motion.tracks import lay_track, random_configuration
+from .steps import LAP, PROGRAM, Chase, Rules, in_pieces
 
 __all__ = ["COMPARISONS", "CURVE", "LAP", "Comparison", "Row", "bones", "chain_length", "compare", "places"]
 
 Array = NDArray[np.float64]
 
 CURVE = "eight"
-"""The curve of comparisons 1 and 3; the thesis does not describe its own."""
-_HOME_PHASE = 0.25  # where the eight crosses itself, in the frame's home
-_BOX_OF = 1000  # reachable places that the box is laid about
+"""The curve of comparisons 1 and 3; the thesis does not describe its own curve."""
+_HOME_PHASE = 0.25  # where the eight crosses itself, at the frame's home position
+_BOX_OF = 1000  # number of reachable places that the box encloses
 
 
 class Comparison(NamedTuple):
     """One comparison.
 
     Attributes:
-        name: The thesis's number, and "2b", "4b" for random places of which some lie out of reach.
-        motion: "curve", "random" (reachable places) or "box" (any place in the box about them).
-        limits: Whether joint limits hold.
+        name: The number in the thesis; "2b" and "4b" for random places of which some are out of reach.
+        motion: "curve", "random" (reachable places) or "box" (any place in the box around them).
+        limits: Whether joint limits apply.
     """
 
     name: str
@@ -49,22 +50,22 @@ COMPARISONS = (
 
 
 class Row(NamedTuple):
-    """What one method did in one comparison; means are over the steps.
+    """The results of one method in one comparison, as means over the steps.
 
     Attributes:
         comparison: The comparison.
         method: The solver's short name.
-        engine: Which one computed.
-        steps: How many.
-        time: Seconds a step.
-        iterations: Iterations a step; sweeps for CCD.
-        joint_updates: Single joints updated a step, for CCD.
-        counted: Iterations a step as the thesis counts: bones tried by CCD, steps of the others, one a step at least.
-        efficiency: Share of the steps that ended with the ball reached, from 0 to 1.
-        error: Metres left at a step's end.
-        largest_error: The largest of them.
-        jump: A step's largest change of one joint [rad or m].
-        largest_jump: The largest of them.
+        engine: The engine used.
+        steps: Number of steps.
+        time: Seconds per step.
+        iterations: Iterations per step; sweeps for CCD.
+        joint_updates: Single joints updated per step, for methods that sweep.
+        counted: Iterations per step as the thesis counts them, at least one: turned bones for methods that sweep.
+        efficiency: The share of steps that reached the ball, from 0 to 1.
+        error: The position error at the end of a step [m].
+        largest_error: The largest of these errors [m].
+        jump: The largest change of one joint in a step [rad or m].
+        largest_jump: The largest of these changes.
     """
 
     comparison: Comparison
@@ -83,7 +84,7 @@ class Row(NamedTuple):
 
 
 def bones(robot: Robot, frame: str) -> tuple[int, int]:
-    """(bones, joints) of the chain that moves a frame; joints about one point are one bone."""
+    """(bones, joints) of the chain that moves a frame; joints at the same point form one bone."""
     model = robot.model
     chain = [joint for joint in model.supports[model.frames[robot.frame_id(frame)].parentJoint] if joint > 0]
     apart = [joint for joint in chain[1:] if np.linalg.norm(model.jointPlacements[joint].translation) > 1e-9]
@@ -91,7 +92,7 @@ def bones(robot: Robot, frame: str) -> tuple[int, int]:
 
 
 def chain_length(robot: Robot, frame: str) -> float:
-    """From the first joint that moves a frame, joint by joint, to the frame [m]."""
+    """The length of the chain from the first joint that moves a frame, joint by joint, to the frame [m]."""
     model = robot.model
     at = model.frames[robot.frame_id(frame)]
     chain = [joint for joint in model.supports[at.parentJoint] if joint > 0]
@@ -100,7 +101,7 @@ def chain_length(robot: Robot, frame: str) -> float:
 
 
 def places(robot: Robot, frame: str, motion: str, steps: int, seed: int, lap: int = LAP) -> Array:
-    """Where the ball is at each step (steps, 3) [m], the same for the same seed; a curve takes `lap` steps."""
+    """The ball's place at each step (steps, 3) [m], repeatable by seed; a lap of the curve takes `lap` steps."""
     home = home_configuration(robot)
     if motion == "curve":
         track = lay_track(robot, frame, CURVE, robot.placement(frame, home).translation)
@@ -128,17 +129,17 @@ def compare(
     comparisons: Sequence[Comparison] = COMPARISONS,
     progress: Callable[[], None] = lambda: None,
 ) -> Iterator[Row]:
-    """Run the comparisons, one row after the other.
+    """Run the comparisons and yield one row after the other.
 
     Args:
         robot: The robot.
         frame: The frame that chases the ball.
-        methods: Their short names.
-        begin: Puts a method of that name to work in a comparison, from a configuration (nq,).
-        rules: Of them, `lap`, `rest` and `pieces` count here.
-        steps: Steps of each row.
-        seed: Of the random places.
-        comparisons: Which.
+        methods: The short names of the methods.
+        begin: Starts the chase of a method in a comparison, from a configuration (nq,).
+        rules: The rules; `lap`, `rest` and `pieces` are used here.
+        steps: Steps per row.
+        seed: The seed of the random places.
+        comparisons: The comparisons to run.
         progress: Called after every step.
     """
     home = home_configuration(robot)
@@ -165,10 +166,14 @@ def _joints_of_a_bone(robot: Robot, frame: str) -> float:
     return joints / count if count else 1.0
 
 
-def _row(comparison: Comparison, method: str, engine: str, steps: Sequence[Step], joints_of_a_bone: float) -> Row:
+def _row(
+    comparison: Comparison, method: str, engine: str, steps: Sequence[StepFigures], joints_of_a_bone: float
+) -> Row:
     updates_of_a_bone = 1.0 if engine == PROGRAM else joints_of_a_bone
+    errors = [step.error for step in steps if step.error is not None]
+    sweeps = any(step.joint_updates for step in steps)
 
-    def mean(of: Callable[[Step], float]) -> float:
+    def mean(of: Callable[[StepFigures], float]) -> float:
         return math.fsum(map(of, steps)) / len(steps)
 
     return Row(
@@ -179,12 +184,10 @@ def _row(comparison: Comparison, method: str, engine: str, steps: Sequence[Step]
         time=mean(lambda step: step.time),
         iterations=mean(lambda step: step.iterations),
         joint_updates=mean(lambda step: step.joint_updates),
-        counted=mean(
-            lambda step: max(1.0, step.joint_updates / updates_of_a_bone if method == "ccd" else step.iterations)
-        ),
+        counted=mean(lambda step: max(1.0, step.joint_updates / updates_of_a_bone if sweeps else step.iterations)),
         efficiency=mean(lambda step: step.reached),
-        error=mean(lambda step: step.error),
-        largest_error=max(step.error for step in steps),
+        error=math.fsum(errors) / len(errors),
+        largest_error=max(errors),
         jump=mean(lambda step: step.jump),
         largest_jump=max(step.jump for step in steps),
     )

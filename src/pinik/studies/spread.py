@@ -19,7 +19,7 @@ __all__ = ["FIRMEST", "Spread", "drags", "firmer_towards_the_tip", "spread"]
 Array = NDArray[np.float64]
 
 FIRMEST = 0.1
-"""The weight of the last joint; the first has 1."""
+"""The weight of the last joint; the first joint has 1."""
 
 _MOST_ITERATIONS = 10_000
 _DRAG = 0.2  # of the chain's length
@@ -27,17 +27,17 @@ _WELL_WITHIN = 0.9
 
 
 class Spread(NamedTuple):
-    """Where a method puts the motion.
+    """How a method spreads the motion over the joints.
 
-    Means are over the problems that were solved; None where there are none.
+    Means are over the solved problems; None if there are none.
 
     Attributes:
         method: The solver's short name.
-        stiffness: Joint → w_i; empty where every joint moves freely.
-        solved: Share of the problems, from 0 to 1.
-        shares: Each joint's mean share of all turns from start to end, base first (n,); they add up to 1.
-        moving_joints: Mean of 1 / Σ shares²: n where all turn alike, 1 where one does everything.
-        turned: Mean sum of all joints' turns [rad].
+        stiffness: Joint → w_i; empty without weights.
+        solved: The share of solved problems, from 0 to 1.
+        shares: Each joint's mean share of the total rotation, base first (n,); the sum is 1.
+        moving_joints: Mean of 1 / Σ shares²: n if all joints turn equally, 1 if a single joint turns.
+        turned: Mean total rotation of all joints [rad].
     """
 
     method: str
@@ -49,17 +49,17 @@ class Spread(NamedTuple):
 
 
 def firmer_towards_the_tip(chain: Robot) -> dict[str, float]:
-    """Weights in equal ratios, from 1 at the base to `FIRMEST` at the tip."""
+    """Weights that fall geometrically from 1 at the base to `FIRMEST` at the tip."""
     return dict(zip(chain.joint_names, np.geomspace(1.0, FIRMEST, len(chain.joint_names)).tolist(), strict=True))
 
 
 def drags(chain: Robot, count: int, seed: int = 0) -> list[Problem]:
-    """Problems like those of a hand that drags: from random bends the tip moves a fifth of the chain's length.
+    """Problems as in dragging by hand: from random bends, the tip moves by a fifth of the chain's length.
 
     Args:
         chain: From `planar_chain`.
-        count: How many.
-        seed: Of them.
+        count: Number of problems.
+        seed: The seed of the random problems.
     """
     rng = np.random.default_rng([seed, 2])
     length = length_of(chain)
@@ -76,7 +76,7 @@ def drags(chain: Robot, count: int, seed: int = 0) -> list[Problem]:
 def spread(
     chain: Robot, solver: Solver, asked: Sequence[Problem], stiffness: dict[str, float], engine: str = "auto"
 ) -> Spread:
-    """Solve the problems and see which joints turned.
+    """Solve the problems and measure how far each joint turned.
 
     Args:
         chain: From `planar_chain`.
@@ -85,7 +85,7 @@ def spread(
         stiffness: Joint → w_i.
         engine: As for `pinik.solve`.
     """
-    weighted = make_solver(solver, stiffness=stiffness)
+    weighted = make_solver(solver, stiffness=stiffness) if stiffness else solver
     solve = asked_of(chain, weighted, max_iterations=_MOST_ITERATIONS, engine=engine)
     turns = []
     for problem in asked:

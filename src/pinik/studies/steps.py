@@ -1,4 +1,4 @@
-"""One method that chases a ball, step after step, each from where the last one ended."""
+"""A method that chases a ball; each step starts where the last one ended."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ import math
 import time
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import NamedTuple, Protocol
+from typing import Protocol
 
 import numpy as np
 import pinocchio
@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from ..errors import EngineError
 from ..model.robot_model import RobotModel
+from ..motion.figures import StepFigures
 from ..problem.kinematics import Kinematics
 from ..problem.targets import Target, Tolerance
 from ..robot import Robot
@@ -26,31 +27,31 @@ from ..solving.run import Pace, run
 from ..solving.state import Status
 from ..solving.verdict import measure_errors
 
-__all__ = ["LAP", "PROGRAM", "BareChase", "Chase", "EngineChase", "Rules", "Step", "chase_with"]
+__all__ = ["LAP", "PROGRAM", "BareChase", "Chase", "EngineChase", "Rules", "chase_with", "in_pieces"]
 
 Array = NDArray[np.float64]
 Clock = Callable[[], float]
 
 LAP = 480
-"""Steps once round a curve: the live view's eight seconds at 60 frames a second."""
+"""Steps per lap of a curve: eight seconds at 60 frames per second, as in the live view."""
 PROGRAM = "program"
-"""The engine of a chase that is the thesis's own program, whose joints are bones."""
+"""The engine name of the thesis's own program, whose joints are bones."""
 NEVER_STALLED = Patience(10**9, 0.0)
 
 
 @dataclass(frozen=True, kw_only=True)
 class Rules:
-    """How the methods are run.
+    """The rules of a comparison, the same for all methods.
 
     Attributes:
-        tolerance: What counts as reached.
-        max_iterations: Of one step, or of one attempt where there are restarts; the solver's own number when None.
-        restarts: Fresh starts of one step; the solver's own number when None.
-        bare: Whether a step knows no stalls and ends where its last iteration did, as the thesis's program does; else
-            it ends as `pinik.solve` does, at the best configuration.
-        lap: Steps once round the curve.
-        rest: Steps that a random ball stays at a place.
-        pieces: Equal parts in which the ball moves from place to place, each of them solved.
+        tolerance: The largest errors that count as reached.
+        max_iterations: Per step, or per attempt if there are restarts; None for the solver's default.
+        restarts: Per step; None for the solver's default.
+        bare: Whether a step ignores stalls and ends at its last iteration, as in the thesis's program. Otherwise it
+            ends at the best configuration, as `pinik.solve` does.
+        lap: Steps per lap of the curve.
+        rest: Steps that a random ball stays at one place.
+        pieces: Number of equal moves into which each move of the ball is divided; each of them is solved.
     """
 
     tolerance: Tolerance
@@ -62,53 +63,33 @@ class Rules:
     pieces: int = 1
 
 
-class Step(NamedTuple):
-    """One step of one method.
-
-    Attributes:
-        time: Seconds.
-        iterations: Iterations; sweeps for CCD.
-        joint_updates: Single joints updated, for CCD.
-        reached: Whether the ball was within tolerance at the end.
-        error: How far off it was [m].
-        jump: The largest change of one joint [rad or m].
-    """
-
-    time: float
-    iterations: int
-    joint_updates: int
-    reached: bool
-    error: float
-    jump: float
-
-
 class Chase(Protocol):
-    """One method at work; it remembers where it stands."""
+    """A method that chases the ball; it keeps its configuration between steps."""
 
     engine: str
 
-    def step(self, place: Array) -> Step:
+    def step(self, place: Array) -> StepFigures:
         """Chase the ball to a place (3,) [m]."""
         ...
 
 
 class EngineChase:
-    """A step is a solve, by either engine."""
+    """A chase in which each step is a solve, by either engine."""
 
     def __init__(self, prepared: Prepared, start: Array) -> None:
-        """Begin at `start` (nq,)."""
+        """Start at the configuration `start` (nq,)."""
         self.engine = prepared.engine
         self._prepared = prepared
         self._q = start
 
-    def step(self, place: Array) -> Step:
+    def step(self, place: Array) -> StepFigures:
         """Solve from where the last step ended."""
         before = self._q
         solution = self._prepared(place, before)
         self._q = solution.q
         error = solution.position_error
         assert error is not None
-        return Step(
+        return StepFigures(
             solution.time,
             solution.iterations,
             solution.joint_updates,
@@ -119,14 +100,14 @@ class EngineChase:
 
 
 class BareChase:
-    """A step is the bare loop: it knows no stalls, no restarts and no best so far."""
+    """A chase in which each step is the bare loop: no stall detection, no restarts, no best configuration."""
 
     engine = "python"
 
     def __init__(
         self, robot: Robot, frame: str, solver: Solver, limits: bool, rules: Rules, start: Array, clock: Clock
     ) -> None:
-        """Begin at `start` (nq,)."""
+        """Start at the configuration `start` (nq,)."""
         target = Target(frame, robot.placement(frame, start).translation)
         options = Options(solver, limits=limits, tolerance=rules.tolerance, max_iterations=rules.max_iterations)
         question = Question.of(robot, target, options)
@@ -136,13 +117,13 @@ class BareChase:
         self._states = run(question, Kinematics.of(question.problem), inside, pace)
         self._state = next(self._states)  # reached: the ball begins where the frame is
 
-    def step(self, place: Array) -> Step:
-        """Iterate until the place is reached or the iterations run out; not at all where it is reached already."""
+    def step(self, place: Array) -> StepFigures:
+        """Iterate until the place is reached or the iterations run out; zero iterations if it is already reached."""
         before, began = self._state, self._clock()
         target = self._target.moved_to(place)
         (there,) = measure_errors(self._robot, (target,), before.q)
         if there.position is not None and there.within(self._tolerance):
-            return Step(self._clock() - began, 0, 0, True, there.position, 0.0)
+            return StepFigures(self._clock() - began, 0, 0, True, there.position, 0.0)
         state = self._states.send(target)
         while state.status is None:
             state = next(self._states)
@@ -150,7 +131,7 @@ class BareChase:
         self._state = state
         error = state.position_error
         assert error is not None
-        return Step(
+        return StepFigures(
             spent,
             state.iteration - before.iteration,
             state.joint_updates - before.joint_updates,
@@ -176,15 +157,15 @@ def chase_with(
     engine: str = "auto",
     clock: Clock = time.perf_counter,
 ) -> Chase:
-    """A method at work under these rules; the bare loop is Python's.
+    """A chase by a method under these rules; the bare loop always runs in Python.
 
     Raises:
         UnknownNameError, InputError: As `pinik.prepare`.
-        EngineError: As `pinik.prepare`; or the compiled engine is asked for the bare loop.
+        EngineError: As `pinik.prepare`; also if the compiled engine is requested for the bare loop.
     """
     if rules.bare:
         if engine == "native":
-            raise EngineError("the bare loop, which knows no stalls and keeps no best, is Python's alone")
+            raise EngineError("the bare loop, without stall detection, exists in the Python engine only")
         return BareChase(robot, frame, solver, limits, rules, start, clock)
     prepared = prepare(
         robot,
@@ -199,11 +180,14 @@ def chase_with(
     return EngineChase(prepared, start)
 
 
-def in_pieces(chase: Chase, place: Array, last: Array, pieces: int) -> Step:
-    """One step whose ball comes from `last` in equal pieces: sums, but the end's verdict and the largest jump."""
+def in_pieces(chase: Chase, place: Array, last: Array, pieces: int) -> StepFigures:
+    """Move the ball from `last` to `place` in equal pieces, as one step.
+
+    Times and counts are sums, `jump` is the largest, and `reached` and `error` are those of the last piece.
+    """
     steps = [chase.step(last + (place - last) * (number / pieces)) for number in range(1, pieces)]
     steps.append(chase.step(place))
-    return Step(
+    return StepFigures(
         math.fsum(step.time for step in steps),
         sum(step.iterations for step in steps),
         sum(step.joint_updates for step in steps),

@@ -20,13 +20,13 @@ _HALFWAY = 0.5
 
 
 class Pull(NamedTuple):
-    """What a method made of it.
+    """The results of one method.
 
     Attributes:
         method: The solver's short name.
-        place: Where the tip should be, as a part of the chain's length, on its line.
-        alone: The bare method from the straight arm.
-        restarted: `pinik.solve` with its defaults, which begins anew elsewhere where the method is stuck.
+        place: The target's distance from the base along the arm, as a part of its length.
+        alone: The result of the bare method, started from the straight arm.
+        restarted: The result of `pinik.solve` with its defaults, which restarts from other configurations.
     """
 
     method: str
@@ -36,10 +36,10 @@ class Pull(NamedTuple):
 
 
 def pull_inwards(chain: Robot, solvers: Mapping[str, Solver], engine: str = "auto") -> list[Pull]:
-    """Ask for a point halfway along the straight arm, and for one between its last joint and its tip.
+    """Solve for a point halfway along the straight arm, and for one between its last joint and its tip.
 
-    There Jᵀe = 0, so that three of the methods stay; CCD stays at the second point only, as every joint has the
-    tip and the target in one direction.
+    At both points Jᵀe = 0, so the three Jacobian methods do not move. CCD is stuck only at the second point, where
+    every joint sees the tip and the target in the same direction.
     """
     length, straight = length_of(chain), chain.neutral()
     last_bone = 1.0 - 0.5 / len(chain.joint_names)

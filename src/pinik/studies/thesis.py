@@ -1,4 +1,4 @@
-"""Table 4.1 of the thesis (Šimunić 2012): its figures, and its parameters by several readings."""
+"""Table 4.1 of the thesis (Šimunić 2012): its figures, and contests under its parameters or pinik's own."""
 
 from __future__ import annotations
 
@@ -20,9 +20,10 @@ from ..solvers.damped_least_squares import DampedLeastSquares
 from ..solvers.pseudo_inverse import PseudoInverse
 from ..solvers.registry import SOLVERS
 from ..solvers.transpose import JacobianTranspose
-from .ball_chain import BallChain, ProgramChase
+from .ball_chain import METHODS, BallChain, ProgramChase
 from .comparison import Comparison, Row, bones, chain_length
-from .steps import LAP, Chase, Rules, chase_with
+from .readings import PRESETS, SEGMENTS, THESIS, Reading
+from .steps import Chase, Rules, chase_with
 
 __all__ = [
     "METHODS",
@@ -38,24 +39,19 @@ __all__ = [
 
 Array = NDArray[np.float64]
 
-METHODS = tuple(SOLVERS)
-
 ITERATIONS = 100
-TOLERANCE = 0.05  # in its units, as all lengths below
-ALPHA = 0.01
+TOLERANCE = 0.05  # in the thesis's units
 DAMPING = 1.1
-MAX_ANGLE = math.pi / 16
 SWING = math.pi / 4
-SEGMENTS = 7
 
 
 class Published(NamedTuple):
     """One cell of the table.
 
     Attributes:
-        time: Seconds a step.
-        iterations: Iterations a step; bones turned for CCD.
-        efficiency: Share of the steps solved, from 0 to 1.
+        time: Seconds per step.
+        iterations: Iterations per step; turned bones for CCD.
+        efficiency: The share of solved steps, from 0 to 1.
     """
 
     time: float
@@ -77,82 +73,27 @@ TABLE: Mapping[str, Mapping[str, Published]] = {
 
 
 def published(row: Row) -> Published | None:
-    """The thesis's figures for a row's method and comparison.
+    """The thesis's figures for a row's method and comparison; None for methods that it does not have.
 
-    It does not say whether its random places can be reached, so a row in a box has those of the random one too.
+    Rows with places from a box get the figures of the random places, as the thesis does not say which of the two it
+    used.
     """
     cells = TABLE.get(row.method)
     return None if cells is None else cells[row.comparison.name.removesuffix("b")]
 
 
-@dataclass(frozen=True)
-class _Reading:
-    """One way to read the parameters.
-
-    Attributes:
-        about: What it means, in one line.
-        alpha: The factor on the steps of pseudo-inverse and DLS.
-        transpose_alpha: The transpose's factor on Jᵀe [1/units²].
-        max_angle: The clamp on a DLS step, before α [rad].
-        units: How many of its units the chain is long; None where a unit is a metre.
-        lap: Steps once round the curve.
-        rest: Steps that a random ball stays where it is.
-        program: Whether the bones are ball joints, moved by its own pseudo-code.
-        unit_axes: Whether these turn about axes of length one.
-    """
-
-    about: str
-    alpha: float = ALPHA
-    transpose_alpha: float = ALPHA
-    max_angle: float = MAX_ANGLE
-    units: float | None = SEGMENTS
-    lap: int = LAP
-    rest: int = 1
-    program: bool = False
-    unit_axes: bool = True
-
-
-_IN_DEGREES = ALPHA * 180.0 / math.pi
-_AT_60_HZ = ALPHA * 60.0
-
-_THESIS = {
-    "literal": _Reading("the stated parameters on hinges, α after the clamp in every iteration"),
-    "bones": _Reading("the same by the pseudo-code: bones are ball joints, a column each, unit axes", program=True),
-    "printed-axes": _Reading(
-        "the same with the axes as printed, cross products of any length", program=True, unit_axes=False
-    ),
-    "degrees": _Reading("α on angles in degrees that are then taken for radians: 0.573", _IN_DEGREES, _IN_DEGREES),
-    "sixty-hertz": _Reading("α counted per frame at 60 frames a second: 0.6", _AT_60_HZ, _AT_60_HZ),
-    "whole-steps": _Reading("α is the transpose's alone; pseudo-inverse and DLS take whole steps", 1.0),
-    "late-clamp": _Reading("the clamp after α instead of before it", max_angle=MAX_ANGLE / ALPHA),
-    "metres": _Reading("a unit is a metre of pinik's arm", units=None),
-    "fast-ball": _Reading("the ball is round its curve in a second instead of eight", lap=60),
-    "resting": _Reading("a random ball stays at a place for ten frames, each of which counts", rest=10),
-}
-
-_TUNED = {
-    "defaults": "pinik's defaults: restarts, 0.1 mm",
-    "no-restarts": "pinik's defaults without restarts",
-    "thesis-tolerance": "pinik's defaults with the thesis's tolerance",
-}
-
-PRESETS: Mapping[str, Mapping[str, str]] = {
-    "thesis": {name: reading.about for name, reading in _THESIS.items()},
-    "tuned": _TUNED,
-}
-"""Preset → its readings, the first the usual one → what they mean."""
-
-
 @dataclass(frozen=True, eq=False)
 class Contest:
-    """Methods with their settings, ready to be compared on one robot.
+    """Methods and rules, ready for comparisons on one robot.
 
     Attributes:
-        preset, reading: Their names.
-        unit: The length of one of the thesis's units [m].
+        preset, reading: The names of the preset and its reading.
+        robot: The robot.
+        frame: The frame that chases the ball.
+        unit: The length of one unit of the thesis [m].
         chain_length: The length of the chain that moves the frame [m].
-        bones, joints: How many move the frame.
-        rules: How the methods are run.
+        bones, joints: The numbers of bones and joints that move the frame.
+        rules: The rules for all methods.
         solvers: Short name → solver with its parameters, in metres; empty for the thesis's own program.
     """
 
@@ -167,8 +108,19 @@ class Contest:
     rules: Rules
     solvers: Mapping[str, Solver]
 
+    @property
+    def methods(self) -> tuple[str, ...]:
+        """Short names of the methods: the thesis's four, or every registered solver with the preset "tuned"."""
+        return tuple(self.solvers) or METHODS
+
     def begin(self, method: str, comparison: Comparison, start: Array, engine: str = "auto") -> Chase:
-        """Put a method to work from `start` (nq,)."""
+        """Start a chase by a method from `start` (nq,).
+
+        Raises:
+            UnknownNameError: The contest does not have this method.
+        """
+        if method not in self.methods:
+            raise UnknownNameError("method", method, self.methods)
         if self.solvers:
             return chase_with(
                 self.robot,
@@ -179,7 +131,7 @@ class Contest:
                 start=start,
                 engine=engine,
             )
-        reading = _THESIS[self.reading]
+        reading = THESIS[self.reading]
         swing = SWING if comparison.limits else math.inf
         return ProgramChase(
             method,
@@ -195,11 +147,11 @@ class Contest:
 
 
 def contest(robot: Robot, frame: str, preset: str = "thesis", reading: str | None = None, pieces: int = 1) -> Contest:
-    """The four methods by a preset and one of its readings, scaled to a robot.
+    """The methods of a preset and one of its readings, scaled to a robot.
 
     Raises:
         UnknownNameError: No such preset, reading or frame.
-        InputError: No chain that has a length moves the frame.
+        InputError: The chain that moves the frame has no length.
     """
     if preset not in PRESETS:
         raise UnknownNameError("preset", preset, PRESETS)
@@ -210,20 +162,20 @@ def contest(robot: Robot, frame: str, preset: str = "thesis", reading: str | Non
     length = chain_length(robot, frame)
     if length == 0.0:
         raise InputError(
-            f"{frame} of {robot.name} is moved by no chain of joints that has a length, so nothing can chase a ball; "
-            "name another frame"
+            f"frame {frame!r} of {robot.name} cannot chase a ball, as the chain of joints that moves it has no length; "
+            "choose another frame"
         )
-    units = _THESIS[chosen].units if preset == "thesis" else SEGMENTS
+    units = THESIS[chosen].units if preset == "thesis" else SEGMENTS
     unit = 1.0 if units is None else length / units
     if preset == "thesis":
-        rules, solvers = _by_the_thesis(_THESIS[chosen], unit)
+        rules, solvers = _by_the_thesis(THESIS[chosen], unit)
     else:
         rules, solvers = _tuned(chosen, unit)
     rules = dataclasses.replace(rules, pieces=pieces)
     return Contest(preset, chosen, robot, frame, unit, length, *bones(robot, frame), rules, solvers)
 
 
-def _by_the_thesis(reading: _Reading, unit: float) -> tuple[Rules, dict[str, Solver]]:
+def _by_the_thesis(reading: Reading, unit: float) -> tuple[Rules, dict[str, Solver]]:
     rules = Rules(tolerance=_reached_at(unit), max_iterations=ITERATIONS, bare=True, lap=reading.lap, rest=reading.rest)
     if reading.program:
         return rules, {}
@@ -254,11 +206,11 @@ def _reached_at(unit: float) -> Tolerance:
 
 
 class Mismatch(NamedTuple):
-    """How far rows lie from the table, on average over the cells.
+    """The mean difference between rows and the table.
 
     Attributes:
-        efficiency: Points of efficiency, from 0 to 100.
-        iterations: Factor of iterations, either way; 1 where they agree.
+        efficiency: In percentage points.
+        iterations: As a factor of at least 1.
     """
 
     efficiency: float
@@ -266,7 +218,7 @@ class Mismatch(NamedTuple):
 
 
 def mismatch(rows: Iterable[Row], *, box: bool = False) -> Mismatch | None:
-    """How far comparisons 1 to 4 lie from the table, or 1, 2b, 3, 4b with `box`; None without such rows."""
+    """The mean difference of comparisons 1 to 4, or of 1, 2b, 3, 4b with `box`; None without such rows."""
     points, logs = [], []
     for row in rows:
         cell = published(row)

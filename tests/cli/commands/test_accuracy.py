@@ -5,8 +5,10 @@ import sys
 import pytest
 
 from pinik.cli.reports.accuracy_plots import draw_accuracy, draw_spread, draw_straight_arm
-from pinik.cli.reports.plots import METHOD_COLORS
+from pinik.cli.reports.method_style import method_colors
+from pinik.studies.thesis import METHODS
 
+METHOD_COLORS = method_colors(METHODS)
 QUICK = ("accuracy", "--problems", 2, "--digits", 2)
 
 
@@ -61,16 +63,16 @@ def test_a_method_s_parameter_is_changed_and_the_others_are_not(run):
 @pytest.mark.parametrize(
     ("arguments", "words"),
     [
-        (("--joints", 1), "--joints is a whole number of at least 2"),
-        (("--joints", 51), "--joints is at most 50"),
-        (("--digits", 0), "--digits is a whole number of at least 1"),
-        (("--digits", 11), "--digits at most 10"),
-        (("--problems", 0), "--problems is a whole number of at least 1"),
+        (("--joints", 1), "--joints must be a whole number from 2 to 50; got 1"),
+        (("--joints", 51), "--joints must be a whole number from 2 to 50; got 51"),
+        (("--digits", 0), "--digits must be a whole number from 1 to 10; got 0"),
+        (("--digits", 11), "--digits must be a whole number from 1 to 10; got 11"),
+        (("--problems", 0), "--problems must be a whole number of at least 1"),
         (("--edge", 1.5), "above 0 and at most 1"),
-        (("--param", "alpha=1"), "--param takes METHOD.NAME=VALUE"),
-        (("--param", "jtt.alpha=1"), "near: 'jt'"),
-        (("--param", "jt.alpha"), "--param takes NAME=VALUE"),
-        (("--param", 'ccd.stiffness={"joint7": 0}'), "the command sets them"),
+        (("--param", "alpha=1"), "--param must be METHOD.NAME=VALUE"),
+        (("--param", "jtt.alpha=1"), "did you mean 'jt'"),
+        (("--param", "jt.alpha"), "--param must be NAME=VALUE"),
+        (("--param", 'ccd.stiffness={"joint7": 0}'), "--param ccd.stiffness cannot be set"),
         (("--param", "jt.lambda=1"), "no parameter of 'jt' 'lambda'"),
         (("--engine", "fast"), "no engine 'fast'"),
     ],
@@ -88,7 +90,7 @@ def test_a_picture_is_drawn_or_refused_before_anything_runs(run, option, tmp_pat
     assert result.status == 0
     assert result.out.startswith("chain7")
     assert picture.read_bytes().startswith(b"\x89PNG")
-    refused = {"none/a.png": "there is no such folder", "a.bmpx": "svg", "folder.png": "it is a folder"}
+    refused = {"none/a.png": "no such folder", "a.bmpx": "svg", "folder.png": "this is a folder"}
     (tmp_path / "folder.png").mkdir()
     for name, words in refused.items():
         result = run(*QUICK, option, tmp_path / name)
@@ -102,7 +104,7 @@ def test_a_picture_is_drawn_or_refused_before_anything_runs(run, option, tmp_pat
 def test_two_pictures_in_one_file_are_refused(run, tmp_path):
     result = run(*QUICK, "--plot", tmp_path / "a.png", "--plot-spread", tmp_path / "." / "a.png")
     assert (result.status, result.out) == (2, "")
-    assert "one file" in result.err
+    assert "each picture needs a file of its own" in result.err
 
 
 def made_answer():

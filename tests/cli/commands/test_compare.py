@@ -50,7 +50,7 @@ def test_the_table_has_a_line_for_each_row_and_says_what_it_means(run):
     lines = result.out.splitlines()
     assert sum(" dls " in line for line in lines) == 6
     assert "as printed" in lines[0]
-    assert "Off the thesis's table with 1 to 4" in result.out
+    assert "Mean difference from the thesis in 1 to 4" in result.out
     assert result.err == ""
 
 
@@ -68,14 +68,14 @@ def test_another_robot_and_frame(run):
 @pytest.mark.parametrize(
     ("arguments", "words"),
     [
-        (("--preset", "thesi"), "near: 'thesis'"),
+        (("--preset", "thesi"), "did you mean 'thesis'"),
         (("--preset", "tuned", "--reading", "literal"), "reading of preset 'tuned'"),
-        (("--frame", "tipp"), "near: 'tip'"),
-        (("--frame", "base"), "moved by no chain of joints"),
-        (("--steps", 0), "--steps is a whole number of at least 1"),
-        (("--pieces", 0), "--pieces is a whole number of at least 1"),
+        (("--frame", "tipp"), "did you mean 'tip'"),
+        (("--frame", "base"), "the chain of joints that moves it has no length"),
+        (("--steps", 0), "--steps must be a whole number of at least 1"),
+        (("--pieces", 0), "--pieces must be a whole number of at least 1"),
         (("--engine", "fast"), "engine"),
-        (("--preset", "thesis", "--engine", "native"), "which is Python"),
+        (("--preset", "thesis", "--engine", "native"), "which is in Python"),
         (("--preset", "thesis", "--reading", "bones", "--param", "jt.alpha=1"), "the thesis's own program"),
         (("--preset", "thesis", "--reading", "bones", "--robot", "panda"), "two hinges about one point"),
     ],
@@ -121,7 +121,7 @@ class TestPlot:
                 )
 
     def test_a_plot_that_cannot_be_written_is_refused_before_anything_runs(self, run, tmp_path):
-        assert "there is no such folder" in run(*QUICK, "--plot", tmp_path / "none" / "bars.png").err
+        assert "no such folder" in run(*QUICK, "--plot", tmp_path / "none" / "bars.png").err
         assert "png" in run(*QUICK, "--plot", tmp_path / "bars.bmpx").err
 
 

@@ -75,7 +75,7 @@ def test_the_table_shows_the_frames(run):
 
 def test_a_value_outside_the_limits_is_said_and_taken(run):
     result = run("fk", "arm", "--frame", "tip", "--set", "bone1_x=2", "--json")
-    assert result.err == "note: --set bone1_x=2 lies outside its limits -0.78540 … 0.78540 rad; taken as it is\n"
+    assert result.err == "note: --set bone1_x=2 is outside the limits -0.78540 … 0.78540 rad; used as given\n"
     assert result.json["angles"]["bone1_x"] == 2.0
 
 
@@ -98,12 +98,12 @@ def test_minus_zero_is_zero(run):
 @pytest.mark.parametrize(
     ("arguments", "words"),
     [
-        (("--frame", "tipp"), "near: 'tip'"),
+        (("--frame", "tipp"), "did you mean 'tip'"),
         (("--set", "bone=1"), "no joint 'bone'"),
         (("--set", "bone1_x"), "JOINT=ANGLE"),
         (("--set", "bone1_x=inf"), "finite"),
         (("--root", "free_flyer", "--set", "root_joint=1"), "floating"),
-        (("--relative-to", "tipp"), "near: 'tip'"),
+        (("--relative-to", "tipp"), "did you mean 'tip'"),
     ],
 )
 def test_wrong_input_is_status_2(run, arguments, words):

@@ -66,12 +66,15 @@ def test_frames_poses_and_versions(run):
 def test_like_warnings_are_one_line_on_stderr_and_all_in_the_json(run):
     romeo = run("info", "romeo", "--json")
     assert romeo.err.splitlines() == [
-        "warning: romeo: 12 mimic joints come before their leaders and are left free: "
-        "LFinger21, LFinger22, LFinger23, LFinger31, LFinger32, LFinger33, …"
+        "warning: romeo: joint 'LFinger21', joint 'LFinger22', joint 'LFinger23', joint 'LFinger31', "
+        "joint 'LFinger32', joint 'LFinger33' and 6 more: it mimics a joint that comes after it in Pinocchio's order "
+        "of joints; it is left free"
     ]
     assert len(romeo.json["warnings"]) == 12
     quadruped = run("info", "quadruped", "--json")
-    assert [line.split(":")[2] for line in quadruped.err.splitlines()] == [" 4 joints"]
+    assert [line.split(":")[2] for line in quadruped.err.splitlines()] == [
+        " joint 'FL_KFE', joint 'FR_KFE', joint 'BL_KFE', joint 'BR_KFE'"
+    ]
     assert len(quadruped.json["warnings"]) == 4
 
 

@@ -40,7 +40,7 @@ def test_the_table_has_a_line_for_each_column(run):
     ("arguments", "words"),
     [
         ((), "--frame"),
-        (("--frame", "tipp"), "near: 'tip'"),
+        (("--frame", "tipp"), "did you mean 'tip'"),
         (("--frame", "tip", "--axes", "global"), "local_world_aligned"),
     ],
 )

@@ -54,7 +54,7 @@ def test_the_address_is_on_stdout_and_ctrl_c_ends_it(environment):
         assert [one["method"] for one in shown["instances"]] == ["ccd", "jt", "pinv", "dls"]
         process.send_signal(signal.SIGINT)
         out, err = process.communicate(timeout=PATIENCE)
-    assert (process.returncode, out, err) == (130, "", "Ctrl-C ends the live view.\ninterrupted\n")
+    assert (process.returncode, out, err) == (130, "", "Press Ctrl-C to end the live view.\ninterrupted\n")
     with socket.socket() as listening:
         listening.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
         listening.bind(("127.0.0.1", port))
@@ -93,10 +93,10 @@ def test_a_method_of_ones_own_and_a_file(environment, tmp_path):
 @pytest.mark.parametrize(
     ("arguments", "status", "words"),
     [
-        (["armm"], 3, "no robot 'armm'; near: 'arm'"),
+        (["armm"], 3, "no robot 'armm'; did you mean 'arm'"),
         (["/nowhere/robot.urdf"], 3, "/nowhere/robot.urdf"),
         (["ur3_empty"], 3, "holds no robot, only macros"),
-        (["--methods", "ccdd"], 2, "no method 'ccdd'; near: 'ccd'"),
+        (["--methods", "ccdd"], 2, "no method 'ccdd'; did you mean 'ccd'"),
         (["--methods", ""], 2, "no method ''"),
         (["--methods", "ccd,,dls"], 2, "no method ''"),
         (["--methods", "ccd,ccd,ccd,ccd,ccd"], 2, "one to four methods; got 5"),
@@ -115,7 +115,7 @@ def test_a_method_of_ones_own_and_a_file(environment, tmp_path):
         (["--root", "ceiling"], 2, "root"),
         (["--host", "192.0.2.1"], 2, "cannot listen on 192.0.2.1"),
         (["--host", ""], 2, "host must be an address of this machine"),
-        (["--package-dir", "/nowhere"], 2, "there is no such folder"),
+        (["--package-dir", "/nowhere"], 2, "no such folder"),
         (["--colour"], 2, "pinik live --help"),
         (["arm", "lion"], 2, "pinik live --help"),
     ],
@@ -146,9 +146,9 @@ def test_the_browser_is_opened_unless_told_otherwise(run, monkeypatch):
     monkeypatch.setattr(LiveView, "open", lambda self: opened.append(self.url) or len(opened) == 1)
     result = run("live", "two_link", "--port", "0")
     assert (result.status, opened) == (0, [result.out.strip()])
-    assert result.err == "Ctrl-C ends the live view.\n"
+    assert result.err == "Press Ctrl-C to end the live view.\n"
     result = run("live", "two_link", "--port", "0")
-    assert f"There is no browser here; open {result.out.strip()} in one." in result.err
+    assert f"No browser was found; open {result.out.strip()} in one." in result.err
     run("live", "two_link", "--port", "0", "--no-browser")
     assert len(opened) == 2
 

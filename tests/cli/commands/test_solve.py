@@ -201,26 +201,29 @@ def test_a_joint_at_its_limit_is_marked(run):
 
 
 WRONG = {
-    "nothing asked for": ((*ARM,), "nothing is asked for; give --position, --rpy"),
+    "nothing asked for": ((*ARM,), "no target; give --position, --rpy"),
     "no frame": (("solve", "arm", "--position", 0, 0, 1), "--frame"),
-    "unknown frame": (("solve", "arm", "--frame", "tipp", "--position", 0, 0, 1), "no frame 'tipp'; near: 'tip'"),
+    "unknown frame": (
+        ("solve", "arm", "--frame", "tipp", "--position", 0, 0, 1),
+        "no frame 'tipp'; did you mean 'tip'",
+    ),
     "NaN": ((*ARM, "--position", "nan", 0, 1), "finite"),
-    "infinity": ((*ARM, "--position", "inf", 0, 1), "error: --position takes 3 finite numbers"),
+    "infinity": ((*ARM, "--position", "inf", 0, 1), "error: --position must be 3 finite numbers"),
     "a word": ((*ARM, "--position", "a", 0, 1), "'a' is not a number; see 'pinik solve --help'"),
     "two numbers": ((*ARM, "--position", 0, 1), "'--position' requires 3 arguments; see 'pinik solve --help'"),
     "a zero direction": ((*ARM, "--axis", "x", "--direction", 0, 0, 0), "direction"),
     "an unknown axis": ((*ARM, "--axis", "w", "--direction", 0, 0, 1), "axis"),
-    "an axis without direction": ((*ARM, "--axis", "x"), "--axis goes with --direction or --at"),
-    "a direction without axis": ((*ARM, "--direction", 0, 0, 1), "--axis goes with --direction or --at"),
+    "an axis without direction": ((*ARM, "--axis", "x"), "--axis needs --direction or --at"),
+    "a direction without axis": ((*ARM, "--direction", 0, 0, 1), "--axis needs --direction or --at"),
     "two directions": ((*ARM, "--axis", "x", "--direction", 0, 0, 1, "--at", 0, 0, 1), "--direction or --at, not both"),
     "half a seed": ((*ARM, "--position", 0, 0, 1, "--seed", "0.5"), "'0.5' is not a whole number"),
     "no such folder": (
         (*ARM, "--position", 0, 0, 1, "--package-dir", "/no/such"),
-        "--package-dir /no/such: there is no",
+        "--package-dir /no/such: no such folder",
     ),
     "two orientations": ((*ARM, "--rpy", 0, 0, 0, "--quat-xyzw", 0, 0, 0, 1), "got --rpy and --quat-xyzw"),
-    "an unknown method": ((*ARM, "--position", 0, 0, 1, "--method", "dsl"), "no method 'dsl'; near: 'dls'"),
-    "an unknown parameter": ((*ARM, "--position", 0, 0, 1, "--param", "dampin=1"), "near: 'damping'"),
+    "an unknown method": ((*ARM, "--position", 0, 0, 1, "--method", "dsl"), "no method 'dsl'; did you mean 'dls'"),
+    "an unknown parameter": ((*ARM, "--position", 0, 0, 1, "--param", "dampin=1"), "did you mean 'damping'"),
     "a parameter out of range": ((*ARM, "--position", 0, 0, 1, "--param", "damping=-1"), "damping"),
     "a parameter that is no number": ((*ARM, "--position", 0, 0, 1, "--param", "damping=nan"), "damping"),
     "a parameter without value": ((*ARM, "--position", 0, 0, 1, "--param", "damping"), "NAME=VALUE"),
@@ -236,16 +239,22 @@ WRONG = {
         "given twice",
     ),
     "a lock of no joint": ((*ARM, "--position", 0, 0, 1, "--lock", "bone"), "no joint 'bone'"),
-    "an unknown pose": ((*ARM, "--position", 0, 0, 1, "--pose", "relax"), "near: 'relaxed'"),
+    "an unknown pose": ((*ARM, "--position", 0, 0, 1, "--pose", "relax"), "did you mean 'relaxed'"),
     "an unknown root": ((*ARM, "--position", 0, 0, 1, "--root", "free"), "root"),
     "an unknown engine": ((*ARM, "--position", 0, 0, 1, "--engine", "nativ"), "no engine 'nativ'"),
     "a negative tolerance": ((*ARM, "--position", 0, 0, 1, "--tolerance", -1, 1), "tolerance"),
-    "no iterations": ((*ARM, "--position", 0, 0, 1, "--max-iterations", 0), "--max-iterations is"),
-    "negative restarts": ((*ARM, "--position", 0, 0, 1, "--restarts", -1), "--restarts is"),
-    "no time": ((*ARM, "--position", 0, 0, 1, "--time-limit", 0), "--time-limit is"),
-    "NaN seconds": ((*ARM, "--position", 0, 0, 1, "--time-limit", "nan"), "--time-limit is"),
+    "no iterations": (
+        (*ARM, "--position", 0, 0, 1, "--max-iterations", 0),
+        "--max-iterations must be a whole number of at least 1; got 0",
+    ),
+    "negative restarts": (
+        (*ARM, "--position", 0, 0, 1, "--restarts", -1),
+        "--restarts must be a whole number of at least 0; got -1",
+    ),
+    "no time": ((*ARM, "--position", 0, 0, 1, "--time-limit", 0), "--time-limit must be a positive number of seconds"),
+    "NaN seconds": ((*ARM, "--position", 0, 0, 1, "--time-limit", "nan"), "--time-limit must be a finite number"),
     "an unknown option": ((*ARM, "--postion", 0, 0, 1), "--position"),
-    "a file and a target": ((*ARM, "--targets", "-"), "--frame belongs into it"),
+    "a file and a target": ((*ARM, "--targets", "-"), "put --frame into it"),
     "no robot": (("solve",), "ROBOT"),
 }
 
@@ -261,8 +270,8 @@ def test_wrong_input_is_one_line_on_stderr_and_status_2(run, case):
 
 
 BAD_TARGETS = {
-    "a key twice": ('[{"frame": "tip", "frame": "base", "position": [0, 0, 1]}]', "the key 'frame' is there twice"),
-    "hundreds": ("[" + ", ".join(['{"frame": "tip", "position": [0, 0, 1]}'] * 101) + "]", "101 targets; at most 100"),
+    "a key twice": ('[{"frame": "tip", "frame": "base", "position": [0, 0, 1]}]', "duplicate key 'frame'"),
+    "hundreds": ("[" + ", ".join(['{"frame": "tip", "position": [0, 0, 1]}'] * 101) + "]", "at most 100 targets"),
     "a truth value": ('[{"frame": "tip", "position": [0, 0, true]}]', "target 0: target 'tip': position"),
     "no JSON": ("[", "not JSON"),
     "empty": ("", "not JSON"),
@@ -277,7 +286,7 @@ BAD_TARGETS = {
     "a word": ('[{"frame": "tip", "position": "x"}]', "target 0: target 'tip': position"),
     "an unknown frame": (
         '[{"frame": "tip", "position": [0, 0, 1]}, {"frame": "tipp", "position": [0, 0, 1]}]',
-        "target 1: frame: no frame 'tipp'; near: 'tip'",
+        "target 1: frame: no frame 'tipp'; did you mean 'tip'",
     ),
     "an unknown reference": (
         '[{"frame": "tip", "position": [0, 0, 1], "relative_to": "bas"}]',
@@ -302,13 +311,13 @@ def test_a_bad_target_is_named_by_file_index_and_key(run, tmp_path, case):
 def test_an_endless_targets_file_is_refused_in_words(run):
     result = run("solve", "arm", "--targets", "/dev/zero")
     assert (result.status, result.out) == (2, "")
-    assert result.err == "error: /dev/zero: larger than 16 MB, too large for a list of targets\n"
+    assert result.err == "error: /dev/zero: a file of targets must not be larger than 16 MB\n"
 
 
 def test_a_start_outside_the_limits_is_said_and_moved_inside(run):
     options = ("--position", 0.3, 0.1, 0.8, "--start", "bone1_x=90", "--deg")
     inside = run(*ARM, *options, "--json")
-    assert inside.err == "note: --start bone1_x=90 lies outside its limits -45.000 … 45.000 deg; moved inside\n"
+    assert inside.err == "note: --start bone1_x=90 is outside the limits -45.000 … 45.000 deg; moved to the limit\n"
     assert inside.status == 0
     assert run(*ARM, *options, "--no-limits").err == ""
 
@@ -343,9 +352,9 @@ def test_a_method_is_found_in_the_current_directory(environment, tmp_path, comma
     [
         ("return 1 / 0", "", "the solver failed: ZeroDivisionError: division by zero"),
         ("raise SystemExit(0)", "", "the solver failed: SystemExit: 0"),
-        ("return 0", "raise OSError('no\\nlicence')", "its module cannot be imported: OSError: no licence"),
-        ("return 0", "raise SystemExit(0)", "its module cannot be imported: SystemExit: 0"),
-        ("return 0 +", "", "its module cannot be imported: SyntaxError: "),
+        ("return 0", "raise OSError('no\\nlicence')", "cannot import its module: OSError: no licence"),
+        ("return 0", "raise SystemExit(0)", "cannot import its module: SystemExit: 0"),
+        ("return 0 +", "", "cannot import its module: SyntaxError: "),
     ],
 )
 def test_whatever_a_users_solver_raises_is_one_sentence(run, tmp_path, monkeypatch, body, before, words):
@@ -366,7 +375,7 @@ def test_what_nobody_foresaw_is_one_sentence_too(run, monkeypatch):
 
     monkeypatch.setattr(sys.modules["pinik.cli.commands.solve"], "solve_targets", fail)
     result = run(*ARM, "--position", 0.3, 0.1, 0.8)
-    assert result == (2, "", "error: unforeseen, please report it: ZeroDivisionError: oh no\n")
+    assert result == (2, "", "error: unexpected, please report it: ZeroDivisionError: oh no\n")
 
 
 def test_a_missing_targets_file_is_bad_input(run, tmp_path):

@@ -276,7 +276,7 @@ def test_a_value_that_is_there_already_changes_nothing(arm):
     ("call", "fault"),
     [
         (lambda s: s.set_method(0, "os:system"), "no method 'os:system'"),
-        (lambda s: s.set_method(0, "ccdd"), "near: 'ccd'"),
+        (lambda s: s.set_method(0, "ccdd"), "did you mean 'ccd'"),
         (lambda s: s.set_method(4, "ccd"), "from 0 to 3; got 4"),
         (lambda s: s.set_method(-1, "ccd"), "from 0 to 3; got -1"),
         (lambda s: s.set_method(0, "dls", damping=-1), "damping"),
@@ -291,7 +291,7 @@ def test_a_value_that_is_there_already_changes_nothing(arm):
         (lambda s: s.move_ball(0, [1, 2]), "3 finite numbers"),
         (lambda s: s.move_ball(-1, [1, 2, 3]), "from 0 to 0"),
         (lambda s: s.orient_ball(0, True, [math.nan, 0, 0]), "3 finite numbers"),
-        (lambda s: s.add_ball("tipp"), "near: 'tip'"),
+        (lambda s: s.add_ball("tipp"), "did you mean 'tip'"),
         (lambda s: s.add_ball("tip"), "has a ball already"),
         (lambda s: s.remove_ball(0), "the last ball stays"),
     ],

@@ -184,7 +184,7 @@ def test_a_busy_port_is_said_in_words(two_link):
         ({"host": ""}, "host must be an address of this machine"),
         ({"host": None}, "host must be an address of this machine"),
         ({"host": 5}, "host must be an address of this machine"),
-        ({"methods": ["ccdd"]}, "no method 'ccdd'; near: 'ccd'"),
+        ({"methods": ["ccdd"]}, "no method 'ccdd'; did you mean 'ccd'"),
         ({"methods": []}, "one to four methods; got 0"),
         ({"methods": ["ccd"] * 5}, "one to four methods; got 5"),
         ({"methods": [pinik.CCD(stiffness={"nope": 0.5})]}, "no joint 'nope'"),

@@ -266,7 +266,7 @@ def test_the_pace_is_that_of_the_clock(stage):
         ('{"type": "view", "count": 3}', "1, 2 or 4"),
         ('{"type": "robot", "name": "arm"}', "'robot' takes name, root"),
         ('{"type": "robot", "name": "arm", "root": "free_flyer", "path": "/"}', "'robot' takes name, root"),
-        ('{"type": "robot", "name": "armm", "root": "fixed"}', "near: 'arm'"),
+        ('{"type": "robot", "name": "armm", "root": "fixed"}', "did you mean 'arm'"),
         ('{"type": "robot", "name": "/etc/passwd", "root": "fixed"}', "no robot"),
         ('{"type": "robot", "name": "../../urdf/arm.urdf", "root": "fixed"}', "no robot"),
         ('{"type": "robot", "name": "arm", "root": "ceiling"}', "no root 'ceiling'"),

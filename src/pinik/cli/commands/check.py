@@ -6,7 +6,7 @@ from typing import Annotated
 
 import typer
 
-from ..inputs.loading import check_folders, one_line_a_kind
+from ..inputs.loading import check_folders, summarised
 from ..inputs.options import AsJson, PackageDirs
 from ..reports.inspection import Inspection, inspect
 from ..terminal import output
@@ -19,14 +19,16 @@ __all__ = ["check"]
 def check(
     file: Annotated[
         str,
-        typer.Argument(metavar="FILE.urdf", help="A URDF file, or a name of the catalogue.", show_default=False),
+        typer.Argument(
+            metavar="FILE.urdf", help="A URDF file, or the name of a robot in the catalogue.", show_default=False
+        ),
     ],
     package_dir: PackageDirs = None,
     as_json: AsJson = False,
 ) -> ExitStatus:
-    """Check a URDF file: its faults, what pinik had to mend, its meshes, and whether yourdfpy agrees about its links.
+    """Check a URDF file for faults, doubtful parts and missing meshes, and compare pinik's reading with yourdfpy's.
 
-    Exit status 3 says that it cannot be loaded; what yourdfpy says changes no status.
+    The exit status is 3 if the file cannot be loaded; the comparison with yourdfpy does not change it.
 
     Example:
 
@@ -46,7 +48,7 @@ def _emit(found: Inspection) -> None:
     output.emit(output.painted(f"{found.file}: {verdict}", "green" if found.loads else "red"))
     for fault in found.faults:
         output.emit("fault: " + (f"{fault.element}: " if fault.element else "") + fault.message)
-    for words in one_line_a_kind(found.warnings):
+    for words in summarised(found.warnings):
         output.emit(f"warning: {words}")
     for address in found.missing_meshes:
         output.emit(f"missing mesh: {address}")

@@ -1,4 +1,4 @@
-"""`pinik fk`: where frames are."""
+"""`pinik fk`: the positions and orientations of frames."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ import typer
 
 from ..inputs.assignments import configuration
 from ..inputs.loading import load_robot
-from ..inputs.options import AsJson, Degrees, PackageDirs, PoseName, RelativeTo, RobotSource, Root, Settings
+from ..inputs.options import AsJson, Degrees, JointAngles, PackageDirs, PoseName, RelativeTo, RobotSource, Root
 from ..reports.configuration_json import configuration_fields
 from ..terminal import output
 from ..terminal.exits import ExitStatus
@@ -23,9 +23,9 @@ def fk(
     robot: RobotSource,
     frame: Annotated[
         list[str] | None,
-        typer.Option(metavar="F", help="A frame; repeatable. All of them when none is given."),
+        typer.Option(metavar="F", help="A frame; repeatable. Default: all frames."),
     ] = None,
-    settings: Settings = None,
+    joint_angles: JointAngles = None,
     pose: PoseName = None,
     relative_to: RelativeTo = None,
     degrees: Degrees = False,
@@ -33,9 +33,9 @@ def fk(
     package_dir: PackageDirs = None,
     as_json: AsJson = False,
 ) -> ExitStatus:
-    """Show where frames are.
+    """Show the position and orientation of frames.
 
-    Positions are metres, orientations fixed-axis roll, pitch, yaw.
+    Positions are in metres; orientations are fixed-axis roll, pitch, yaw.
 
     Example:
 
@@ -43,7 +43,7 @@ def fk(
     """
     units = Units(degrees)
     machine = load_robot(robot, root=root, package_dirs=package_dir)
-    q = configuration(machine, pose, settings, "--set", units)
+    q = configuration(machine, pose, joint_angles, "--set", units)
     placements = {name: machine.placement(name, q, relative_to) for name in frame or machine.frame_names}
     if as_json:
         output.emit_json(

@@ -1,4 +1,4 @@
-"""`pinik jacobian`: how a frame moves with the joints."""
+"""`pinik jacobian`: the Jacobian of a frame."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ import typer
 from ...robot import Robot
 from ..inputs.assignments import configuration
 from ..inputs.loading import load_robot
-from ..inputs.options import AsJson, Degrees, PackageDirs, PoseName, RelativeTo, RobotSource, Root, Settings
+from ..inputs.options import AsJson, Degrees, JointAngles, PackageDirs, PoseName, RelativeTo, RobotSource, Root
 from ..reports.configuration_json import configuration_fields
 from ..terminal import output
 from ..terminal.exits import ExitStatus
@@ -25,13 +25,13 @@ _COORDINATES = {"floating": _ROWS, "planar": ("vx", "vy", "wz")}
 def jacobian(
     robot: RobotSource,
     frame: Annotated[str, typer.Option(metavar="F", help="The frame.", show_default=False)],
-    settings: Settings = None,
+    joint_angles: JointAngles = None,
     pose: PoseName = None,
     axes: Annotated[
         str,
         typer.Option(
             metavar="local_world_aligned|local|world",
-            help="Its origin with the world's axes, its own origin and axes, or the world's.",
+            help="The velocity's point and axes: the frame's origin with world axes, the frame's own, or the world's.",
         ),
     ] = "local_world_aligned",
     relative_to: RelativeTo = None,
@@ -40,16 +40,16 @@ def jacobian(
     package_dir: PackageDirs = None,
     as_json: AsJson = False,
 ) -> ExitStatus:
-    """Show a frame's Jacobian: its velocity per joint velocity, linear in metres, then angular in radians.
+    """Show the Jacobian of a frame: its linear, then its angular velocity per joint velocity, in metres and radians.
 
-    The table has a line for each of its columns.
+    Each line of the table is a column of the Jacobian.
 
     Example:
 
       pinik jacobian arm --frame tip --set bone1_x=0.3
     """
     machine = load_robot(robot, root=root, package_dirs=package_dir)
-    q = configuration(machine, pose, settings, "--set", Units(degrees))
+    q = configuration(machine, pose, joint_angles, "--set", Units(degrees))
     matrix = machine.jacobian(frame, q, axes, relative_to)
     columns = _column_names(machine)
     if as_json:
@@ -73,7 +73,7 @@ def jacobian(
 
 
 def _column_names(robot: Robot) -> list[str]:
-    """What each tangent coordinate belongs to: a joint, or one of its motions where it has several."""
+    """The name of each tangent coordinate: its joint, or JOINT.MOTION if the joint has several."""
     names = [""] * robot.model.nv
     for joint in robot.joints:
         if joint.leader is not None:

@@ -21,36 +21,42 @@ def live(
         str,
         typer.Argument(
             metavar="[ROBOT]",
-            help="A name of the catalogue ('pinik robots' lists them) or the path of a URDF file.",
+            help="The name of a robot in the catalogue ('pinik robots' lists them), or the path of a URDF file.",
             show_default="arm",
         ),
     ] = "arm",
     methods: Annotated[
         str,
-        typer.Option(metavar="A,B,…", help="One to four methods, one for each robot; module:Class finds yours."),
+        typer.Option(metavar="A,B,…", help="One to four methods, one for each robot; module:Class for your own."),
     ] = "ccd,jt,pinv,dls",
     view: Annotated[
         int | None,
-        typer.Option(metavar="1|2|4", help="How many robots are seen.", show_default="enough for the methods"),
+        typer.Option(metavar="1|2|4", help="The number of robots shown.", show_default="one for each method"),
     ] = None,
-    motion: Annotated[str, typer.Option(metavar="hand|curve|random", help="How the ball moves at first.")] = "curve",
+    motion: Annotated[
+        str, typer.Option(metavar="hand|curve|random", help="How the ball moves at the start.")
+    ] = "curve",
     root: Root = "fixed",
     port: Annotated[
         int | None,
-        typer.Option(metavar="N", help="Where to listen; 0 is any free port.", show_default="a free one from 7007"),
+        typer.Option(
+            metavar="N", help="The port to listen on; 0 for any free port.", show_default="the first free one from 7007"
+        ),
     ] = None,
     host: Annotated[
         str,
         typer.Option(
-            metavar="ADDRESS", help="The address to listen on; others than the default let other machines in."
+            metavar="ADDRESS", help="The address to listen on; any other than the default gives other machines access."
         ),
     ] = "127.0.0.1",
-    no_browser: Annotated[bool, typer.Option("--no-browser", help="Only print the address of the page.")] = False,
+    no_browser: Annotated[
+        bool, typer.Option("--no-browser", help="Print the address of the page without opening it.")
+    ] = False,
     package_dir: PackageDirs = None,
 ) -> ExitStatus:
-    """Open a page on which robots chase a ball side by side, each by its own method.
+    """Open a page on which robots chase a ball side by side, each with its own method.
 
-    Drag the ball, change everything while it runs. Ctrl-C ends it.
+    Drag the ball, and change any setting while it runs. Press Ctrl-C to end it.
 
     Examples:
 
@@ -62,8 +68,8 @@ def live(
     machine = load_robot(robot, root=root, package_dirs=package_dir)
     with open_view(machine, solvers, view=view, motion=motion, port=port, host=host) as page:
         output.emit(page.url)
-        output.say("Ctrl-C ends the live view.")
+        output.say("Press Ctrl-C to end the live view.")
         if not no_browser and not page.open():
-            output.say(f"There is no browser here; open {page.url} in one.")
+            output.say(f"No browser was found; open {page.url} in one.")
         page.wait()
     return ExitStatus.ANSWERED

@@ -1,4 +1,4 @@
-"""`pinik robots`: what can be loaded by name."""
+"""`pinik robots`: the robots that can be loaded by name."""
 
 from __future__ import annotations
 
@@ -12,9 +12,9 @@ __all__ = ["robots"]
 
 
 def robots(as_json: AsJson = False) -> ExitStatus:
-    """List the robots of the catalogue, by the names that every command takes.
+    """List the robots of the catalogue, whose names every command accepts.
 
-    One of them, ur3_empty, is a file without a robot in it, and says so when loaded.
+    The file of one of them, ur3_empty, holds no robot; loading it fails with a message that says so.
 
     Example:
 

@@ -1,1 +1,1 @@
-"""What commands are given: robots, targets, options."""
+"""What commands read: robots, targets, options."""

@@ -22,22 +22,22 @@ __all__ = ["configuration", "solver_with", "solvers_with"]
 def configuration(
     robot: Robot,
     pose: str | None,
-    settings: Iterable[str] | None,
+    assignments: Iterable[str] | None,
     option: str,
     units: Units,
-    beyond_limits: str | None = "taken as it is",
+    beyond_limits: str | None = "used as given",
 ) -> Any:
-    """The configuration (nq,) of a named pose, or neutral, with some joints set.
+    """The configuration (nq,) of a named pose, or the neutral one, with some joints set.
 
-    A value outside its joint's limits has a line on stderr.
+    A value outside the joint's limits prints a note to stderr.
 
     Args:
         robot: The robot.
         pose: The pose's name.
-        settings: "JOINT=ANGLE" texts.
-        option: The option that they came from, for errors.
-        units: In which angles were given.
-        beyond_limits: What happens to a value outside its joint's limits, in words; None where nobody cares.
+        assignments: "JOINT=ANGLE" texts.
+        option: The option that they come from, for errors.
+        units: The unit of the angles.
+        beyond_limits: What happens to a value outside the joint's limits, for the note; None for no note.
 
     Raises:
         UnknownNameError: No such pose or joint.
@@ -49,29 +49,26 @@ def configuration(
         if pose not in poses:
             raise UnknownNameError("pose", pose, poses)
         q = poses[pose].copy()
-    for name, text in _pairs(settings, option, "JOINT=ANGLE", split_at_last=True):
+    for name, text in _pairs(assignments, option, "JOINT=ANGLE", split_at_last=True):
         joint = robot.settable_joint(name)
         if not joint.has_one_axis:
-            raise CommandError(f"{option} sets joints that turn or slide about one axis; {name!r} is {joint.kind}")
+            raise CommandError(f"{option} needs a joint that turns or slides about one axis; {name!r} is {joint.kind}")
         try:
             angle = units.scalar(float(text), joint)
             robot.configuration({name: angle})  # refuses what is not finite
         except ValueError:
-            raise CommandError(f"{option} {name}: the value is a finite number; got {text!r}") from None
+            raise CommandError(f"{option} {name} must be a finite number; got {text!r}") from None
         joint.set_angle(q, angle)
         index = robot.joint_names.index(name)
         lower, upper = float(robot.lower[index]), float(robot.upper[index])
         if beyond_limits and not lower <= angle <= upper:
             low, high = units.show_limits(lower, upper, joint)
-            say(
-                f"note: {option} {name}={text} lies outside its limits {low} … {high} {units.of(joint)}; "
-                f"{beyond_limits}"
-            )
+            say(f"note: {option} {name}={text} is outside the limits {low} … {high} {units.of(joint)}; {beyond_limits}")
     return q
 
 
 def solver_with(method: str, parameters: Iterable[str] | None) -> Solver:
-    """The solver of that name with "NAME=VALUE" parameters, each JSON where it reads as such, else text.
+    """The solver of that name with "NAME=VALUE" parameters; a value that is not JSON is taken as text.
 
     Raises:
         UnknownNameError: No such method or parameter.
@@ -81,7 +78,7 @@ def solver_with(method: str, parameters: Iterable[str] | None) -> Solver:
 
 
 def solvers_with(solvers: Mapping[str, Solver], parameters: Iterable[str] | None) -> dict[str, Solver]:
-    """Several solvers, by their short names, with "METHOD.NAME=VALUE" parameters in place of their own.
+    """Several solvers, by short name, with their parameters changed by "METHOD.NAME=VALUE".
 
     Raises:
         UnknownNameError: No such method or parameter.
@@ -91,7 +88,7 @@ def solvers_with(solvers: Mapping[str, Solver], parameters: Iterable[str] | None
     for text in parameters or ():
         method, dot, rest = text.partition(".")
         if not dot or "=" in method:
-            raise CommandError(f"--param takes METHOD.NAME=VALUE; got {text!r}")
+            raise CommandError(f"--param must be METHOD.NAME=VALUE; got {text!r}")
         if method not in own:
             raise UnknownNameError("method", method, own)
         own[method].append(rest)
@@ -113,14 +110,14 @@ def _changed(solver: Solver, parameters: Iterable[str] | None) -> Solver:
 def _solver(method: str) -> Solver:
     if method in SOLVERS or ":" not in method:
         return make_solver(method)
-    if os.getcwd() not in sys.path:  # where "python -m pinik" looks as well
+    if os.getcwd() not in sys.path:  # as with "python -m pinik"
         sys.path.insert(0, os.getcwd())
     try:
         return make_solver(method)
     except PinikError:
         raise
-    except (Exception, SystemExit) as error:  # the module is the user's, and may raise whatever it likes
-        raise CommandError(f"--method {method}: its module cannot be imported: {in_words(error)}") from None
+    except (Exception, SystemExit) as error:  # the user's module may raise anything
+        raise CommandError(f"--method {method}: cannot import its module: {in_words(error)}") from None
 
 
 def _pairs(
@@ -130,7 +127,7 @@ def _pairs(
     for text in texts or ():
         name, equals, value = text.rpartition("=") if split_at_last else text.partition("=")
         if not (name and equals and value):
-            raise CommandError(f"{option} takes {form}; got {text!r}")
+            raise CommandError(f"{option} must be {form}; got {text!r}")
         if name in pairs:
             raise CommandError(f"{option} {name} is given twice")
         pairs[name] = value

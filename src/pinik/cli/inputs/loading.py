@@ -1,25 +1,26 @@
-"""Load the robot that a command is about, with its warnings on stderr."""
+"""Load the robot that a command is about, and print its warnings to stderr."""
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterable, Sequence
 from pathlib import Path
 
-from ...errors import RobotLoadError, UnknownNameError
+from ...errors import Flaw, RobotLoadError, UnknownNameError
 from ...loading import load_in_silence
 from ...robot import Robot
 from ..terminal import output
 from ..terminal.exits import CommandError, ExitStatus
 
-__all__ = ["check_folders", "load_robot", "one_line_a_kind"]
+__all__ = ["check_folders", "load_robot", "summarised"]
+
+_MOST_NAMED = 6
 
 
 def load_robot(source: str, *, root: str = "fixed", package_dirs: Sequence[Path] | None = None) -> Robot:
-    """`pinik.load`, with one line on stderr for each kind of warning.
+    """`pinik.load`, with one line on stderr for each sort of warning.
 
     Raises:
-        CommandError: The robot could not be loaded; the exit status says so. Or there is no such folder.
+        CommandError: The robot cannot be loaded (`ExitStatus.NO_ROBOT`), or a folder does not exist.
         InputError: An unknown root.
     """
     check_folders(package_dirs)
@@ -27,38 +28,31 @@ def load_robot(source: str, *, root: str = "fixed", package_dirs: Sequence[Path]
         robot = load_in_silence(source, root=root, package_dirs=package_dirs or ())
     except (RobotLoadError, UnknownNameError, OSError) as error:
         raise CommandError(str(error), ExitStatus.NO_ROBOT) from None
-    for words in one_line_a_kind(robot.warnings):
+    for words in summarised(robot.warnings):
         output.warn(f"{robot.name}: {words}")
     return robot
 
 
 def check_folders(package_dirs: Iterable[Path] | None) -> None:
-    """See that the folders of --package-dir exist.
+    """Check that the folders of --package-dir exist.
 
     Raises:
         CommandError: One does not.
     """
     for folder in package_dirs or ():
         if not folder.expanduser().is_dir():
-            raise CommandError(f"--package-dir {folder}: there is no such folder")
+            raise CommandError(f"--package-dir {folder}: no such folder")
 
 
-def one_line_a_kind(warnings: Iterable[str]) -> list[str]:
-    """Warnings "joint 'x': cause", those with like causes put together; the others as they are."""
-    kinds: dict[tuple[str, str], list[tuple[str, str]]] = {}
+def summarised(warnings: Iterable[str]) -> list[str]:
+    """The warnings without repetitions, with one line for all flaws that have the same cause."""
+    sorts: dict[str, list[str]] = {}
     for words in dict.fromkeys(warnings):
-        owner = re.match(r"(link|joint) '([^']*)': ", words)
-        cause = words[owner.end() :] if owner else words
-        kind = (owner[1], re.sub(r"'[^']*'", "…", cause)) if owner else ("", words)
-        kinds.setdefault(kind, []).append((owner[2] if owner else "", words))
-    return [_together(kind, members) for kind, members in kinds.items()]
+        sorts.setdefault(words.common if isinstance(words, Flaw) else words, []).append(words)
+    return [members[0] if len(members) == 1 else _together(common, members) for common, members in sorts.items()]
 
 
-def _together(kind: tuple[str, str], members: list[tuple[str, str]]) -> str:
-    if len(members) == 1:
-        return members[0][1]
-    owner, cause = kind
-    names = ", ".join([*(name for name, _ in members[:6]), *(["…"] if len(members) > 6 else [])])
-    if "comes after it" in cause:
-        return f"{len(members)} mimic joints come before their leaders and are left free: {names}"
-    return f"{len(members)} {owner}s: {cause}: {names}"
+def _together(common: str, flaws: Sequence[str]) -> str:
+    named = [flaw.element for flaw in flaws[:_MOST_NAMED] if isinstance(flaw, Flaw)]
+    more = f" and {len(flaws) - _MOST_NAMED} more" if len(flaws) > _MOST_NAMED else ""
+    return f"{', '.join(named)}{more}: {common}"

@@ -10,20 +10,21 @@ import typer
 __all__ = [
     "AsJson",
     "Degrees",
+    "Engine",
+    "JointAngles",
     "MethodParameters",
     "PackageDirs",
     "PoseName",
     "RelativeTo",
     "RobotSource",
     "Root",
-    "Settings",
 ]
 
 RobotSource = Annotated[
     str,
     typer.Argument(
         metavar="ROBOT",
-        help="A name of the catalogue ('pinik robots' lists them) or the path of a URDF file.",
+        help="The name of a robot in the catalogue ('pinik robots' lists them), or the path of a URDF file.",
         show_default=False,
     ),
 ]
@@ -32,38 +33,41 @@ Degrees = Annotated[
     bool,
     typer.Option(
         "--deg",
-        help="Angles in options and tables are degrees (tolerances, --param and JSON stay in radians).",
+        help="Read and print angles in degrees; tolerances, --param and JSON stay in radians.",
     ),
+]
+Engine = Annotated[
+    str, typer.Option(metavar="auto|python|native", help="The engine to use; auto takes native if it is available.")
 ]
 Root = Annotated[
     str,
-    typer.Option("--root", metavar="fixed|free_flyer|planar", help="How the root link hangs in the world."),
+    typer.Option("--root", metavar="fixed|free_flyer|planar", help="How the root link is attached to the world."),
 ]
 PackageDirs = Annotated[
     list[Path] | None,
-    typer.Option("--package-dir", metavar="DIR", help="Where package:// addresses are looked up first; repeatable."),
+    typer.Option("--package-dir", metavar="DIR", help="Search this folder first for package:// addresses; repeatable."),
 ]
 PoseName = Annotated[
     str | None,
-    typer.Option("--pose", metavar="NAME", help="Take the joints from this named pose ('pinik info' lists them)."),
+    typer.Option("--pose", metavar="NAME", help="Use the joint values of this named pose ('pinik info' lists them)."),
 ]
-Settings = Annotated[
+JointAngles = Annotated[
     list[str] | None,
     typer.Option(
         "--set",
         metavar="JOINT=ANGLE",
-        help="A joint's value (rad, or m where it slides); repeatable. The rest is 0.",
+        help="The value of a joint (rad, or m for a sliding joint); repeatable. All other joints are at 0.",
     ),
 ]
 RelativeTo = Annotated[
     str | None,
-    typer.Option("--relative-to", metavar="FRAME", help="Express it in this frame instead of the world."),
+    typer.Option("--relative-to", metavar="FRAME", help="Express the result in this frame instead of the world."),
 ]
 MethodParameters = Annotated[
     list[str] | None,
     typer.Option(
         "--param",
         metavar="METHOD.NAME=VALUE",
-        help="A parameter of one of the methods, such as jt.alpha=0.1 ('pinik solve --help' lists them); repeatable.",
+        help="Set a parameter of one method, such as jt.alpha=0.1 ('pinik solve --help' lists them); repeatable.",
     ),
 ]

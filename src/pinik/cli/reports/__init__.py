@@ -1,1 +1,1 @@
-"""What commands show: tables, texts, plots."""
+"""What commands print and draw: tables, texts, plots."""

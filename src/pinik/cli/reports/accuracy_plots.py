@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from .plots import METHOD_COLORS
+from .method_style import iteration_word, method_colors
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -25,34 +25,17 @@ def draw_accuracy(answer: Answer) -> Figure:
     """Figs. 4.4 and 4.5: the arms, iterations and time against digits of accuracy; a row for each target."""
     from matplotlib.figure import Figure
 
+    colors = method_colors(dict.fromkeys(row["method"] for row in answer["rows"]))
     figure = Figure(figsize=(12.0, 7.6), layout="constrained")
     grid = figure.subplots(2, 3, width_ratios=(1.0, 1.0, 1.0))
-    for row, example in zip(grid, answer["examples"], strict=True):
+    for (arms, iterations, times), example in zip(grid, answer["examples"], strict=True):
         case = example["case"]
-        arms, iterations, times = row
-        _draw_arm(arms, example["start"], _FAINT, width=8.0)
-        for width, (method, outline) in zip((6.5, 5.0, 3.5, 2.0), example["answers"].items(), strict=True):
-            _draw_arm(arms, outline, METHOD_COLORS[method], width)  # ever thinner, so that equal answers show
-        _draw_ball(arms, example["position"])
-        _frame_arms(arms, [example["start"], *example["answers"].values()])
+        _draw_example(arms, example, colors)
+        _draw_costs(iterations, answer["rows"], case, "iterations", 1.0, colors)
+        _draw_costs(times, answer["rows"], case, "time_s", 1e6, colors)
         arms.set_title(f"{_TITLES[case]}: start and answers", fontsize=10)
-        for panel, key, factor, what in (
-            (iterations, "iterations", 1.0, "iterations (sweeps of ccd)"),
-            (times, "time_s", 1e6, "time [µs]"),
-        ):
-            for method, color in METHOD_COLORS.items():
-                own = [
-                    (cost["digits"], factor * cost[key])
-                    for cost in answer["rows"]
-                    if (cost["case"], cost["method"]) == (case, method) and cost[key] is not None
-                ]
-                panel.plot(*np.array(own).reshape(-1, 2).T, "o-", color=color, label=method, markersize=4)
-            _scale_by_powers(panel)
-            panel.set_xlabel("digits of accuracy")
-            panel.set_xticks(sorted({cost["digits"] for cost in answer["rows"]}))
-            panel.set_title(f"{_TITLES[case]}: {what}", fontsize=10)
-            panel.grid(axis="y", color="#e3e7ec")
-            _without_box(panel)
+        iterations.set_title(f"{_TITLES[case]}: iterations (sweeps of ccd)", fontsize=10)
+        times.set_title(f"{_TITLES[case]}: time [µs]", fontsize=10)
     lines, labels = grid[0][1].get_legend_handles_labels()
     figure.legend(lines, labels, loc="outside lower center", ncols=len(labels), frameon=False)
     figure.suptitle(
@@ -62,13 +45,42 @@ def draw_accuracy(answer: Answer) -> Figure:
     return figure
 
 
+def _draw_example(panel: Axes, example: Answer, colors: Mapping[str, str]) -> None:
+    """The start and every method's answer, in ever thinner lines so that equal answers stay visible."""
+    answers = example["answers"]
+    _draw_arm(panel, example["start"], _FAINT, width=8.0)
+    for width, (method, outline) in zip(np.linspace(6.5, 2.0, len(answers)), answers.items(), strict=True):
+        _draw_arm(panel, outline, colors[method], float(width))
+    _draw_ball(panel, example["position"])
+    _frame_arms(panel, [example["start"], *answers.values()])
+
+
+def _draw_costs(
+    panel: Axes, rows: Sequence[Answer], case: str, key: str, factor: float, colors: Mapping[str, str]
+) -> None:
+    """One line for each method: `factor` times a field of its rows, against the digits."""
+    for method, color in colors.items():
+        own = [
+            (cost["digits"], factor * cost[key])
+            for cost in rows
+            if (cost["case"], cost["method"]) == (case, method) and cost[key] is not None
+        ]
+        panel.plot(*np.array(own).reshape(-1, 2).T, "o-", color=color, label=method, markersize=4)
+    _scale_by_powers(panel)
+    panel.set_xlabel("digits of accuracy")
+    panel.set_xticks(sorted({cost["digits"] for cost in rows}))
+    panel.grid(axis="y", color="#e3e7ec")
+    _without_box(panel)
+
+
 def draw_straight_arm(answer: Answer) -> Figure:
-    """Fig. 4.2: what each method alone makes of a straight arm pulled inwards, and `pinik.solve` beside it."""
+    """Fig. 4.2: what each method alone, and `pinik.solve`, do with a straight arm that is pulled inwards."""
     from matplotlib.figure import Figure
 
     places = list(dict.fromkeys(pull["place"] for pull in answer["straight"]))
-    figure = Figure(figsize=(12.0, 3.4), layout="constrained")
-    grid = figure.subplots(len(places), len(METHOD_COLORS))
+    colors = method_colors(dict.fromkeys(pull["method"] for pull in answer["straight"]))
+    figure = Figure(figsize=(3.0 * len(colors), 3.4), layout="constrained")
+    grid = figure.subplots(len(places), len(colors), squeeze=False)
     length = answer["length_m"]
     bones = np.linspace(0.0, length, answer["joints"] + 1)
     straight = np.column_stack([bones, np.zeros_like(bones)]).tolist()
@@ -78,8 +90,8 @@ def draw_straight_arm(answer: Answer) -> Figure:
         for panel, pull in zip(row, own, strict=True):
             alone, restarted = pull["alone"], pull["restarted"]
             _draw_arm(panel, straight, _FAINT, width=5.0)
-            _draw_arm(panel, restarted["outline"], METHOD_COLORS[pull["method"]], dashed=True)
-            _draw_arm(panel, alone["outline"], METHOD_COLORS[pull["method"]])
+            _draw_arm(panel, restarted["outline"], colors[pull["method"]], dashed=True)
+            _draw_arm(panel, alone["outline"], colors[pull["method"]])
             _draw_ball(panel, (place * length, 0.0))
             _frame_arms(panel, shown)
             panel.set_title(f"{pull['method']}: {_outcome(pull['method'], alone)}", fontsize=10)
@@ -92,35 +104,40 @@ def draw_straight_arm(answer: Answer) -> Figure:
 
 def _outcome(method: str, alone: Answer) -> str:
     if alone["status"] == "CONVERGED":
-        return f"there in {alone['iterations']} {'sweeps' if method == 'ccd' else 'steps'}"
+        return f"there in {alone['iterations']} {iteration_word(method)}"
     return f"stuck {alone['position_error_m']:.2g} m off"
 
 
 def draw_spread(answer: Answer) -> Figure:
-    """Each joint's share of the motion, freely and with stiffness weights."""
+    """Each joint's share of the motion, without and with stiffness weights."""
     from matplotlib.figure import Figure
 
-    figure = Figure(figsize=(12.0, 3.6), layout="constrained")
-    panels = figure.subplots(1, len(METHOD_COLORS), sharey=True)
+    colors = method_colors(dict.fromkeys(own["method"] for own in answer["spread"]))
+    figure = Figure(figsize=(3.0 * len(colors), 3.6), layout="constrained")
+    panels = figure.subplots(1, len(colors), sharey=True, squeeze=False)[0]
     numbers = np.arange(1, answer["joints"] + 1)
-    nothing = [0.0] * len(numbers)
-    for panel, (method, color) in zip(panels, METHOD_COLORS.items(), strict=True):
-        free, weighted = sorted(
-            (own for own in answer["spread"] if own["method"] == method), key=lambda own: bool(own["stiffness"])
-        )
-        title = f"{_worth(free)} → {_worth(weighted)} joints' worth"
-        panel.bar(numbers - 0.2, 100.0 * np.array(free["shares"] or nothing), 0.4, color=color, label="all alike")
-        shares = 100.0 * np.array(weighted["shares"] or nothing)
-        panel.bar(numbers + 0.2, shares, 0.4, edgecolor=color, fill=False, hatch="////", label="firmer towards the tip")
+    for panel, (method, color) in zip(panels, colors.items(), strict=True):
+        own = {bool(one["stiffness"]): one for one in answer["spread"] if one["method"] == method}
+        panel.bar(numbers - 0.2, _shares(own[False]), 0.4, color=color, label="without weights")
+        if True in own:
+            label = "stiffer towards the tip"
+            panel.bar(numbers + 0.2, _shares(own[True]), 0.4, edgecolor=color, fill=False, hatch="////", label=label)
         panel.axhline(100.0 / len(numbers), color=_INK, linewidth=0.7, linestyle=":")
-        panel.set_title(f"{method}: {title}", fontsize=10)
+        panel.set_title(f"{method}: {' → '.join(_worth(own[key]) for key in sorted(own))} joints' worth", fontsize=10)
         panel.set_xlabel("joint, base first")
         panel.set_xticks(numbers)
         _without_box(panel)
     panels[0].set_ylabel("share of the motion [%]")
     figure.legend(*panels[0].get_legend_handles_labels(), loc="outside lower center", ncols=2, frameon=False)
-    figure.suptitle(f"{answer['robot']}: who moves when the tip is dragged a fifth of the length aside (Welman, §4.3)")
+    figure.suptitle(
+        f"{answer['robot']}: which joints move when the tip is dragged aside by a fifth of the length (Welman, §4.3)"
+    )
     return figure
+
+
+def _shares(own: Answer) -> Any:
+    """Each joint's share in percent; 0 if no problem was solved."""
+    return 100.0 * np.array(own["shares"] or 0.0)
 
 
 def _worth(own: Answer) -> str:
@@ -142,7 +159,7 @@ def _draw_ball(panel: Axes, position: Sequence[float]) -> None:
 
 
 def _frame_arms(panel: Axes, outlines: Sequence[Sequence[Sequence[float]]]) -> None:
-    """Equal scales, all arms inside, no axes."""
+    """Give the panel equal scales, room for all arms, and no axes."""
     points = np.vstack([np.array(outline) for outline in outlines])
     margin = 0.08 * float(np.ptp(points, axis=0).max())
     low, high = points.min(axis=0) - margin, points.max(axis=0) + margin
@@ -153,7 +170,7 @@ def _frame_arms(panel: Axes, outlines: Sequence[Sequence[Sequence[float]]]) -> N
 
 
 def _scale_by_powers(panel: Axes) -> None:
-    """A logarithmic scale over whole powers of ten, in plain numbers."""
+    """Give the panel a logarithmic scale from one power of ten to another, labelled with plain numbers."""
     from matplotlib.ticker import FuncFormatter, NullFormatter
 
     panel.set_yscale("log")

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
-from .plots import METHOD_COLORS
+from .method_style import method_colors
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -22,20 +22,20 @@ _PANELS: tuple[tuple[str, str, Callable[[Row], float]], ...] = (
 
 
 def draw_comparison(answer: Mapping[str, Any]) -> Figure:
-    """A picture of what `pinik compare --json` prints; the thesis's own figures are the outlined bars."""
+    """Draw what `pinik compare --json` prints; outlined bars show the figures of the thesis."""
     from matplotlib.figure import Figure
 
     rows: Sequence[Row] = answer["rows"]
     names = list(dict.fromkeys(row["comparison"] for row in rows))
-    methods = list(dict.fromkeys(row["method"] for row in rows))
-    width = 0.8 / len(methods)
+    colors = method_colors(dict.fromkeys(row["method"] for row in rows))
+    width = 0.8 / len(colors)
     figure = Figure(figsize=(13.0, 4.2), layout="constrained")
     axes = figure.subplots(1, len(_PANELS))
     for panel, (key, title, of) in zip(axes, _PANELS, strict=True):
-        for number, method in enumerate(methods):
+        for number, (method, color) in enumerate(colors.items()):
             own = [row for row in rows if row["method"] == method]
-            at = [names.index(row["comparison"]) + (number - (len(methods) - 1) / 2) * width for row in own]
-            panel.bar(at, [of(row) for row in own], width, label=method, color=METHOD_COLORS[method])
+            at = [names.index(row["comparison"]) + (number - (len(colors) - 1) / 2) * width for row in own]
+            panel.bar(at, [of(row) for row in own], width, label=method, color=color)
             theirs = [_published(row, key) for row in own]
             panel.bar(at, theirs, width, fill=False, edgecolor="black", linewidth=0.7)
         panel.set_title(title)
@@ -44,10 +44,10 @@ def draw_comparison(answer: Mapping[str, Any]) -> Figure:
             panel.set_yscale("symlog", linthresh=0.001 if key == "time" else 1.0, linscale=0.2)
             panel.set_ylim(0.0, 1.4 * panel.get_ylim()[1])
     bars, labels = axes[0].get_legend_handles_labels()
-    figure.legend(bars, labels, loc="outside lower center", ncols=len(methods), fontsize=8, frameon=False)
+    figure.legend(bars, labels, loc="outside lower center", ncols=len(colors), fontsize=8, frameon=False)
     figure.suptitle(
         f"{answer['robot']}, {answer['frame']}: preset {answer['preset']}, reading {answer['reading']}, "
-        f"{answer['steps']} steps; outlined: the thesis's Table 4.1"
+        f"{answer['steps']} steps; outlined: Table 4.1 of the thesis"
     )
     return figure
 

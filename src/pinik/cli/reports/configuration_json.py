@@ -1,4 +1,4 @@
-"""A configuration in JSON, the same in every command."""
+"""A configuration as JSON fields, the same in every command."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ __all__ = ["configuration_fields"]
 
 
 def configuration_fields(robot: Robot, q: Any) -> dict[str, Any]:
-    """The fields "angles", "joint_placements" and "q"; the same as a solution's."""
+    """The fields "angles", "joint_placements" and "q"; as in a solution."""
     placements = robot.joint_placements(q)
     return {
         "angles": robot.angles(q),

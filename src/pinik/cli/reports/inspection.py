@@ -1,4 +1,4 @@
-"""Look into a URDF file: by pinik's own reader, by Pinocchio, by trimesh at its meshes, and by yourdfpy."""
+"""Inspect a URDF file with pinik's own reader, with Pinocchio, with trimesh (its meshes) and with yourdfpy."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 from ...description import packages
 from ...description import reader as urdf
-from ...errors import RobotLoadError, UnknownNameError
+from ...errors import Flaw, RobotLoadError, UnknownNameError
 from ...extras import needed_by
 from ...loading import locate
 from ...robot import Robot
@@ -27,7 +27,7 @@ class Fault:
     """Why a file cannot be loaded.
 
     Attributes:
-        element: The faulty element, such as "joint 'elbow'"; None where the whole file is at fault.
+        element: The faulty element, such as "joint 'elbow'"; None if the whole file is at fault.
         message: The cause.
     """
 
@@ -37,17 +37,17 @@ class Fault:
 
 @dataclass(frozen=True)
 class Inspection:
-    """What was found; the counts are 0 where the file cannot be loaded.
+    """The result of an inspection; the counts are 0 if the file cannot be loaded.
 
     Attributes:
         file: The file.
-        robot: The robot's name; None where the file cannot be loaded.
-        faults: Why it cannot be loaded.
-        warnings: What was mended or left out.
-        missing_meshes: Addresses of meshes that were not found.
-        mesh_faults: A sentence about each other shape that cannot be drawn.
-        links, joints, meshes, shapes: How many there are; joints that move, meshes with different addresses.
-        second_opinion: What yourdfpy says; None where the file cannot be loaded.
+        robot: The robot's name; None if the file cannot be loaded.
+        faults: Why the file cannot be loaded.
+        warnings: What pinik repaired or ignored.
+        missing_meshes: The addresses of meshes that were not found.
+        mesh_faults: A sentence about each shape that cannot be drawn for another reason.
+        links, joints, meshes, shapes: Their numbers; only joints that move, and each mesh address once.
+        second_opinion: What yourdfpy says; None if the file cannot be loaded.
     """
 
     file: str
@@ -78,7 +78,7 @@ def inspect(source: str, package_dirs: Sequence[Path]) -> Inspection:
 
     Args:
         source: A file, or the name of a robot in the catalogue.
-        package_dirs: Where packages are looked for first.
+        package_dirs: Folders that are searched first for packages.
     """
     package_dirs = tuple(folder.expanduser() for folder in package_dirs)
     try:
@@ -86,19 +86,19 @@ def inspect(source: str, package_dirs: Sequence[Path]) -> Inspection:
         description = urdf.read(path)
         robot = Robot(description, package_dirs=package_dirs)
     except RobotLoadError as error:
-        return Inspection(error.source, faults=(_fault(error),))
+        return Inspection(error.source, faults=(Fault(error.element, error.cause),))
     missing = tuple(
         address
         for address in description.meshes
         if packages.resolve(address, urdf_path=description.path, package_dirs=package_dirs) is None
     )
-    shapes, words = _shapes(robot)
+    shapes, flaws = _shapes(robot)
     return Inspection(
         file=str(path),
         robot=robot.name,
         warnings=tuple(dict.fromkeys(robot.warnings)),
         missing_meshes=missing,
-        mesh_faults=tuple(said for said in words if not any(address in said for address in missing)),
+        mesh_faults=tuple(flaw for flaw in flaws if flaw.mesh is None),
         links=len(description.links),
         joints=len(robot.joints),
         meshes=len(description.meshes),
@@ -115,26 +115,19 @@ def _path(source: str) -> Path:
     return Path(path)
 
 
-def _fault(error: RobotLoadError) -> Fault:
-    message = str(error).removeprefix(f"{error.source}: ")
-    if error.element:
-        message = message.removeprefix(f"{error.element}: ")
-    return Fault(error.element, message)
-
-
-def _shapes(robot: Robot) -> tuple[int, list[str]]:
-    """How many shapes can be drawn, and a sentence about each one that cannot."""
+def _shapes(robot: Robot) -> tuple[int, list[Flaw]]:
+    """The number of shapes that can be drawn, and a sentence about each one that cannot."""
     with needed_by("pinik check", "check"):
         from ...shapes.meshes import load_shapes
 
     with warnings.catch_warnings():
-        warnings.simplefilter("ignore")  # of the mesh readers; what cannot be read is in the sentences
+        warnings.simplefilter("ignore")  # from the mesh readers; the flaws say what cannot be read
         logging.disable()
         try:
-            shapes, words = load_shapes(robot)
+            shapes, flaws = load_shapes(robot)
         finally:
             logging.disable(logging.NOTSET)
-    return len(shapes), words
+    return len(shapes), flaws
 
 
 def _second_opinion(robot: Robot, path: Path) -> SecondOpinion:

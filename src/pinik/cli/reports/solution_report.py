@@ -1,4 +1,4 @@
-"""A solution for people: the sentence, the joints, the errors."""
+"""A solution as text: the message, the joints, the errors."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ __all__ = ["emit_solution"]
 
 
 def emit_solution(solution: Solution, units: Units) -> None:
-    """Write the whole answer to stdout."""
+    """Write a solution to stdout."""
     emit(painted(solution.message, "green" if solution.success else "red"))
     emit("")
     _emit_joints(solution, units)

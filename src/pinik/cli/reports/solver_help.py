@@ -1,32 +1,37 @@
-"""What `pinik solve --help` says about each method's parameters, made from the solvers themselves."""
+"""What `pinik solve --help` says about the methods and their parameters, made from the solvers themselves."""
 
 from __future__ import annotations
 
 import textwrap
 
-from ...solvers.parameter import Parameter, parameters_of
+from ...solvers.base import Solver, field_names
+from ...solvers.parameter import parameters_of
 from ...solvers.registry import known_methods
 
-__all__ = ["method_names", "solvers_help"]
-
-
-def method_names() -> str:
-    """Every method's short name, as an option's metavar."""
-    return "|".join(known_methods())
+__all__ = ["solvers_help"]
 
 
 def solvers_help() -> str:
-    """Every method's parameters with unit, range and default, as rich markup."""
-    lines = {name: [_line(own) for own in parameters_of(solver)] for name, solver in known_methods().items()}
-    shared = [line for line in lines["dls"] if all(line in others for others in lines.values())]
-    blocks = ["Parameters for --param, by method:"]
+    """Every registered method with its parameters, their units, ranges and defaults, as rich markup."""
+    lines = {name: _lines(solver) for name, solver in known_methods().items()}
+    first = next(iter(lines.values()))
+    shared = [line for line in first if all(line in others for others in lines.values())]
+    blocks = ["Methods, and their parameters for --param:"]
     for name, own in lines.items():
         blocks.append("\n".join([f"{name}:", *(line for line in own if line not in shared)]))
     blocks.append("\n".join(["every method:", *shared]))
     return "\n\n".join(blocks).replace("[", r"\[")
 
 
-def _line(own: Parameter) -> str:
-    facts = [own.range_in_words, f"default {own.default_in_words}"]
-    text = f"{own.name}: {own.help} ({'; '.join(filter(None, facts))})"
-    return textwrap.fill(text, 78, initial_indent="  ", subsequent_indent="      ")
+def _lines(solver: type[Solver]) -> list[str]:
+    """A line for each parameter; a field that was made without `parameter` has only its name."""
+    described = {own.name: own for own in parameters_of(solver)}
+    texts = []
+    for name in field_names(solver):
+        own = described.get(name)
+        if own is None:
+            texts.append(name)
+        else:
+            facts = "; ".join(filter(None, [own.range_in_words, f"default {own.default_in_words}"]))
+            texts.append(f"{name}: {own.help} ({facts})")
+    return [textwrap.fill(text, 78, initial_indent="  ", subsequent_indent="      ") for text in texts]

@@ -1,1 +1,1 @@
-"""What goes to the terminal, and how."""
+"""Terminal output and exit statuses."""

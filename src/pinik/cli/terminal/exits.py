@@ -1,4 +1,4 @@
-"""How a command may end."""
+"""How a command ends: exit statuses and errors."""
 
 from __future__ import annotations
 
@@ -8,12 +8,12 @@ __all__ = ["CommandError", "ExitStatus", "in_words"]
 
 
 class ExitStatus(IntEnum):
-    """The command's exit status."""
+    """The exit status of a command."""
 
     ANSWERED = 0
-    """All targets solved, or the question answered."""
+    """All targets were solved, or the question was answered."""
     MISSED = 1
-    """A target was missed; the best answer is printed all the same."""
+    """A target was missed; the best answer is still printed."""
     WRONG_USAGE = 2
     """Wrong usage or bad input."""
     NO_ROBOT = 3
@@ -22,7 +22,7 @@ class ExitStatus(IntEnum):
 
 
 class CommandError(Exception):
-    """Ends the command with one line on stderr.
+    """Ends the command with a line on stderr.
 
     Attributes:
         status: The exit status.
@@ -34,6 +34,6 @@ class CommandError(Exception):
 
 
 def in_words(error: BaseException) -> str:
-    """An unforeseen exception on one line: its class and its cause."""
+    """An unexpected exception on one line: its class and its message."""
     cause = " ".join(str(error).split())
     return f"{type(error).__name__}: {cause}" if cause else type(error).__name__

@@ -1,4 +1,4 @@
-"""Data to stdout, words to stderr; colours only where somebody looks at a terminal and wants them."""
+"""Data on stdout, messages on stderr; colours only in a terminal, and not with NO_COLOR."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ __all__ = [
 
 
 def prepare_streams() -> None:
-    """Let no character that a stream's encoding lacks stop the command."""
+    """Escape characters that a stream's encoding lacks, instead of failing."""
     for stream in (sys.stdout, sys.stderr):
         reconfigure = getattr(stream, "reconfigure", None)
         if reconfigure is not None:
@@ -36,10 +36,10 @@ def prepare_streams() -> None:
 
 
 def emit(text: str) -> None:
-    """Write data to stdout at once; where the reader has gone (`| head`), say nothing more.
+    """Write data to stdout at once; if the reader has gone (`| head`), drop it silently.
 
     Raises:
-        CommandError: The data cannot be written, for another reason.
+        CommandError: The data cannot be written for another reason.
     """
     if sys.stdout is None:
         return
@@ -50,11 +50,11 @@ def emit(text: str) -> None:
         abandon_stdout()
     except OSError as error:
         abandon_stdout()
-        raise CommandError(f"the answer cannot be written: {error.strerror}") from None
+        raise CommandError(f"cannot write the answer: {error.strerror}") from None
 
 
 def finish() -> None:
-    """Flush stdout for those who wrote to it by other ways, such as the help; a reader who has gone is no error."""
+    """Flush stdout, to which the help writes directly; a reader that has gone is not an error."""
     try:
         if sys.stdout is not None:
             sys.stdout.flush()
@@ -63,14 +63,14 @@ def finish() -> None:
 
 
 def abandon_stdout() -> None:
-    """Send what is still buffered nowhere, so that the interpreter's own last flush does not complain."""
+    """Discard what is still buffered, so that the interpreter's final flush does not fail."""
     nowhere = os.open(os.devnull, os.O_WRONLY)
     os.dup2(nowhere, sys.stdout.fileno())
     os.close(nowhere)
 
 
 def emit_json(value: Mapping[str, Any]) -> None:
-    """Write one JSON object on one line; numbers that JSON does not have become null."""
+    """Write one JSON object on one line; NaN and infinities become null."""
     plain_encoding = (getattr(sys.stdout, "encoding", None) or "").lower().replace("-", "") != "utf8"
     emit(json.dumps(_finite(value), allow_nan=False, ensure_ascii=plain_encoding))
 
@@ -86,29 +86,29 @@ def _finite(value: Any) -> Any:
 
 
 def say(words: str) -> None:
-    """Words for the person at the terminal: one line on stderr."""
+    """Print a line to stderr."""
     if sys.stderr is not None:
         print(words, file=sys.stderr, flush=True)
 
 
 def warn(words: str) -> None:
-    """A warning on stderr."""
+    """Print a warning to stderr."""
     say(f"{painted('warning:', 'yellow', sys.stderr)} {words}")
 
 
 def say_error(words: str, status: ExitStatus) -> ExitStatus:
-    """An error on stderr; gives back the status to exit with."""
+    """Print an error to stderr and return the exit status."""
     say(f"{painted('error:', 'red', sys.stderr)} {words}")
     return status
 
 
 def painted(text: str, color: str, stream: TextIO | None = None) -> str:
-    """`text` in a colour, if `stream` (stdout when None) is a terminal and NO_COLOR is not set."""
+    """`text` in a colour if `stream` (default: stdout) is a terminal and NO_COLOR is not set."""
     stream = stream or sys.stdout
     wanted = not os.environ.get("NO_COLOR") and os.environ.get("TERM") != "dumb"
     return typer.style(text, fg=color, bold=True) if wanted and is_terminal(stream) else text
 
 
 def is_terminal(stream: TextIO | None) -> bool:
-    """Whether somebody looks at it."""
+    """Whether the stream is a terminal."""
     return stream is not None and stream.isatty()

@@ -1,4 +1,4 @@
-"""A bar on stderr that fills up, for those who look at a terminal."""
+"""A progress bar on stderr, in terminals only."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ __all__ = ["progress"]
 
 @contextmanager
 def progress(words: str, total: int) -> Iterator[Callable[[], None]]:
-    """A function to call after each of `total` parts; the bar is there as long as the block, and on terminals only."""
+    """Show a bar while the block runs; call the function that it yields after each of `total` parts."""
     if not is_terminal(sys.stderr):
         yield lambda: None
         return

@@ -1,4 +1,4 @@
-"""Tables for people: rich ones in a terminal, aligned plain text everywhere else."""
+"""Tables: formatted by rich in a terminal, aligned plain text everywhere else."""
 
 from __future__ import annotations
 
@@ -21,10 +21,10 @@ def emit_table(
     """Write a table to stdout.
 
     Args:
-        titles: The columns' titles.
+        titles: The column titles.
         rows: One text for each column.
-        numeric: Titles of the columns that are aligned at the right.
-        marked: Indices of the rows that deserve attention.
+        numeric: The titles of right-aligned columns.
+        marked: The indices of the rows to highlight.
     """
     cells = [list(row) for row in rows]
     if is_terminal(sys.stdout):
@@ -34,7 +34,7 @@ def emit_table(
 
 
 def emit_names(names: Sequence[str]) -> None:
-    """Write many names: in columns in a terminal, else one a line."""
+    """Write many names: in columns in a terminal, otherwise one per line."""
     if not is_terminal(sys.stdout):
         emit("\n".join(names))
         return

@@ -6,30 +6,12 @@ from collections import deque
 from collections.abc import Callable
 from typing import NamedTuple
 
+from ...motion.figures import StepFigures
+
 __all__ = ["WINDOW", "Statistics", "StepFigures", "Summary"]
 
 WINDOW = 1000
 """Steps that count, the thesis's own number."""
-
-
-class StepFigures(NamedTuple):
-    """One simulation step of one instance.
-
-    Attributes:
-        time: Seconds that the solver took.
-        iterations: Iterations taken; sweeps for CCD.
-        joint_updates: Single joints updated, for CCD.
-        reached: Whether every target was within tolerance at the end.
-        error: The largest position error at the end [m]; None where no position was asked for.
-        jump: The largest change of one joint [rad or m].
-    """
-
-    time: float
-    iterations: int
-    joint_updates: int
-    reached: bool
-    error: float | None
-    jump: float
 
 
 class Summary(NamedTuple):

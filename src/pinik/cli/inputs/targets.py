@@ -1,0 +1,145 @@
+"""The targets of `pinik solve`: one from options, or several from a JSON file."""
+
+from __future__ import annotations
+
+import json
+import sys
+from collections.abc import Callable, Mapping
+from pathlib import Path
+from typing import Any
+
+from ...checks import as_point, as_unit_vector, as_vector
+from ...errors import PinikError
+from ...robot import Robot
+from ...problem.targets import Target
+from ..terminal.exits import CommandError
+
+__all__ = ["check_frames", "option_of", "target_from_options", "targets_from_file"]
+
+_MOST_BYTES = 16 * 1024 * 1024
+_MOST_TARGETS = 100
+_ORIENTATIONS = ("rpy", "quat_xyzw", "axis")
+_FORM = 'must be a list of targets such as [{"frame": …, "position": [x, y, z]}], or {"targets": [...]}'
+_CHECKS: Mapping[str, Callable[[Any, str], object]] = {
+    "position": as_point,
+    "rpy": lambda value, option: as_vector(value, 3, option),
+    "quat_xyzw": lambda value, option: as_vector(value, 4, option),
+    "direction": as_unit_vector,
+    "at": as_point,
+    "tool": as_point,
+}
+"""What `Target` checks as well; here the errors name the option instead of the keyword."""
+
+
+def target_from_options(frame: str | None, wanted: Mapping[str, Any]) -> Target:
+    """The target that the options describe.
+
+    Args:
+        frame: The frame to move.
+        wanted: The other keywords of `Target`; None for an option that was not given.
+
+    Raises:
+        CommandError: No frame, nothing to solve for, or options that contradict each other.
+        InputError: A value that `Target` refuses.
+    """
+    if frame is None:
+        raise CommandError("no target; give --frame F --position X Y Z, or --targets FILE.json")
+    given = {name for name, value in wanted.items() if value is not None}
+    orientations = [option_of(name) for name in _ORIENTATIONS if name in given]
+    aims = [name for name in ("direction", "at") if name in given]
+    if len(aims) == 2:
+        raise CommandError("give --direction or --at, not both")
+    if ("axis" in given) != bool(aims):
+        raise CommandError("--axis needs --direction or --at, and both of these need --axis")
+    if len(orientations) > 1:
+        raise CommandError(f"give only one orientation; got {' and '.join(orientations)}")
+    if not orientations and "position" not in given:
+        raise CommandError("no target; give --position, --rpy, --quat-xyzw, or --axis with --direction or --at")
+    for name, check in _CHECKS.items():
+        if name in given:
+            check(wanted[name], option_of(name))
+    return Target(frame, **wanted)
+
+
+def option_of(keyword: str) -> str:
+    """The option that sets a keyword of the library."""
+    return "--" + keyword.replace("_", "-")
+
+
+def targets_from_file(path: str) -> list[Target]:
+    """The targets in a JSON file; "-" is stdin.
+
+    Raises:
+        CommandError: The file is unreadable or not JSON, or `Target.from_dict` refuses a target; the message names
+            file, index and key.
+    """
+    label = _label(path)
+    try:
+        if path == "-":
+            data = sys.stdin.buffer.read(_MOST_BYTES + 1)
+        else:
+            with open(Path(path).expanduser(), "rb") as file:
+                data = file.read(_MOST_BYTES + 1)
+        if len(data) > _MOST_BYTES:
+            raise CommandError(f"{label}: a file of targets must not be larger than {_MOST_BYTES // 1024**2} MB")
+        document = json.loads(data.decode("utf-8-sig"), object_pairs_hook=_without_duplicates)
+    except OSError as error:
+        raise CommandError(f"{label}: cannot read the file: {error.strerror or error}") from None
+    except (ValueError, RecursionError) as error:
+        raise CommandError(f"{label}: not JSON: {error}") from None
+    items = _items(document, label)
+    return [_target(item, f"{label}: target {index}") for index, item in enumerate(items)]
+
+
+def check_frames(robot: Robot, targets: list[Target], path: str) -> None:
+    """Check that the robot has every frame that a file's targets name.
+
+    Raises:
+        CommandError: It does not have one of them; the message names file, index and key.
+    """
+    for index, target in enumerate(targets):
+        for key, frame in (("frame", target.frame), ("relative_to", target.relative_to)):
+            try:
+                if frame is not None:
+                    robot.frame_id(frame)
+            except PinikError as error:
+                raise CommandError(f"{_label(path)}: target {index}: {key}: {error}") from None
+
+
+def _label(path: str) -> str:
+    return "stdin" if path == "-" else path
+
+
+def _items(document: Any, label: str) -> list[Any]:
+    if isinstance(document, Mapping):
+        others = [key for key in document if key not in ("targets", "schema")]
+        if others or "targets" not in document:
+            found = ", ".join(map(repr, document)) or "no keys"
+            raise CommandError(f"{label}: {_FORM}; got an object with {found}")
+        document = document["targets"]
+    if not isinstance(document, list):
+        raise CommandError(f"{label}: {_FORM}; got {json.dumps(document)[:60]}")
+    if len(document) > _MOST_TARGETS:
+        raise CommandError(
+            f"{label}: a file must hold at most {_MOST_TARGETS} targets, as one configuration has to meet all of them; "
+            f"got {len(document):,}. To solve targets one after the other, run one command for each"
+        )
+    if not document:
+        raise CommandError(f"{label}: there are no targets")
+    return document
+
+
+def _without_duplicates(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
+    fields: dict[str, Any] = {}
+    for key, value in pairs:
+        if key in fields:
+            raise ValueError(f"duplicate key {key!r} in an object")
+        fields[key] = value
+    return fields
+
+
+def _target(item: Any, where: str) -> Target:
+    try:
+        return Target.from_dict(item)
+    except PinikError as error:
+        raise CommandError(f"{where}: {error}") from None
