@@ -61,7 +61,8 @@ def test_pinik_alone_loads_a_robot_and_solves():
         "robot = pinik.load('panda')\n"
         "solution = robot.solve('panda_hand_tcp', position=[0.4, -0.3, 0.35])\n"
         "there = robot.placement('panda_hand_tcp', solution.q).translation\n"
-        "many = pinik.solve_many(robot, 'panda_hand_tcp', [robot.placement('panda_hand_tcp', solution.q).homogeneous])\n"
+        "place = robot.placement('panda_hand_tcp', solution.q).homogeneous\n"
+        "many = pinik.solve_many(robot, 'panda_hand_tcp', [place])\n"
         "print(float(numpy.abs(there - [0.4, -0.3, 0.35]).max()), many.success.all())"
     )
     done = run_without(extra("all"), code)
