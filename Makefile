@@ -54,5 +54,7 @@ $(VENV)/installed: pyproject.toml $(engine) $(python)
 
 $(VENV)/installed-dev: pyproject.toml $(engine) $(python)
 	@echo "Installing pinik and its tools into $(VENV) (two or three minutes, as its engine is compiled)"
-	@$(pip) install --editable '.[dev]'
+	@$(pip) install $$($(python) tools/build_requirements.py)
+	@$(pip) install $$($(python) tools/build_requirements.py --with-tools)
+	@$(pip) install --no-build-isolation --editable '.[dev]'
 	@touch $(VENV)/installed $@

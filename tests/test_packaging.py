@@ -6,12 +6,14 @@ import importlib.metadata
 import json
 import os
 import re
+import shutil
 import subprocess
 import sys
 import tomllib
 from pathlib import Path
 from typing import Any
 
+import pinocchio
 import pytest
 from packaging.markers import default_environment
 from packaging.requirements import Requirement
@@ -22,6 +24,7 @@ import pinik
 ROOT = Path(__file__).parents[1]
 PROJECT: dict[str, Any] = tomllib.loads((ROOT / "pyproject.toml").read_text("utf-8"))["project"]
 REQUIREMENTS = {canonicalize_name(r.name): r for r in map(Requirement, PROJECT["dependencies"])}
+EXTRAS = [Requirement(line) for lines in PROJECT["optional-dependencies"].values() for line in lines]
 
 USE_IT = """
 import json, pathlib, sys
@@ -72,6 +75,86 @@ def installed(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return folder / "site"
 
 
+def is_installed(requirement: Requirement) -> bool:
+    try:
+        return requirement.specifier.contains(importlib.metadata.version(requirement.name))
+    except importlib.metadata.PackageNotFoundError:
+        return False
+
+
+@pytest.fixture(scope="module")
+def engine(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The Python of a fresh environment into which pinik's wheel was installed with its compiled engine.
+
+    What pinik needs is seen there from this environment, and pinik itself is not: its own folder comes first.
+    """
+    listed = run(sys.executable, ROOT / "tools" / "build_requirements.py", "--with-tools", cwd=ROOT)
+    needed = map(Requirement, listed.splitlines())
+    missing = [r.name for r in needed if not is_installed(r)]
+    if missing:
+        reason = f"the engine cannot be built here, as these are not installed: {', '.join(missing)}"
+        assert not os.environ.get("PINIK_REQUIRE_NATIVE"), reason
+        pytest.skip(reason)
+    folder = tmp_path_factory.mktemp("engine")
+    pip = (sys.executable, "-m", "pip", "--quiet", "--disable-pip-version-check")
+    # What `make` has compiled in build/ is linked again; otherwise this takes a minute or two.
+    run(*pip, "wheel", "--no-deps", "--no-build-isolation", "--wheel-dir", folder / "wheels", ROOT, cwd=folder)
+    (wheel,) = (folder / "wheels").glob("*.whl")
+    run(sys.executable, "-m", "venv", "--without-pip", folder / "venv", cwd=folder)
+    python = folder / "venv" / "bin" / "python"
+    (site,) = (folder / "venv" / "lib").glob("python*/site-packages")
+    run(*pip, "install", "--no-deps", "--no-index", "--target", site, wheel, cwd=folder)
+    (site / "needed.pth").write_text("\n".join(path for path in sys.path if "site-packages" in path), "utf-8")
+    (prefix,) = (p for p in Path(pinocchio.__file__).parents if p.name == "cmeel.prefix")
+    (site / "cmeel.prefix").symlink_to(prefix)
+    return python
+
+
+# In a process that has not imported Pinocchio, whose libraries would satisfy the engine wherever they are.
+LOAD_THE_ENGINE = """
+import importlib.util, pathlib, sys
+found = pathlib.Path(sys.argv[1])
+assert found.is_file()
+spec = importlib.util.spec_from_file_location("pinik._native", found)
+spec.loader.exec_module(importlib.util.module_from_spec(spec))
+print("loaded")
+"""
+
+SOLVE_WITH_THE_ENGINE = """
+import json
+import pinik, pinik._native
+robot = pinik.load("arm")
+target = robot.placement("tip", robot.random(1)).translation
+solution = robot.solve("tip", position=target, engine="native")
+off = float(abs(robot.placement("tip", solution.q).translation - target).max())
+print(json.dumps({"module": pinik._native.__file__, "engine": solution.engine, "off": off}))
+"""
+
+
+@pytest.mark.timeout(600)  # where nothing was compiled before
+def test_the_wheels_engine_solves_outside_the_checkout(engine, tmp_path):
+    answer = json.loads(run(engine, "-c", SOLVE_WITH_THE_ENGINE, cwd=tmp_path))
+    assert Path(answer["module"]).is_relative_to(engine.parents[1])
+    assert answer["engine"] == "native"
+    assert answer["off"] < 1e-4
+
+
+@pytest.mark.timeout(600)
+def test_the_wheels_engine_finds_pinocchios_libraries_beside_it_by_its_own_rpath(engine, tmp_path):
+    (module,) = engine.parents[1].glob("lib/python*/site-packages/pinik/_native*.so")
+    environment = {name: value for name, value in os.environ.items() if name != "LD_LIBRARY_PATH"}
+
+    def load(path: Path) -> subprocess.CompletedProcess[str]:
+        command = [engine, "-I", "-c", LOAD_THE_ENGINE, path]
+        return subprocess.run(command, cwd=tmp_path, env=environment, capture_output=True, text=True, check=False)
+
+    assert load(module).stdout == "loaded\n", load(module).stderr
+    elsewhere = tmp_path / "pinik" / module.name  # no libraries lie beside this place
+    elsewhere.parent.mkdir()
+    shutil.copy(module, elsewhere)
+    assert "libpinocchio" in load(elsewhere).stderr
+
+
 def test_an_installed_pinik_loads_and_solves_its_own_robots_outside_the_checkout(installed, tmp_path):
     answers = json.loads(run(*ELSEWHERE, "-c", USE_IT, cwd=tmp_path, PYTHONPATH=paths(installed)))
     assert answers["version"] == pinik.__version__
@@ -86,7 +169,8 @@ def test_an_installed_pinik_loads_and_solves_its_own_robots_outside_the_checkout
 def test_the_installed_package_holds_every_file_of_urdf_and_of_the_source(installed):
     pairs = [(ROOT / "urdf", installed / "pinik" / "urdf"), (ROOT / "src" / "pinik", installed / "pinik")]
     for here, there in pairs:
-        files = {p.relative_to(here) for p in here.rglob("*") if p.is_file() and "__pycache__" not in p.parts}
+        kept = (p for p in here.rglob("*") if p.is_file() and "__pycache__" not in p.parts and p.suffix != ".so")
+        files = {p.relative_to(here) for p in kept}
         assert [str(file) for file in sorted(files) if not (there / file).is_file()] == []
 
 
@@ -137,9 +221,12 @@ def test_a_new_release_of_a_compiled_package_cannot_break_a_fresh_install():
 
 
 def test_every_requirement_has_an_upper_end_and_admits_what_is_installed():
-    assert [name for name, requirement in REQUIREMENTS.items() if not is_capped(requirement)] == []
-    wrong = [n for n, r in REQUIREMENTS.items() if not r.specifier.contains(importlib.metadata.version(n))]
-    assert wrong == []
+    asked = [*REQUIREMENTS.values(), *(r for r in EXTRAS if r.name != "pinik")]
+    assert [r.name for r in asked if not is_capped(r)] == []
+    installed = {canonicalize_name(found.name) for found in importlib.metadata.distributions()}
+    here = [r for r in asked if canonicalize_name(r.name) in installed]  # Jupyter is for readers of the notebooks
+    assert {r.name for r in asked} - {r.name for r in here} <= {"jupyterlab"}
+    assert [r.name for r in here if not r.specifier.contains(importlib.metadata.version(r.name))] == []
 
 
 def tracked_files() -> list[Path]:

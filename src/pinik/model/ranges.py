@@ -74,7 +74,9 @@ def _cut_by_followers(joint: Joint, followers: Iterable[Joint], warnings: list[F
             room = "no room" if low > high else f"only the value {low + 0.0:g}"
             own = f"its limits {follower.lower:g}…{follower.upper:g} are ignored, because they would leave"
             cause = f"{own} {joint.name!r}, which it mimics, {room}"
-            common = "its limits are ignored, because they would leave the joint that it mimics no room, or a single value"
+            common = (
+                "its limits are ignored, because they would leave the joint that it mimics no room, or a single value"
+            )
             warnings.append(Flaw(f"joint {follower.name!r}", cause, common=common))
         else:
             lower, upper = low, high

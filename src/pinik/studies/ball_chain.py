@@ -11,8 +11,8 @@ import pinocchio
 from numpy.typing import NDArray
 
 from ..errors import InputError, UnknownNameError
-from ..robot import Robot
 from ..motion.figures import StepFigures
+from ..robot import Robot
 from .steps import PROGRAM
 
 __all__ = ["METHODS", "BallChain", "ProgramChase"]

@@ -10,9 +10,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..model.home import home_configuration
-from ..robot import Robot
 from ..motion.figures import StepFigures
 from ..motion.tracks import lay_track, random_configuration
+from ..robot import Robot
 from .steps import LAP, PROGRAM, Chase, Rules, in_pieces
 
 __all__ = ["COMPARISONS", "CURVE", "LAP", "Comparison", "Row", "bones", "chain_length", "compare", "places"]

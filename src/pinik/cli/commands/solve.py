@@ -6,8 +6,8 @@ from collections.abc import Mapping
 from typing import Any
 
 from ...errors import InputError, PinikError
-from ...robot import Robot
 from ...problem.targets import Target
+from ...robot import Robot
 from ...solvers.base import Solver
 from ...solving.front import solve as solve_targets
 from ...solving.solution import Solution

@@ -10,8 +10,8 @@ from typing import Any
 
 from ...checks import as_point, as_unit_vector, as_vector
 from ...errors import PinikError
-from ...robot import Robot
 from ...problem.targets import Target
+from ...robot import Robot
 from ..terminal.exits import CommandError
 
 __all__ = ["check_frames", "option_of", "target_from_options", "targets_from_file"]
