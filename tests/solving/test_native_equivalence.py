@@ -179,16 +179,27 @@ def test_proofs_that_a_target_is_out_of_reach_are_the_same(limits, name, seed):
         assert (a.distance, a.bound) == pytest.approx((b.distance, b.bound), rel=1e-12)
 
 
-@settings(max_examples=100)
-@given(problems(("panda", "ur5", "arm", "z1", "pr2", "zoo"), most_targets=2))
-def test_equal_answers_are_told_alike(problem):
+def test_equal_answers_are_told_alike():
     """Message, joints at their limits, JSON."""
-    ours, theirs = (
-        prepared(problem, engine, restarts=0, max_iterations=2)(problem.targets, problem.q0)
-        for engine in ("native", "python")
-    )
-    if distance(problem.robot, ours.q, theirs.q) > 1e-12:
-        return
+    counts: collections.Counter[str] = collections.Counter()
+
+    @settings(max_examples=100)
+    @given(problems(("panda", "ur5", "arm", "z1", "pr2", "zoo"), most_targets=2))
+    def compare(problem):
+        ours, theirs = (
+            prepared(problem, engine, restarts=0, max_iterations=2)(problem.targets, problem.q0)
+            for engine in ("native", "python")
+        )
+        equal = distance(problem.robot, ours.q, theirs.q) <= 1e-12
+        counts.update(asked=1, equal=equal)
+        if equal:
+            assert_told_alike(ours, theirs)
+
+    compare()
+    assert counts["equal"] > 0.5 * counts["asked"]
+
+
+def assert_told_alike(ours, theirs):
     assert ours.active_limits == theirs.active_limits
     assert ours.message == theirs.message
     ours, theirs = ours.to_dict(), theirs.to_dict()
