@@ -10,7 +10,7 @@ import pytest
 
 import pinik
 from engines import needs_native
-from judge import assert_good
+from judge import assert_good, is_inside
 from pinik import CCD, Kinematics, Target, Tolerance
 from pinik.model.limits import Limits
 from robots import load_quietly
@@ -106,7 +106,7 @@ def test_the_objective_never_increases_in_a_joint_update(name, frame, kind, with
             was, is_ = objective(robot, target, before, w_p), objective(robot, target, after, w_p)
             assert is_ <= was + 1e-12 * max(1.0, was)
             changed += is_ < was
-            assert limits.contains(after)
+            assert not with_limits or is_inside(robot, after)
     assert changed > 5
 
 

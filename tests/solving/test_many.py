@@ -230,7 +230,7 @@ class TestSolutions:
     ],
 )
 def test_ctrl_c_stops_it_within_a_tenth_of_a_second(call):
-    """A hopeless question in a process of its own, whose processor time counts; other processes do not use that up."""
+    """A hopeless question in a process of its own; its processor time is measured, which no other process uses."""
     program = textwrap.dedent(f"""
         import os, signal, threading, time
         import numpy as np
