@@ -15,6 +15,6 @@ def modules_after(environment: dict[str, str], arguments: list[str]) -> set[str]
         "sys.stderr.write('\\n'.join(sys.modules))\nsys.exit(status)"
     )
     done = subprocess.run(
-        [sys.executable, "-c", script], env=environment, capture_output=True, text=True, timeout=30, check=True
+        [sys.executable, "-c", script], env=environment, capture_output=True, text=True, timeout=120, check=True
     )
     return set(done.stderr.split())

@@ -2,14 +2,26 @@
 
 from __future__ import annotations
 
+import importlib.util
 import re
 import subprocess
 import sys
 from pathlib import Path
 
 import pinik
+from judge import assert_honest
 
 ROOT = Path(__file__).parents[1]
+
+
+def test_every_answer_of_the_tour_is_what_it_says(monkeypatch):
+    spec = importlib.util.spec_from_file_location("tour", ROOT / "examples" / "tour.py")
+    tour = importlib.util.module_from_spec(spec)
+    monkeypatch.setitem(sys.modules, "tour", tour)  # its dataclass looks itself up
+    spec.loader.exec_module(tour)
+    for question in tour.questions():
+        for solution in tour.answers(question):
+            assert_honest(solution, question.targets)
 
 
 def test_the_tour_shows_every_robot_by_every_method_plainly_when_piped():

@@ -7,7 +7,7 @@ from fractions import Fraction
 
 import numpy as np
 import pytest
-from hypothesis import example, given
+from hypothesis import assume, example, given
 from hypothesis import strategies as st
 
 import pinik
@@ -84,12 +84,10 @@ class TestInsideTheAnnulus:
     @given(lengths, lengths, st.floats(-15.5, -1.0))
     def test_the_bend_keeps_its_digits_near_the_stretch(self, l1, l2, exponent):
         d = (l1 + l2) * (1.0 - 10.0**exponent)
-        if d < abs(l1 - l2):
-            return
+        assume(d >= abs(l1 - l2))
         a, b, c = Fraction(l1), Fraction(l2), Fraction(d)
         sine_squared = ((a + b) ** 2 - c**2) / (4 * a * b)  # of half the bend, exact
-        if not 0 <= sine_squared <= Fraction(1, 2):
-            return
+        assume(0 <= sine_squared <= Fraction(1, 2))
         bend = 2.0 * math.asin(math.sqrt(sine_squared))
         assert two_bone(l1, l2, [[d, 0.0]]).angles[0, DOWN, 1] == pytest.approx(bend, rel=1e-14)
 
@@ -151,8 +149,7 @@ class TestOutsideTheAnnulus:
     @given(lengths, lengths, st.floats(0.0, 1.0 - 1e-9), directions)
     @example(1.0, 0.25, 0.0, 0.0)
     def test_too_near_is_answered_with_the_arm_folded_at_the_target(self, l1, l2, part, direction):
-        if abs(l1 - l2) < 1e-6 * (l1 + l2):
-            return
+        assume(abs(l1 - l2) >= 1e-6 * (l1 + l2))
         d = abs(l1 - l2) * part
         target = np.array([d * math.cos(direction), d * math.sin(direction)])
         answers = two_bone(l1, l2, [target])

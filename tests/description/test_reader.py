@@ -510,11 +510,14 @@ def test_a_mutilated_urdf_loads_or_is_refused_in_words_and_nothing_else(text: st
 def test_all_that_read_accepts_pinocchio_accepts() -> None:
     """No "does not contain a valid URDF model" is left for Pinocchio to say, at any joint kind."""
     for kind in ("revolute", "continuous", "prismatic", "fixed", "floating", "planar"):
+        accepted = []
         for limit in ("", "<limit/>", LIMIT, '<limit effort="1"/>', '<limit velocity="0" lower="0"/>'):
             with contextlib.suppress(RobotLoadError):
                 description = urdf.read(pair('<dynamics friction="0"/>', kind=kind, limit=limit))
                 pinocchio.buildModelFromXML(description.xml)
+                accepted.append(limit)
+        assert LIMIT in accepted
 
 
-def test_the_longest_admitted_description_is_read_within_seconds() -> None:
+def test_the_longest_admitted_description_is_read() -> None:
     assert len(urdf.read(chain(9_999, "fixed")).links) == 10_000

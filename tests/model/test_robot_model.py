@@ -200,10 +200,11 @@ class TestPlacementsByHand:
         np.testing.assert_array_equal(together_columns, columns)
 
     def test_each_thread_works_on_data_of_its_own(self, arm):
+        own = arm.data
         with ThreadPoolExecutor(1) as pool:
             other = pool.submit(lambda: arm.data).result()
-        assert other is not arm.data
-        assert arm.data is arm.data
+        assert other is not own
+        assert arm.data is own
 
 
 class TestAngles:

@@ -10,6 +10,7 @@ import pytest
 
 import pinik
 from engines import needs_native
+from judge import assert_good, is_inside
 from pinik import CCD, Kinematics, Target, Tolerance
 from pinik.model.limits import Limits
 from robots import load_quietly
@@ -59,6 +60,22 @@ def single_updates(robot, target, solver, q, limits):
         q = after
 
 
+def turned_everywhere(robot, name, q, count=300):
+    """`q` with one joint at angles all over its range, written by hand."""
+    joint = robot.joint(name)
+    if joint.nq == 2:
+        angles = np.linspace(-math.pi, math.pi, count)
+        entries = np.column_stack([np.cos(angles), np.sin(angles)])
+    else:
+        low, high = (end[robot.joint_names.index(name)] for end in (robot.lower, robot.upper))
+        middle = q[joint.idx_q]
+        entries = np.linspace(max(low, middle - 4.0), min(high, middle + 4.0), count)[:, None]
+    for entry in entries:
+        tried = q.copy()
+        tried[joint.idx_q : joint.idx_q + joint.nq] = entry
+        yield tried
+
+
 CASES = [
     ("panda", "panda_hand_tcp"),
     ("kinova", "j2s6s200_end_effector"),
@@ -89,7 +106,7 @@ def test_the_objective_never_increases_in_a_joint_update(name, frame, kind, with
             was, is_ = objective(robot, target, before, w_p), objective(robot, target, after, w_p)
             assert is_ <= was + 1e-12 * max(1.0, was)
             changed += is_ < was
-            assert limits.contains(after)
+            assert not with_limits or is_inside(robot, after)
     assert changed > 5
 
 
@@ -105,11 +122,8 @@ def test_each_joint_update_is_the_best_of_all_angles_in_its_limits(name, frame, 
     target = Target(frame, placement=wanted) if kind == "pose" else Target(frame, wanted.translation)
     for coordinate, before, after, kinematics in single_updates(robot, target, solver, robot.random(rng), limits):
         w_p = weight_at(robot, solver, kinematics, target, coordinate, before)
-        low, high = coordinate.room(before, limits)
         found = objective(robot, target, after, w_p)
-        for change in np.linspace(max(low, -4.0), min(high, 4.0), 300):
-            tried = before.copy()
-            coordinate.advance(tried, change, robot.model, limits)
+        for tried in turned_everywhere(robot, coordinate.joint.name, before):
             assert objective(robot, target, tried, w_p) >= found - 1e-12
 
 
@@ -209,7 +223,7 @@ def test_a_leader_whose_followers_move_the_target_too_goes_downhill():
     assert robot.mimics == {"z_follow": ("lead", 0.5, 0.0)}
     wanted = robot.placement("tip", robot.configuration({"lead": 1.1})).translation
     s = robot.solve("tip", position=wanted, method="ccd", restarts=0, trace=True)
-    assert s.success, s.message
+    assert_good(s)
     assert s.angles["lead"] == pytest.approx(1.1, abs=1e-3)
     errors = [state.position_error for state in s.trace]
     assert errors == sorted(errors, reverse=True)

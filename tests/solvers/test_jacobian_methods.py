@@ -11,6 +11,7 @@ from hypothesis import strategies as st
 
 import pinik
 from engines import needs_native
+from judge import assert_good
 from pinik import DampedLeastSquares, JacobianTranspose, PseudoInverse
 
 
@@ -138,7 +139,7 @@ def test_every_damping_solves(rule, factorization, panda):
     wanted = panda.placement("panda_hand_tcp", panda.random(4))
     damping = {"constant": 0.05, "residual": 0.2, "sugihara": 0.03, "manipulability": 0.1}[rule]
     s = panda.solve("panda_hand_tcp", placement=wanted, rule=rule, factorization=factorization, damping=damping)
-    assert s.success, s.message
+    assert_good(s)
 
 
 def test_the_rest_posture_is_tended_to_while_the_effector_does_not_notice(panda):
@@ -190,7 +191,7 @@ def test_d_max_shortens_the_pull_and_keeps_its_direction(method, arm):
 @pytest.mark.parametrize("method", [JacobianTranspose, PseudoInverse, DampedLeastSquares], ids=lambda m: m.name)
 def test_the_target_jacobian_reaches_targets_as_well(method, arm):
     s = arm.solve("tip", position=[0.3, 0.2, 0.8], method=method, target_jacobian=True)
-    assert s.success, s.message
+    assert_good(s)
 
 
 WEIGHTS = {"bone1_x": 0.25, "bone3_z": 0.04, "bone6_x": 0.5}

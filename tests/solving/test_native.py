@@ -230,7 +230,7 @@ def test_the_interpreter_runs_on_during_a_long_solve(method, panda):
 def test_the_time_limit_ends_a_hopeless_solve(method, panda, lion):
     for robot, frame in ((panda, "panda_hand_tcp"), (lion, "nose")):
         opposed = [Target(frame, [0.4, y, 0.5]) for y in (-0.2, 0.2)]
-        began = time.thread_time()  # processor time, which other processes do not use up
+        began = time.thread_time()  # processor time does not pass while other processes run
         s = pinik.solve(robot, opposed, method, engine="native", restarts=10**9, time_limit=0.1)
         assert time.thread_time() - began < 0.3
         assert s.status is Status.TIME_LIMIT

@@ -7,7 +7,6 @@ a step that differs must sit where the Python engine alone jumps as far when its
 from __future__ import annotations
 
 import collections
-import itertools
 
 import numpy as np
 import pytest
@@ -110,16 +109,14 @@ WHOLE = ("panda", "ur5", "z1", "arm", "kinova")
 EACH = 40
 
 
-def test_whole_solves_agree_in_their_verdict():
+@pytest.mark.parametrize("name", WHOLE)
+@pytest.mark.parametrize("method", METHODS)
+def test_whole_solves_agree_in_their_verdict(method, name):
     """Near and far poses: both answers are checked, and where they differ no step does."""
-    counts: collections.Counter[str] = collections.Counter()
-    for method, name in itertools.product(METHODS, WHOLE):
-        counts.update({f"{method} {what}": count for what, count in compare_solves(name, method).items()})
+    counts = compare_solves(name, method)
     print(dict(counts))
-    solves, differing = (sum(counts[f"{method} {what}"] for method in METHODS) for what in ("solves", "differing"))
-    assert solves == len(METHODS) * len(WHOLE) * EACH
-    assert differing <= RARELY * solves
-    assert counts["dls differing"] + counts["pinv differing"] + counts["ccd differing"] <= RARELY * solves / 2
+    assert counts["solves"] == EACH
+    assert counts["differing"] <= (2 if method == "jt" else 1)
 
 
 def compare_solves(name, method):
@@ -179,16 +176,27 @@ def test_proofs_that_a_target_is_out_of_reach_are_the_same(limits, name, seed):
         assert (a.distance, a.bound) == pytest.approx((b.distance, b.bound), rel=1e-12)
 
 
-@settings(max_examples=100)
-@given(problems(("panda", "ur5", "arm", "z1", "pr2", "zoo"), most_targets=2))
-def test_equal_answers_are_told_alike(problem):
+def test_equal_answers_are_told_alike():
     """Message, joints at their limits, JSON."""
-    ours, theirs = (
-        prepared(problem, engine, restarts=0, max_iterations=2)(problem.targets, problem.q0)
-        for engine in ("native", "python")
-    )
-    if distance(problem.robot, ours.q, theirs.q) > 1e-12:
-        return
+    counts: collections.Counter[str] = collections.Counter()
+
+    @settings(max_examples=100)
+    @given(problems(("panda", "ur5", "arm", "z1", "pr2", "zoo"), most_targets=2))
+    def compare(problem):
+        ours, theirs = (
+            prepared(problem, engine, restarts=0, max_iterations=2)(problem.targets, problem.q0)
+            for engine in ("native", "python")
+        )
+        equal = distance(problem.robot, ours.q, theirs.q) <= 1e-12
+        counts.update(asked=1, equal=equal)
+        if equal:
+            assert_told_alike(ours, theirs)
+
+    compare()
+    assert counts["equal"] > 0.5 * counts["asked"]
+
+
+def assert_told_alike(ours, theirs):
     assert ours.active_limits == theirs.active_limits
     assert ours.message == theirs.message
     ours, theirs = ours.to_dict(), theirs.to_dict()
