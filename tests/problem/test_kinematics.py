@@ -11,6 +11,7 @@ import pytest
 import pinik
 from by_hand import ZOO, axis, limit, link_placements, mimic, origin, random_placement, random_rotation
 from pinik import InputError, Kinematics, Target, Tolerance, UnknownNameError
+from pinik.problem.problem import Problem
 from robots import load_quietly
 from urdf_texts import joint, link, pair, robot
 
@@ -56,8 +57,13 @@ def placements(scene: Scene, target: Target, q: np.ndarray) -> tuple[np.ndarray,
     return frame, scene.robot.placement(target.relative_to, q).homogeneous
 
 
+def length(scene: Scene, target: Target) -> float:
+    """What a radian counts [m]; tests/model/test_chains.py measures it."""
+    return Problem(scene.robot, [target]).size_of_chain
+
+
 def residual(scene: Scene, target: Target, q: np.ndarray) -> np.ndarray:
-    """The residual by hand, from `Robot.placement` alone."""
+    """The residual by hand, from `Robot.placement` and the chain's length."""
     from scipy.spatial.transform import Rotation
 
     frame, reference = placements(scene, target, q)
@@ -66,7 +72,8 @@ def residual(scene: Scene, target: Target, q: np.ndarray) -> np.ndarray:
     if target.position is not None:
         rows.append((reference @ [*target.position, 1])[:3] - p)
     if target.rotation is not None:
-        rows.append(Rotation.from_matrix(reference[:3, :3] @ target.rotation @ R.T).as_rotvec())
+        turn = Rotation.from_matrix(reference[:3, :3] @ target.rotation @ R.T).as_rotvec()
+        rows.append(length(scene, target) * turn)
     elif target.axis is not None:
         pointing = R @ target.axis
         if target.direction is not None:
@@ -76,7 +83,8 @@ def residual(scene: Scene, target: Target, q: np.ndarray) -> np.ndarray:
             wanted /= np.linalg.norm(wanted)
         normal = np.cross(pointing, wanted)
         angle = math.atan2(np.linalg.norm(normal), pointing @ wanted)
-        rows.append(normal if angle < 1e-6 else angle * normal / np.linalg.norm(normal))
+        turn = normal if angle < 1e-6 else angle * normal / np.linalg.norm(normal)
+        rows.append(length(scene, target) * turn)
     return np.concatenate(rows)  # a weight means something only beside another
 
 
@@ -128,7 +136,9 @@ def test_the_residual_is_target_minus_frame_position_first(scene, orientation):
             np.testing.assert_allclose(at.e, expected, atol=1e-9, rtol=0)
             parts = iter(np.split(expected, len(expected) // 3))
             position = np.linalg.norm(next(parts)) if positioned else None
-            angle = np.linalg.norm(next(parts)) if orientation != "no orientation" else None
+            angle = None
+            if orientation != "no orientation":
+                angle = np.linalg.norm(next(parts)) / length(scene, target)
             assert at.errors[0] == pytest.approx((position, angle), abs=1e-9)
 
 
@@ -245,14 +255,14 @@ def test_several_targets_are_stacked_in_order_and_weights_scale_their_rows(lion)
 class TestFree:
     def test_are_the_coordinates_that_move_a_target(self, lion):
         kinematics = Kinematics(lion, [Target("nose", (1, 0, 0))])
-        moving = {j.name for j in lion.joints if kinematics.free[j.idx_v]}
+        moving = {j.name for j in lion.joints if kinematics.problem.free[j.idx_v]}
         assert moving == {
             "spine_yaw", "spine_pitch", "spine_roll", "chest_yaw", "chest_pitch", "neck_yaw", "neck_pitch",
             "head_yaw", "head_pitch", "head_roll",
         }  # fmt: skip
         at = kinematics.linearize(lion.random(8))
-        assert at.free is kinematics.free
-        assert (np.abs(at.J).max(axis=0) > 0)[kinematics.free].all()
+        assert at.free is kinematics.problem.free
+        assert (np.abs(at.J).max(axis=0) > 0)[kinematics.problem.free].all()
 
     @pytest.mark.parametrize("scene", SCENES.values(), ids=SCENES)
     def test_others_have_columns_of_exact_zeros(self, scene):
@@ -263,17 +273,17 @@ class TestFree:
         kinematics = Kinematics(scene.robot, [target])
         for _ in range(3):
             J = kinematics.linearize(scene.robot.random(rng)).J
-            assert (J[:, ~kinematics.free] == 0.0).all()
+            assert (J[:, ~kinematics.problem.free] == 0.0).all()
 
     def test_leave_out_what_moves_frame_and_reference_alike(self):
         robot = load_quietly("lion", root="free_flyer")
         kinematics = Kinematics(robot, [Target("nose", (1, 0, 0), relative_to="chest")])
-        moving = {j.name for j in robot.joints if kinematics.free[j.idx_v]}
+        moving = {j.name for j in robot.joints if kinematics.problem.free[j.idx_v]}
         assert moving == {"neck_yaw", "neck_pitch", "head_yaw", "head_pitch", "head_roll"}
 
     def test_include_a_leader_for_its_followers_sake(self, panda):
         kinematics = Kinematics(panda, [Target("panda_rightfinger", (1, 0, 0), relative_to="panda_hand")])
-        assert np.flatnonzero(kinematics.free).tolist() == [panda.joint("panda_finger_joint1").idx_v]
+        assert np.flatnonzero(kinematics.problem.free).tolist() == [panda.joint("panda_finger_joint1").idx_v]
 
     def test_leave_out_the_leader_of_a_follower_that_does_not_move(self):
         text = robot(
@@ -305,10 +315,10 @@ class TestLocked:
     def test_roots_lose_all_their_columns(self):
         robot = load_quietly("arm", root="free_flyer")
         kinematics = Kinematics(robot, [Target("tip", (1, 0, 0))], locked=["root_joint"])
-        assert not kinematics.free[:6].any()
-        assert kinematics.free[6:].all()
+        assert not kinematics.problem.free[:6].any()
+        assert kinematics.problem.free[6:].all()
         assert (kinematics.linearize(robot.random(11)).J[:, :6] == 0.0).all()
-        assert all(c.joint.name != "root_joint" for c in kinematics.coordinates)
+        assert all(c.joint.name != "root_joint" for c in kinematics.problem.coordinates)
 
     def test_leaders_hold_their_followers(self, panda):
         target = Target("panda_rightfinger", (1, 0, 0), relative_to="panda_hand")

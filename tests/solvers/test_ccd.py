@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import copy
 import math
 
 import numpy as np
@@ -45,15 +46,16 @@ def weight_at(robot, solver, kinematics, target, coordinate, q):
     origin = robot.data.oMi[coordinate.movers[0][0].id].translation
     c = np.linalg.norm(robot.placement(target.frame, q).translation - origin)
     d = np.linalg.norm(target.position - origin) if target.position is not None else c
-    return solver.position_weight / kinematics.terms[0].chain_length ** 2 * (1.0 + min(c, d) / max(c, d))
+    return solver.position_weight / kinematics.problem.size_of_chain ** 2 * (1.0 + min(c, d) / max(c, d))
 
 
 def single_updates(robot, target, solver, q, limits):
     """(coordinate, q before, q after, kinematics) for each joint update of one sweep."""
     kinematics = Kinematics(robot, [target])
-    coordinates = kinematics.coordinates
-    for coordinate in coordinates:
-        kinematics.coordinates = (coordinate,)
+    whole = kinematics.problem
+    for coordinate in whole.coordinates:
+        kinematics.problem = copy.copy(whole)
+        kinematics.problem.coordinates = (coordinate,)
         after, count = solver.sweep(q, kinematics, limits, NEVER)
         assert count == 1
         yield coordinate, q, after, kinematics

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 import pinik
+from pinik.solvers.parameter import parameters_of
 from pinik.solvers.registry import make_solver
 
 
@@ -76,7 +77,7 @@ def test_a_direction_of_the_wrong_shape_is_refused_in_words(step, arm):
         def direction(self, J, e):
             return step
 
-    with pytest.raises(pinik.InputError, match=r"Wrong.direction returns dq of shape \(12,\)"):
+    with pytest.raises(pinik.InputError, match=r"Wrong.direction must return dq of shape \(12,\)"):
         arm.solve("tip", position=[0, 0, 1], method=Wrong)
 
 
@@ -91,14 +92,18 @@ def test_solvers_are_immutable_and_travel_to_other_processes(name):
     solver = make_solver(name, max_step=0.3)
     with pytest.raises(AttributeError):
         solver.max_step = 1.0
-    assert pickle.loads(pickle.dumps(solver)) == solver
+    with pytest.raises(TypeError):
+        solver.stiffness["j"] = -3.0
+    again = pickle.loads(pickle.dumps(solver))
+    assert again == solver
+    assert hash(again) == hash(solver)
 
 
 @pytest.mark.parametrize("name", ["ccd", "jt", "pinv", "dls"])
 def test_every_parameter_says_what_it_is(name):
-    for field in dataclasses.fields(pinik.SOLVERS[name]):
-        assert field.metadata["help"], field.name
-        assert {"unit", "low", "high", "choices", "optional"} <= set(field.metadata)
+    described = {own.name: own for own in parameters_of(pinik.SOLVERS[name])}
+    assert list(described) == [field.name for field in dataclasses.fields(pinik.SOLVERS[name])]
+    assert all(own.help for own in described.values())
 
 
 def test_none_stands_for_no_bound_where_json_has_no_infinity():
@@ -108,7 +113,7 @@ def test_none_stands_for_no_bound_where_json_has_no_infinity():
 
 @pytest.mark.parametrize("value", [math.inf, 10**400, "1", None, True, [1.0]])
 def test_a_damping_that_is_no_finite_number_is_refused(value):
-    with pytest.raises(pinik.InputError, match="dls: damping is a finite number from"):
+    with pytest.raises(pinik.InputError, match="dls: damping must be a finite number from"):
         pinik.DampedLeastSquares(damping=value)
 
 

@@ -33,7 +33,7 @@ def table(robot, targets, q0, *, limits=True, seed=0):
     neutral = robot.neutral()
     about = q0.copy()  # slides without limits are drawn about 0
     for joint in robot.joints:
-        if joint.nv and joint.has_one_axis and kinematics.free[joint.idx_v]:
+        if joint.nv and joint.has_one_axis and kinematics.problem.free[joint.idx_v]:
             about[joint.idx_q : joint.idx_q + joint.nq] = neutral[joint.idx_q : joint.idx_q + joint.nq]
     box = Limits.of(robot, limits)
     return np.array([random_start(kinematics, box, about, attempt=k, **draw) for k in range(SIZE)])
