@@ -252,9 +252,7 @@ def answer(
         words = _words(tuple([target.shape for target in asked]), method, said, parameters)
         prepared = _said(kept, words)
     if prepared is None:
-        prepared = kept.prepared(robot, asked, _options(method, said, parameters))
-        if words is not None:
-            kept.remember(words, prepared)
+        prepared = kept.prepared(robot, asked, _options(method, said, parameters), words)
     return prepared(asked, q0)
 
 

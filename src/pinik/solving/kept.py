@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from collections import OrderedDict
-from collections.abc import Hashable, Sequence
-from typing import Generic, TypeVar
+import itertools
+from collections.abc import Sequence
+from dataclasses import dataclass, field
 
 from ..model.robot_model import RobotModel
 from ..problem.targets import Target
@@ -19,67 +19,88 @@ _BYTES_OF_ONE = 100_000
 _BYTES_PER_CUBE = 100
 _MOST = 256
 
-Key = TypeVar("Key", bound=Hashable)
+_MOST_WAYS = 16  # in which one question may be asked before its oldest words are forgotten
+
+Key = tuple[object, ...]
 
 
-class _Last(Generic[Key]):
-    """The questions asked last, by key; the one unused for longest is dropped first."""
+@dataclass(eq=False)
+class _Entry:
+    """A question that is kept: what it means, the words it was asked in, and when it was used last."""
 
-    def __init__(self, most: int) -> None:
-        self._most = most
-        self._questions: OrderedDict[Key, Prepared] = OrderedDict()
-
-    def __len__(self) -> int:
-        return len(self._questions)
-
-    def get(self, key: Key) -> Prepared | None:
-        found = self._questions.get(key)
-        if found is not None:
-            self._questions.move_to_end(key)
-        return found
-
-    def put(self, key: Key, prepared: Prepared) -> None:
-        self._questions[key] = prepared
-        while len(self._questions) > self._most:
-            self._questions.popitem(last=False)
-
-    def clear(self) -> None:
-        self._questions.clear()
+    meaning: Key
+    prepared: Prepared
+    used: int = 0
+    words: list[Key] = field(default_factory=list)
 
 
 class Kept:
-    """What one thread asked of one robot last.
+    """What one thread asked of one robot last; the question that was not used for longest is dropped first.
 
     Questions are kept by what they ask, and found faster by the words in which they were asked.
     """
 
     def __init__(self, robot: RobotModel) -> None:
-        most = min(_MOST, _BYTES_AT_MOST // (_BYTES_OF_ONE + _BYTES_PER_CUBE * robot.model.nv**3))
-        self._by_words: _Last[tuple[object, ...]] = _Last(2 * most)
-        self._by_meaning: _Last[tuple[object, ...]] = _Last(most)
+        self._most = min(_MOST, _BYTES_AT_MOST // (_BYTES_OF_ONE + _BYTES_PER_CUBE * robot.model.nv**3))
+        self._clock = itertools.count(1)
+        self._by_words: dict[Key, _Entry] = {}
+        self._by_meaning: dict[Key, _Entry] = {}
 
     def __len__(self) -> int:
         return len(self._by_meaning)
 
-    def said(self, words: tuple[object, ...]) -> Prepared | None:
+    @property
+    def most(self) -> int:
+        """How many questions are kept at most, by the memory that they take."""
+        return self._most
+
+    def said(self, words: Key) -> Prepared | None:
         """The question that was asked in these words; TypeError where something in them cannot be hashed."""
-        return self._by_words.get(words)
+        entry = self._by_words.get(words)
+        if entry is None:
+            return None
+        entry.used = next(self._clock)
+        return entry.prepared
 
-    def remember(self, words: tuple[object, ...], prepared: Prepared) -> None:
-        """From now on these words mean this question."""
-        self._by_words.put(words, prepared)
+    def prepared(
+        self, robot: RobotModel, targets: Sequence[Target], options: Options, words: Key | None = None
+    ) -> Prepared:
+        """The question with these targets and options, compiled now unless it was kept.
 
-    def prepared(self, robot: RobotModel, targets: Sequence[Target], options: Options) -> Prepared:
-        """The question with these targets and options, compiled now unless it was kept."""
+        Args:
+            robot: The robot.
+            targets: The targets.
+            options: The options.
+            words: From now on these words mean this question.
+        """
+        meaning = (*[target.shape for target in targets], options)
         try:
-            key = (*[target.shape for target in targets], options)
-            found = self._by_meaning.get(key)
-        except TypeError:  # a solver of the user's with a field that cannot be hashed
+            entry = self._by_meaning.get(meaning)
+        except TypeError:  # a user's solver has a field that cannot be hashed
             return Prepared(robot, targets, options)
-        if found is None:
-            found = Prepared(robot, targets, options)
-            self._by_meaning.put(key, found)
-        return found
+        if entry is None:
+            entry = _Entry(meaning, Prepared(robot, targets, options))
+            self._by_meaning[meaning] = entry
+        entry.used = next(self._clock)
+        if words is not None:
+            self._remember(words, entry)
+        while len(self._by_meaning) > self._most:
+            self._drop(min(self._by_meaning.values(), key=lambda entry: entry.used))
+        return entry.prepared
+
+    def _remember(self, words: Key, entry: _Entry) -> None:
+        try:
+            self._by_words[words] = entry
+        except TypeError:  # something in them cannot be hashed
+            return
+        entry.words.append(words)
+        if len(entry.words) > _MOST_WAYS:
+            self._by_words.pop(entry.words.pop(0), None)
+
+    def _drop(self, entry: _Entry) -> None:
+        del self._by_meaning[entry.meaning]
+        for words in entry.words:
+            self._by_words.pop(words, None)
 
     def clear(self) -> None:
         """Forget everything."""
