@@ -1,4 +1,4 @@
-"""Where an arm is mounted and how large it is changes nothing: the same verdicts after the same numbers of iterations."""
+"""Where an arm is mounted and how large it is changes nothing: the verdicts and the counts of iterations stay."""
 
 from __future__ import annotations
 
@@ -32,8 +32,8 @@ def arm(scale: float = 1.0, away: float = 0.0, rpy: tuple[float, ...] = (0.0, 0.
     return pinik.load(
         f'<robot name="six"><link name="root"/>{links}<joint name="mount" type="fixed"><parent link="root"/>'
         f'<child link="l0"/><origin xyz="{place}" rpy="{" ".join(map(repr, rpy))}"/></joint>{joints}'
-        f'<joint name="end" type="fixed"><parent link="l6"/><child link="l7"/><origin xyz="{0.2 * scale!r} 0 0"/></joint>'
-        "</robot>"
+        f'<joint name="end" type="fixed"><parent link="l6"/><child link="l7"/><origin xyz="{0.2 * scale!r} 0 0"/>'
+        "</joint></robot>"
     )
 
 
@@ -82,7 +82,7 @@ def test_scale_changes_nothing(method, with_orientation, engine):
 
 @pytest.mark.parametrize("scale", [1e-3, 1e-2, 1.0, 100.0])
 def test_the_pseudo_inverse_solves_arms_of_any_size(scale):
-    """Its cut-off compares singular values; those of positions must not be counted in metres, and of turns in radians."""
+    """Its cut-off compares singular values, which must not mix metres with radians."""
     robot, rng = arm(scale), np.random.default_rng(3)
     solved = 0
     for _ in range(20):

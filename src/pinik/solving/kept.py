@@ -41,7 +41,8 @@ class Kept:
     """
 
     def __init__(self, robot: RobotModel) -> None:
-        self._most = min(_MOST, _BYTES_AT_MOST // (_BYTES_OF_ONE + _BYTES_PER_CUBE * robot.model.nv**3))
+        of_one = _BYTES_OF_ONE + _BYTES_PER_CUBE * int(robot.model.nv) ** 3
+        self._most = max(1, min(_MOST, _BYTES_AT_MOST // of_one))
         self._clock = itertools.count(1)
         self._by_words: dict[Key, _Entry] = {}
         self._by_meaning: dict[Key, _Entry] = {}
