@@ -266,8 +266,3 @@ def test_any_number_of_methods_have_colours_that_can_be_told_apart():
 def test_iterations_of_a_sweeping_method_are_sweeps():
     assert [iteration_word(name) for name in ("idle", "ccd")] == ["sweeps", "sweeps"]
     assert [iteration_word(name) for name in ("marquardt", "dls")] == ["steps", "steps"]
-        "sweeps",
-        "sweeps",
-        "steps",
-        "steps",
-    ]
