@@ -130,3 +130,25 @@ def test_there_is_no_second_opinion_on_what_cannot_be_loaded(run, urdf):
     file = urdf(LINKS + JOINT.format(lower=2))
     assert run("check", file, "--json").json["second_opinion"] is None
     assert "yourdfpy" not in run("check", file).out
+
+
+def test_a_shape_s_fault_stays_though_it_contains_the_address_of_a_missing_mesh(run, urdf, tmp_path):
+    """The address of the missing mesh, "a", is a part of nearly any sentence."""
+    (tmp_path / "bad.stl").write_text("nothing")
+    meshes = "".join(f'<visual><geometry><mesh filename="{name}"/></geometry></visual>' for name in ("a", "bad.stl"))
+    answer = run("check", urdf(f'<link name="base">{meshes}</link>'), "--json").json
+    assert answer["missing_meshes"] == ["a"]
+    assert len(answer["mesh_faults"]) == 1
+    assert "a shape is left out" in answer["mesh_faults"][0]
+
+
+def test_joints_with_the_same_flaw_share_a_line_whatever_their_names(run, urdf):
+    joints = "".join(
+        f'<link name="l{k}"/><joint name="j\'{k}" type="continuous"><parent link="base"/><child link="l{k}"/>'
+        f'<mimic joint="gone{k}"/></joint>'
+        for k in (1, 2)
+    )
+    lines = run("check", urdf(f'<link name="base"/>{joints}')).out.splitlines()
+    assert [line for line in lines if line.startswith("warning")] == [
+        """warning: joint "j'1", joint "j'2": it mimics a joint that does not exist; it is left free"""
+    ]
