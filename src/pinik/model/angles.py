@@ -1,4 +1,4 @@
-"""Angles by name into a configuration: leaders, and followers that must agree with them"""
+"""Angles by name into a configuration: leaders, and followers that must agree with them."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""How far each joint may go: its own limits, cut by those of the joints that mimic it; written into the model"""
+"""How far each joint may go: its own limits, cut by those of the joints that mimic it; written into the model."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Triangle meshes: boxes, spheres, cylinders, capsules, and those in files, with edges that stay sharp"""
+"""Triangle meshes: boxes, spheres, cylinders, capsules, and those in files, with edges that stay sharp."""
 
 from __future__ import annotations
 
