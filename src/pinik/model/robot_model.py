@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 import os
 import threading
 from collections.abc import Callable, Mapping, Sequence
@@ -14,11 +13,13 @@ import numpy as np
 import pinocchio
 from numpy.typing import ArrayLike, NDArray
 
-from ..checks import as_finite_number, as_many, as_se3, as_vector
+from ..checks import as_finite_number, as_se3
 from ..description import reader as urdf
 from ..errors import InputError, UnknownNameError
 from .angles import set_angles
 from .build import build_model
+from .configurations import checked, checked_many, random_configuration
+from .jacobians import as_reference_frame, frame_jacobian, relative_jacobian
 from .joint import Joint, joints_of
 from .poses import read_poses
 from .ranges import configuration_limits
@@ -31,12 +32,6 @@ if TYPE_CHECKING:
 __all__ = ["Robot"]
 
 Array = NDArray[np.float64]
-
-_AXES = {
-    "local_world_aligned": pinocchio.LOCAL_WORLD_ALIGNED,
-    "local": pinocchio.LOCAL,
-    "world": pinocchio.WORLD,
-}
 
 
 class Robot:
@@ -191,7 +186,7 @@ class Robot:
         return joint
 
     def neutral(self) -> Array:
-        """The neutral configuration (nq,): all joints that are not followers at 0, all joint placements the identity."""
+        """The neutral configuration (nq,): joints that are not followers at 0, joint placements the identity."""
         return np.array(pinocchio.neutral(self.model))
 
     def random(self, rng: np.random.Generator | int | None = None) -> Array:
@@ -210,22 +205,8 @@ class Robot:
         try:
             rng = np.random.default_rng(rng)
         except (TypeError, ValueError):
-            raise InputError(
-                f"rng must be a numpy Generator, or a whole number of at least 0 as its seed; got {rng!r}"
-            ) from None
-        q = self.neutral()
-        for joint, lower, upper in zip(self._settable, self.lower, self.upper, strict=True):
-            low, high = joint.range_to_draw_from(lower, upper)
-            joint.set_angle(q, rng.uniform(low, high))
-        for joint in self.joints:
-            if joint.kind == "floating":
-                quaternion = rng.normal(size=4)
-                q[joint.idx_q : joint.idx_q + 3] = rng.uniform(-1, 1, 3)
-                q[joint.idx_q + 3 : joint.idx_q + 7] = quaternion / np.linalg.norm(quaternion)
-            elif joint.kind == "planar":
-                angle = rng.uniform(-math.pi, math.pi)
-                q[joint.idx_q : joint.idx_q + 4] = (*rng.uniform(-1, 1, 2), math.cos(angle), math.sin(angle))
-        return q
+            raise InputError(f"rng must be a numpy Generator or a whole number of at least 0; got {rng!r}") from None
+        return random_configuration(self.neutral(), self.joints, (self.lower_q, self.upper_q), rng)
 
     def configuration(
         self,
@@ -235,8 +216,8 @@ class Robot:
         """The configuration (nq,) with these angles and joint placements; all other joints are neutral.
 
         Limits are not checked. Followers may be given too: one that is given without its leader sets the leader, and
-        one that is given with it must agree with it to rounding. `configuration(angles(q), joint_placements(q))` gives `q`
-        back, except for rounding and the signs of quaternions.
+        one that is given with it must agree with it. `configuration(angles(q), joint_placements(q))` returns `q`, except
+        for rounding and the signs of quaternions.
 
         Args:
             angles: Joint name → angle [rad], or position [m] for prismatic joints.
@@ -295,32 +276,14 @@ class Robot:
             what: What the error message calls it.
 
         Raises:
-            InputError: A wrong shape, a number that is not finite, or a quaternion or (cos, sin) pair whose length
-                is not 1.
+            InputError: A wrong shape, a number that is not finite, or a quaternion or (cos, sin) pair that is not of
+                unit length.
         """
-        values = as_vector(q, self.model.nq, what, f"the configuration of {self.name!r}")
-        if self.model.nq == self.model.nv:  # no quaternion, no (cos, sin)
-            return values
-        for joint in self.joints:
-            circle = joint.circle(values)
-            if circle is not None and abs(float(circle[0] @ circle[0]) - 1.0) > 1e-3:
-                got, words = circle
-                raise InputError(
-                    f"{what}: {words} of {joint.kind} joint {joint.name!r} must be of unit length; got {got.tolist()}"
-                )
-        return np.array(pinocchio.normalize(self.model, values))
+        return checked(self.model, self.joints, q, what, f"the configuration of {self.name!r}")
 
     def check_configurations(self, q: ArrayLike, what: str = "q") -> Array:
         """Check N configurations (N, nq) as `check_configuration` does, and return a copy as float64."""
-        values = as_many(q, (self.model.nq,), what)
-        for joint in self.joints:
-            circle = joint.circle(values.T)
-            if circle is not None:
-                lengths = np.linalg.norm(circle[0], axis=0)
-                for k in np.flatnonzero(np.abs(lengths**2 - 1.0) > 1e-3)[:1]:
-                    self.check_configuration(values[k], f"{what}[{k}]")
-                circle[0][:] /= lengths
-        return values
+        return checked_many(self.model, self.joints, q, what)
 
     def placement(self, frame: str, q: ArrayLike, relative_to: str | None = None) -> pinocchio.SE3:
         """The placement of a frame, by forward kinematics.
@@ -369,37 +332,13 @@ class Robot:
             UnknownNameError: No such frame; the message lists near names.
             InputError: Unknown axes, or `q` is not a configuration of this robot.
         """
-        if not isinstance(axes, pinocchio.ReferenceFrame):
-            if not isinstance(axes, str) or axes not in _AXES:
-                raise InputError(
-                    f"axes must be one of {', '.join(map(repr, _AXES))} or a pinocchio.ReferenceFrame; got {axes!r}"
-                )
-            axes = _AXES[axes]
+        axes = as_reference_frame(axes)
         frame_id = self.frame_id(frame)
         reference = None if relative_to is None else self.frame_id(relative_to)
-        values = self.check_configuration(q)
-        pinocchio.computeJointJacobians(self.model, self.data, values)
+        pinocchio.computeJointJacobians(self.model, self.data, self.check_configuration(q))
         if reference is None:
-            return self._frame_jacobian(frame_id, axes)
-        return self._relative_jacobian(frame_id, reference, axes)
-
-    def _frame_jacobian(self, frame_id: int, axes: pinocchio.ReferenceFrame) -> Array:
-        if self.model.nv == 0:
-            return np.zeros((6, 0))  # Pinocchio ends the process if there are no columns
-        J = np.array(pinocchio.getFrameJacobian(self.model, self.data, frame_id, axes))
-        return J.reshape(6, self.model.nv)  # Pinocchio returns a single column as (6,)
-
-    def _relative_jacobian(self, frame_id: int, reference: int, axes: pinocchio.ReferenceFrame) -> Array:
-        local = self._frame_jacobian(frame_id, pinocchio.LOCAL)
-        moving = self._frame_jacobian(reference, pinocchio.LOCAL)
-        oMf = pinocchio.updateFramePlacement(self.model, self.data, frame_id)
-        rMf = pinocchio.updateFramePlacement(self.model, self.data, reference).actInv(oMf)
-        J = local - rMf.toActionMatrixInverse() @ moving
-        if axes == pinocchio.LOCAL:
-            return np.array(J)
-        if axes == pinocchio.WORLD:
-            return np.array(rMf.toActionMatrix() @ J)
-        return np.vstack([rMf.rotation @ J[:3], rMf.rotation @ J[3:]])
+            return frame_jacobian(self.model, self.data, frame_id, axes)
+        return relative_jacobian(self.model, self.data, frame_id, reference, axes)
 
     def solve(
         self,

@@ -26,7 +26,8 @@ def box(size: NDArray[np.float64]) -> trimesh.Trimesh:
 
 def sphere(radius: float) -> trimesh.Trimesh:
     """A sphere about the origin [m]."""
-    return trimesh.creation.icosphere(3, radius)
+    mesh: trimesh.Trimesh = trimesh.creation.icosphere(3, radius)
+    return mesh
 
 
 def cylinder(radius: float, length: float) -> trimesh.Trimesh:
