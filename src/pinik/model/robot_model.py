@@ -168,7 +168,7 @@ class Robot:
             return self._joints_by_name[name]
         except (KeyError, TypeError):
             fixed = any(tag.name == name and tag.kind == "fixed" for tag in self.description.joints)
-            hint = "that one is a fixed joint" if fixed else ""
+            hint = "it is a fixed joint" if fixed else ""
             raise UnknownNameError("joint", name, self._joints_by_name, hint) from None
 
     def settable_joint(self, name: str) -> Joint:
@@ -181,7 +181,7 @@ class Robot:
         joint = self.joint(name)
         if joint.leader is not None:
             raise InputError(
-                f"joint {name!r} mimics {joint.leader!r} and does not move by itself; set {joint.leader!r} instead"
+                f"joint {name!r} mimics {joint.leader!r} and does not move by itself; name {joint.leader!r} instead"
             )
         return joint
 
@@ -216,8 +216,8 @@ class Robot:
         """The configuration (nq,) with these angles and joint placements; all other joints are neutral.
 
         Limits are not checked. Followers may be given too: one that is given without its leader sets the leader, and
-        one that is given with it must agree with it. `configuration(angles(q), joint_placements(q))` returns `q`, except
-        for rounding and the signs of quaternions.
+        one that is given with it must agree. `configuration(angles(q), joint_placements(q))` returns `q`, except for
+        rounding and the signs of quaternions.
 
         Args:
             angles: Joint name → angle [rad], or position [m] for prismatic joints.
