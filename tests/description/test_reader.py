@@ -49,7 +49,7 @@ FAULTS = {
     "a xacro macro": (robot("<xacro:macro/>", link("a")), "<xacro:macro>", "xacro file.xacro > file.urdf"),
     "a xacro expression": (robot(link("${side}_arm")), "<link>", "xacro"),
     "no links": (robot(), "<robot>", "no <link>"),
-    "a link twice": (robot(link("a"), link("a")), "link 'a'", "defined twice, first in line 1"),
+    "a link twice": (robot(link("a"), link("a")), "link 'a'", "defined twice, first on line 1"),
     "a link without a name": (robot("<link/>"), "<link>", "has no name"),
     "a link with an empty name": (robot(link(" ")), "<link>", "empty name"),
     "a joint twice": (
@@ -59,7 +59,7 @@ FAULTS = {
     ),
     "a joint without a name": (pair().replace('name="j"', ""), "<joint>", "has no name"),
     "a joint without a type": (pair().replace('type="revolute"', ""), "joint 'j'", "has no type"),
-    "an unknown joint type": (pair(kind="hinge"), "joint 'j'", "unknown type 'hinge'; there are: revolute"),
+    "an unknown joint type": (pair(kind="hinge"), "joint 'j'", "unknown type 'hinge'; it must be one of revolute"),
     "a joint without a parent": (pair().replace('<parent link="a"/>', ""), "joint 'j'", "no <parent>"),
     "a joint without a child": (pair().replace('<child link="b"/>', ""), "joint 'j'", "no <child>"),
     "a parent without a link": (
@@ -73,7 +73,7 @@ FAULTS = {
         "parent link 'a' is not defined",
     ),
     "a missing child": (robot(link("a"), joint("j", "a", "b")), "joint 'j'", "child link 'b' is not defined"),
-    "two roots": (robot(link("a"), link("b")), "<robot>", "2 root links where a robot has one: 'a', 'b'"),
+    "two roots": (robot(link("a"), link("b")), "<robot>", "2 root links, but a robot has one: 'a', 'b'"),
     "two parents": (
         robot(link("a"), link("b"), joint("j", "a", "b"), joint("k", "a", "b")),
         "link 'b'",
@@ -88,14 +88,14 @@ FAULTS = {
     "an axis of zero": (pair('<axis xyz="0 0 0"/>'), "joint 'j'", 'xyz="0 0 0">: the axis is zero'),
     "an axis that is not finite": (pair('<axis xyz="0 nan 0"/>'), "joint 'j'", "'nan' is not finite"),
     "an axis without numbers": (pair("<axis/>"), "joint 'j'", "<axis> has no xyz"),
-    "an axis of two numbers": (pair('<axis xyz="0 1"/>'), "joint 'j'", "2 given where 3 numbers must be"),
+    "an axis of two numbers": (pair('<axis xyz="0 1"/>'), "joint 'j'", "must be 3 numbers; 2 given"),
     "two axes": (pair("<axis/><axis/>"), "joint 'j'", "has 2 <axis> elements"),
     "an origin that is not finite": (pair('<origin xyz="0 0 inf"/>'), "joint 'j'", "'inf' is not finite"),
     "an origin that overflows": (pair('<origin rpy="0 0 1e999"/>'), "joint 'j'", "'1e999' is not finite"),
-    "an origin out of this world": (pair('<origin xyz="0 0 1e300"/>'), "joint 'j'", "farther than"),
+    "an origin out of this world": (pair('<origin xyz="0 0 1e300"/>'), "joint 'j'", "must be at most 1e+12 m"),
     "an origin of words": (pair('<origin rpy="0 0 half"/>'), "joint 'j'", "'half' is not a number"),
     "an origin with commas": (pair('<origin xyz="0,0,1"/>'), "joint 'j'", "'0,0,1' is not a number"),
-    "an origin by quaternion": (pair('<origin quat_xyzw="0 0 0 1"/>'), "joint 'j'", "write rpy instead"),
+    "an origin by quaternion": (pair('<origin quat_xyzw="0 0 0 1"/>'), "joint 'j'", "use rpy instead"),
     "a number in Python's notation": (pair('<origin xyz="0 0 1_0"/>'), "joint 'j'", "'1_0' is not a number"),
     "a number too long to be one": (
         pair(f'<origin xyz="0 0 {"1" * 10**6}"/>'),
@@ -109,10 +109,10 @@ FAULTS = {
         "joint 'j'",
         "lower limit 2 is above upper limit 1",
     ),
-    "a lower limit alone, above 0": (pair(limit='<limit lower="2"/>'), "joint 'j'", "(no upper, read as 0)"),
+    "a lower limit alone, above 0": (pair(limit='<limit lower="2"/>'), "joint 'j'", "(no upper is given, "),
     "a limit that is not finite": (pair(limit='<limit lower="-inf" upper="1"/>'), "joint 'j'", "not finite"),
     "a limit that is no number": (pair(limit='<limit lower="x" upper="1"/>'), "joint 'j'", "not a number"),
-    "an empty limit": (pair(limit='<limit lower="" upper="1"/>'), "joint 'j'", "0 given where one number"),
+    "an empty limit": (pair(limit='<limit lower="" upper="1"/>'), "joint 'j'", "must be one number; 0 given"),
     "a negative effort": (pair(limit='<limit effort="-1"/>'), "joint 'j'", "must not be negative"),
     "a negative friction": (pair('<dynamics friction="-1"/>'), "joint 'j'", "must not be negative"),
     "a mimic of itself": (pair('<mimic joint="j"/>'), "joint 'j'", "mimics itself"),
@@ -139,7 +139,7 @@ FAULTS = {
             joint("l", "c", "d"),
         ),
         "joint 'j'",
-        "no finite multiplier",
+        "up to 'l' is not finite",
     ),
     "a negative mass": (robot(inertial('<mass value="-1"/>', INERTIA)), "link 'a'", "the mass is negative"),
     "a mass that is no number": (robot(inertial('<mass value="x"/>', INERTIA)), "link 'a'", "not a number"),
@@ -199,13 +199,13 @@ def test_each_fault_is_refused_with_its_element_and_its_cause(text: str, element
 WARNINGS = {
     "no bounds": (
         pair(limit="<limit/>"),
-        "joint 'j': <limit> has no lower and no upper, read as 0: its range is 0..0",
+        "joint 'j': <limit> has no lower and no upper, which is read as 0: its range is 0..0",
     ),
     "no upper bound": (
         pair(limit='<limit lower="-1"/>'),
-        "joint 'j': <limit> has no upper, read as 0: its range is -1..0",
+        "joint 'j': <limit> has no upper, which is read as 0: its range is -1..0",
     ),
-    "a mimic of nobody": (pair('<mimic joint="k"/>'), "joint 'j': it mimics 'k', and there is no such joint"),
+    "a mimic of nobody": (pair('<mimic joint="k"/>'), "joint 'j': it mimics 'k', which does not exist"),
     "a mimic of a fixed joint": (
         robot(*map(link, "abc"), joint("k", "a", "b", kind="fixed"), joint("j", "b", "c", '<mimic joint="k"/>')),
         "joint 'j': it mimics 'k', which is a fixed joint; it is left free",
@@ -228,10 +228,10 @@ WARNINGS = {
         "link 'a': <inertial> has no <inertia>",
     ),
     "a visual without a shape": (robot(link("a", "<visual/>")), "link 'a', visual: has no shape"),
-    "an unknown shape": (robot(shape("<cone/>")), "link 'a', visual: <cone> is no shape of URDF"),
+    "an unknown shape": (robot(shape("<cone/>")), "link 'a', visual: <cone> is not a URDF shape"),
     "a robot without a name": (
         robot(link("a")).replace('name="r"', ""),
-        "<robot> has no name; it is called 'robot'",
+        "<robot> has no name; the robot is named 'robot'",
     ),
 }
 

@@ -1,13 +1,15 @@
 from __future__ import annotations
 
 import math
+from xml.etree import ElementTree
 
 import numpy as np
 import pinocchio
 import pytest
+from hypothesis import given
 
 import pinik
-from by_hand import ZOO, axis, limit, mimic
+from by_hand import ZOO, axis, chains, limit, mimic
 from pinik.description import reader as urdf
 from pinik.model.build import build_model
 from robots import load_quietly
@@ -96,6 +98,19 @@ class TestTheModelsLimits:
         assert model.upperPositionLimit[:count].tolist() == [math.inf] * count
         with pytest.raises(RuntimeError, match="non bounded limit"):
             pinocchio.randomConfiguration(model)
+
+    @given(text=chains(kinds=("revolute", "prismatic", "fixed")))
+    def test_keep_every_joint_inside_the_limits_of_the_file_when_pinocchio_draws(self, text):
+        loaded = load_quietly(text)
+        assert loaded.warnings == ()
+        tags = ElementTree.fromstring(text).findall("joint")
+        for q in drawn(loaded.model, 5):
+            angles = loaded.angles(q)
+            for tag in tags:
+                if tag.attrib["type"] != "fixed":
+                    said = tag.find("limit").attrib
+                    angle = angles[tag.attrib["name"]]
+                    assert float(said["lower"]) - 1e-9 <= angle <= float(said["upper"]) + 1e-9
 
     @pytest.mark.parametrize("name", ["arm", "panda", "pr2", "tiago_pro", "baxter", "romeo", "kinova"])
     def test_are_those_of_the_robot(self, name):

@@ -254,7 +254,7 @@ class TestAngles:
 
     def test_a_follower_is_not_locked_and_the_error_names_its_leader(self, panda):
         with pytest.raises(
-            InputError, match=r"'panda_finger_joint2' mimics 'panda_finger_joint1'.*set 'panda_finger_joint1'"
+            InputError, match=r"'panda_finger_joint2' mimics 'panda_finger_joint1'.*name 'panda_finger_joint1' instead"
         ):
             panda.settable_joint("panda_finger_joint2")
 
@@ -265,7 +265,7 @@ class TestAngles:
         assert "panda_joint4" in caught.value.valid
 
     def test_a_fixed_joint_is_refused_as_fixed(self, two_link):
-        with pytest.raises(UnknownNameError, match="that one is a fixed joint"):
+        with pytest.raises(UnknownNameError, match="it is a fixed joint"):
             two_link.configuration({"tip_fixed": 0.0})
 
     @pytest.mark.parametrize("bad", [math.nan, math.inf, "0.3", None, [0.1], True, 10**400])
@@ -278,7 +278,7 @@ class TestAngles:
         for name in ("drift", "s_plane", "root_joint"):
             with pytest.raises(InputError, match="give its SE3 in joint_placements"):
                 robot.configuration({name: 0.1})
-        with pytest.raises(InputError, match="joint 'l_hinge' is revolute; give its scalar in angles"):
+        with pytest.raises(InputError, match="joint 'l_hinge' is revolute; give its angle in angles"):
             robot.configuration(joint_placements={"l_hinge": np.eye(4)})
         with pytest.raises(UnknownNameError, match="no joint 'root'"):
             robot.configuration(joint_placements={"root": np.eye(4)})
@@ -318,7 +318,7 @@ class TestJointPlacements:
     )
     def test_of_a_planar_joint_lie_in_its_plane(self, placement):
         robot = load_quietly("arm", root="planar")
-        with pytest.raises(InputError, match="planar joint 'root_joint' moves in its x-y plane only"):
+        with pytest.raises(InputError, match="planar joint 'root_joint' moves only in its x-y plane"):
             robot.configuration(joint_placements={"root_joint": placement})
 
     @pytest.mark.parametrize(
@@ -341,7 +341,7 @@ class TestJointPlacements:
 class TestConfigurations:
     @pytest.mark.parametrize("shape", [(), (11,), (13,), (12, 1), (1, 12)])
     def test_of_the_wrong_shape_are_refused(self, arm, shape):
-        with pytest.raises(InputError, match=r"q takes 12 finite numbers \(the configuration of 'arm'\)"):
+        with pytest.raises(InputError, match=r"q .*12 finite numbers \(the configuration of 'arm'\)"):
             arm.placement("tip", np.zeros(shape))
 
     @pytest.mark.parametrize("bad", [math.nan, math.inf, -math.inf])
@@ -354,18 +354,18 @@ class TestConfigurations:
 
     @pytest.mark.parametrize("bad", ["straight", None, {"bone1_x": 0.3}, ["0"] * 12])
     def test_that_are_no_numbers_are_refused(self, arm, bad):
-        with pytest.raises(InputError, match="q takes 12 finite numbers"):
+        with pytest.raises(InputError, match=r"q .*12 finite numbers"):
             arm.angles(bad)
 
     @pytest.mark.parametrize(
         ("entry", "joint_name", "words"),
-        [(7, "k_turn", "(cos, sin)"), (3, "drift", "its quaternion xyzw"), (13, "s_plane", "its (cos, sin)")],
+        [(7, "k_turn", "(cos, sin)"), (3, "drift", "the quaternion xyzw"), (13, "s_plane", "(cos, sin)")],
     )
     def test_whose_circles_are_not_of_unit_length_are_refused(self, entry, joint_name, words):
         robot = load_quietly(ZOO)
         q = robot.random(8)
         q[entry] += 3.0
-        with pytest.raises(InputError, match=f"{joint_name!r} holds {re.escape(words)}, of unit length"):
+        with pytest.raises(InputError, match=f"{re.escape(words)} of .* joint {joint_name!r} must be of unit length"):
             robot.placement("tip", q)
 
     def test_that_are_a_little_off_unit_length_are_scaled_in_a_copy(self, kinova):
@@ -694,15 +694,15 @@ class TestLoad:
 
     @pytest.mark.parametrize("bad", [None, 5, b"<robot/>", ["arm"]])
     def test_what_is_neither_name_nor_path_nor_text_is_refused(self, bad):
-        with pytest.raises(InputError, match="a robot is a catalogue name, a path or URDF text"):
+        with pytest.raises(InputError, match="a catalogue name, a path or URDF text"):
             pinik.load(bad)
 
     def test_an_unknown_root_is_refused_with_the_known_ones(self):
-        with pytest.raises(InputError, match="no root 'floating'; there are: 'fixed', 'free_flyer', 'planar'"):
+        with pytest.raises(InputError, match="root must be one of 'fixed', 'free_flyer', 'planar'; got 'floating'"):
             pinik.load("two_link", root="floating")
 
     def test_one_folder_is_no_list_of_package_dirs(self):
-        with pytest.raises(InputError, match="package_dirs takes a list of folders"):
+        with pytest.raises(InputError, match=r"package_dirs .*a list of folders"):
             pinik.load("two_link", package_dirs="/tmp")
 
     def test_without_its_meshes_warns_and_works(self):

@@ -1,4 +1,4 @@
-"""Two hinges in a plane, with ranges: both elbows for any number of points, and the nearest point inside the ranges"""
+"""Two hinges in a plane, with ranges: both elbows for any number of points, and the nearest point inside the ranges."""
 
 from __future__ import annotations
 

@@ -205,7 +205,7 @@ def _planes(targets: Array, distance: Array, poles: Array) -> Array:
 
 
 def _across(directions: Array) -> Array:
-    """A unit vector normal to each unit vector (3, N), near the coordinate axis that is most nearly normal to it."""
+    """A unit vector normal to each unit vector (3, N), made from the coordinate axis that is most nearly normal."""
     axes = np.eye(3)[:, np.abs(directions).argmin(axis=0)]
     across = axes - _dot(axes, directions) * directions
     return np.array(across / np.sqrt(_dot(across, across)))

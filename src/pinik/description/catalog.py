@@ -1,4 +1,4 @@
-"""Robots by name: pinik's own, and every one of example-robot-data."""
+"""Robots by name: pinik's own, and all robots of example-robot-data."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from .xml import DocumentError, parse
 
 __all__ = ["CatalogEntry", "catalog", "find"]
 
-# Files whose folder and stem do not say what people call the robot.
+# Files whose folder and stem differ from the usual name of the robot.
 SHORT_NAMES = {
     "g1_29dof_rev_1_0": "g1",
     "g1_29dof_with_hand_rev_1_0": "g1_with_hand",
@@ -23,7 +23,7 @@ SHORT_NAMES = {
     "talos_reduced": "talos",
     "talos_reduced_box": "talos_box",
     "talos_reduced_corrected": "talos_corrected",
-    # This file holds no robot; the UR3 itself is ur3_robot.urdf, and takes the name.
+    # This file contains no robot; the UR3 is in ur3_robot.urdf, which takes the name.
     "ur3": "ur3_empty",
     "xarm7": "xarm7",
 }
@@ -45,7 +45,7 @@ class CatalogEntry:
 
 
 def catalog() -> list[str]:
-    """The names that `find` knows, sorted."""
+    """The names of all robots that can be loaded by name, sorted."""
     return sorted(_urdf_files())
 
 
@@ -53,7 +53,7 @@ def find(name: str) -> CatalogEntry:
     """The robot of this name.
 
     Raises:
-        UnknownNameError: There is none; the error lists near names.
+        UnknownNameError: No such robot; the error lists near names.
     """
     files = _urdf_files()
     if name not in files:
@@ -68,14 +68,14 @@ def _urdf_files() -> Mapping[str, Path]:
 
 
 def _own_folder() -> Path:
-    """pinik's own urdf/: inside the installed package, else at the root of the checkout."""
+    """pinik's own urdf folder: in the installed package, or at the root of the checkout."""
     package = Path(__file__).resolve().parents[1]
     installed = package / "urdf"
     return installed if installed.is_dir() else package.parent.parent / "urdf"
 
 
 def _example_files() -> dict[str, Path]:
-    """example-robot-data's files by short name."""
+    """The URDF files of example-robot-data by short name."""
     robots = example_robot_data()
     paths = sorted(robots.glob("*/*/*.urdf")) if robots else []
     in_folder = Counter(_folder(path) for path in paths)
@@ -88,7 +88,7 @@ def _example_files() -> dict[str, Path]:
 
 
 def _short_name(path: Path, by_folder: bool) -> str:
-    """What a robot is called: after its folder, which a robot alone in it shares, or after its file."""
+    """The short name of a robot, from its folder if it is alone there, else from its file."""
     if path.stem in SHORT_NAMES:
         return SHORT_NAMES[path.stem]
     if by_folder:
@@ -97,15 +97,15 @@ def _short_name(path: Path, by_folder: bool) -> str:
 
 
 def _folder(urdf: Path) -> Path:
-    """A robot's folder in example-robot-data: its files lie one folder below."""
+    """A robot's folder in example-robot-data; its URDF lies one folder below."""
     return urdf.parent.parent
 
 
 def _srdf_of(name: str, urdf: Path) -> Path | None:
-    """The SRDF beside the URDF, or in the srdf/ beside its folder: of its stem, its name, or its family.
+    """The SRDF next to the URDF or in the neighbouring srdf folder, found by the file's stem, the name, or the family.
 
-    A family's file ("solo.srdf" for solo12.urdf) belongs to the robot only where the robot has every joint
-    that the poses set.
+    The file of a family, such as "solo.srdf" for solo12.urdf, is taken only if the robot has every joint that its poses
+    set.
     """
     folders = (_folder(urdf) / "srdf", urdf.parent)
     files = {path.stem: path for folder in folders for path in sorted(folder.glob("*.srdf"))}

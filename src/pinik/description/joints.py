@@ -1,4 +1,4 @@
-"""What a `<joint>` says: where it is, how it moves and how far; every number checked."""
+"""Read and check a `<joint>`: its origin, axis, limits, dynamics and mimic."""
 
 from __future__ import annotations
 
@@ -17,12 +17,12 @@ ONE_AXIS_KINDS = ("revolute", "continuous", "prismatic")
 
 @dataclass(frozen=True)
 class Mimic:
-    """A joint that follows another: angle = multiplier * leader's angle + offset.
+    """How a joint follows another: angle = multiplier · leader's angle + offset.
 
     Attributes:
-        leader: The name of the joint that is followed.
-        multiplier: Follower's rad or m per leader's rad or m.
-        offset: Follower's rad or m where the leader stands at 0.
+        leader: The name of the joint that it follows.
+        multiplier: The follower's rad or m per rad or m of the leader.
+        offset: The follower's angle when the leader is at 0 [rad or m].
     """
 
     leader: str
@@ -37,15 +37,15 @@ class JointTag:
     Attributes:
         name: Its name.
         kind: "revolute", "continuous", "prismatic", "fixed", "floating" or "planar".
-        parent: The link it hangs on.
-        child: The link it carries.
+        parent: The parent link.
+        child: The child link.
         xyz: The joint's origin in the parent link's frame [m].
-        rpy: The joint's orientation in the parent link's frame, fixed-axis roll, pitch, yaw [rad].
-        axis: The unit axis in the joint's frame; (1, 0, 0) for a joint without one.
-        lower: The lower limit [rad or m]; None where the file gives none, or the kind has none.
+        rpy: The joint's orientation in the parent link's frame: fixed-axis roll, pitch, yaw [rad].
+        axis: The unit axis in the joint's frame; (1, 0, 0) if the file gives none.
+        lower: The lower limit [rad or m]; None if the file gives none, or joints of this kind have none.
         upper: The upper limit, likewise.
-        mimic: The joint that it follows, if any.
-        effort: The largest effort [N m or N]; None where the file gives none.
+        mimic: How it follows another joint, if it does.
+        effort: The largest effort [N m or N]; None if the file gives none.
         velocity: The largest velocity [rad/s or m/s], likewise.
         damping: Viscous friction [N m s/rad or N s/m], likewise.
         friction: Dry friction [N m or N], likewise.
@@ -68,17 +68,17 @@ class JointTag:
 
 
 def read_joint(element: Element, warnings: list[str]) -> JointTag:
-    """Read and check a `<joint>`; doubtful things are named in `warnings` (appended to).
+    """Read and check a `<joint>`. Doubtful values are named in `warnings`, which is appended to.
 
     Raises:
-        DocumentError: A number is malformed or non-finite, a required part is missing, or the kind unknown.
+        DocumentError: A number is malformed or not finite, a required part is missing, or the type is unknown.
     """
     name = required_name(element)
     owner = f"joint {name!r}"
     kind = attribute_text(element, "type", owner)
     if kind not in JOINT_KINDS:
         raise DocumentError(
-            f"unknown type {kind!r}; there are: {', '.join(JOINT_KINDS)}", owner=owner, line=element.line
+            f"unknown type {kind!r}; it must be one of {', '.join(JOINT_KINDS)}", owner=owner, line=element.line
         )
     xyz, rpy = read_origin(element, owner)
     mimic = only_child(element, "mimic", owner)
@@ -115,10 +115,10 @@ def _read_mimic(element: Element, owner: str) -> Mimic:
 
 
 def _read_axis(joint: Element, kind: str, owner: str, warnings: list[str]) -> Vector:
-    """The unit axis; scaled before it is normalised so that no axis under- or overflows."""
+    """The unit axis; scaled before it is normalised, so that squares neither overflow nor underflow."""
     default = (1.0, 0.0, 0.0)
     element = only_child(joint, "axis", owner)
-    # Exporters write "0 0 0" on joints that have no axis: it means nothing there.
+    # Exporters write "0 0 0" for joints without an axis, where it has no meaning.
     if element is None or kind in ("fixed", "floating"):
         return default
     attribute_text(element, "xyz", owner)
@@ -137,7 +137,7 @@ def _read_axis(joint: Element, kind: str, owner: str, warnings: list[str]) -> Ve
 def _read_limit(
     joint: Element, kind: str, owner: str, warnings: list[str]
 ) -> tuple[float | None, float | None, float | None, float | None]:
-    """Lower and upper bound, effort and velocity; None for what is not given."""
+    """The lower and upper limit, effort and velocity; None for each that is not given."""
     element = only_child(joint, "limit", owner)
     bounded = kind in ("revolute", "prismatic")
     if element is None:
@@ -156,9 +156,11 @@ def _read_limit(
     absent = [name for name, value in (("lower", lower), ("upper", upper)) if value is None]
     if absent:
         bounds = f"{lower or 0.0:g}..{upper or 0.0:g}"
-        warnings.append(Flaw(owner, f"<limit> has no {' and no '.join(absent)}, read as 0: its range is {bounds}"))
+        warnings.append(
+            Flaw(owner, f"<limit> has no {' and no '.join(absent)}, which is read as 0: its range is {bounds}")
+        )
     if (lower or 0.0) > (upper or 0.0):
-        note = f" (no {absent[0]}, read as 0)" if absent else ""
+        note = f" (no {absent[0]} is given, which is read as 0)" if absent else ""
         raise DocumentError(
             f"lower limit {lower or 0.0:g} is above upper limit {upper or 0.0:g}{note}",
             owner=owner,

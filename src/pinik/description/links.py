@@ -1,4 +1,4 @@
-"""What a `<link>` says: its mass and inertia, and the addresses of its meshes; every number checked."""
+"""Read and check a `<link>`: its mass and inertia, and the addresses of its meshes."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from .xml import Element
 __all__ = ["INERTIA_ATTRIBUTES", "Inertial", "LinkTag", "read_link"]
 
 INERTIA_ATTRIBUTES = ("ixx", "ixy", "ixz", "iyy", "iyz", "izz")
-# The sizes of each shape: attribute and how many numbers it holds.
+# The dimensions of each shape: attribute, and its count of numbers.
 SHAPE_SIZES = {
     "box": (("size", 3),),
     "sphere": (("radius", 1),),
@@ -27,9 +27,9 @@ class Inertial:
 
     Attributes:
         xyz: The centre of mass in the link's frame [m].
-        rpy: The inertia's axes in the link's frame, roll, pitch, yaw [rad].
-        mass: [kg].
-        inertia: ixx, ixy, ixz, iyy, iyz, izz about the centre of mass [kg m²].
+        rpy: The orientation of the inertia's axes in the link's frame: roll, pitch, yaw [rad].
+        mass: The mass [kg].
+        inertia: ixx, ixy, ixz, iyy, iyz and izz about the centre of mass [kg m²].
     """
 
     xyz: Vector
@@ -45,7 +45,7 @@ class LinkTag:
     Attributes:
         name: Its name.
         inertial: Its mass and inertia, if the file gives them.
-        meshes: The addresses of its meshes as written, in order.
+        meshes: The addresses of its meshes as written, in the file's order.
     """
 
     name: str
@@ -54,10 +54,10 @@ class LinkTag:
 
 
 def read_link(element: Element, warnings: list[str]) -> LinkTag:
-    """Read and check a `<link>`; what Pinocchio can do without is named in `warnings` (appended to).
+    """Read and check a `<link>`. Parts that are left out are named in `warnings`, which is appended to.
 
     Raises:
-        DocumentError: A number is malformed, non-finite or impossible, or a required attribute is missing.
+        DocumentError: A number is malformed, not finite or out of range, or a required attribute is missing.
     """
     name = required_name(element)
     owner = f"link {name!r}"
@@ -98,12 +98,12 @@ def _read_inertial(element: Element, owner: str, warnings: list[str]) -> Inertia
 
 
 def _read_shape(shape: Element, owner: str, warnings: list[str]) -> tuple[str, ...]:
-    """Check a visual or collision; returns the address of its mesh, if it is one."""
+    """Check a `<visual>` or `<collision>`; return the address of its mesh, if it has one."""
     read_origin(shape, owner)
     geometry = only_child(shape, "geometry", owner)
     solid = geometry.children[0] if geometry is not None and geometry.children else None
     if solid is None or solid.tag not in SHAPE_SIZES:
-        what = "has no shape" if solid is None else f"<{solid.tag}> is no shape of URDF"
+        what = "has no shape" if solid is None else f"<{solid.tag}> is not a URDF shape"
         warnings.append(Flaw(owner, f"{what}; it is left out"))
         return ()
     for attribute, count in SHAPE_SIZES[solid.tag]:
@@ -112,7 +112,7 @@ def _read_shape(shape: Element, owner: str, warnings: list[str]) -> tuple[str, .
             raise bad_value(solid, attribute, owner, "sizes must be positive")
     if solid.tag != "mesh":
         return ()
-    # A negative scale mirrors the mesh, which is usual for left and right limbs.
+    # A negative scale mirrors the mesh, as is common for left and right limbs.
     if 0.0 in vector(solid, "scale", owner, (1.0, 1.0, 1.0)):
         raise bad_value(solid, "scale", owner, "a scale must not be zero")
     return (attribute_text(solid, "filename", owner),)

@@ -1,4 +1,4 @@
-"""Find the files that a URDF addresses: `package://`, `model://`, `file://`, absolute and relative."""
+"""Find the files that a URDF refers to: `package://`, `model://`, `file://`, absolute and relative."""
 
 from __future__ import annotations
 
@@ -13,26 +13,26 @@ from urllib.parse import unquote, urlsplit
 
 __all__ = ["example_robot_data", "resolve"]
 
-# ROS 1 looks for packages anywhere below the entries of ROS_PACKAGE_PATH; workspaces nest them this deep.
+# ROS 1 searches packages anywhere below the entries of ROS_PACKAGE_PATH; workspaces nest them this deep.
 NESTED_PACKAGES = ("", "*/", "*/*/")
 
 
 def resolve(
     address: str, *, urdf_path: Path | None = None, package_dirs: Sequence[os.PathLike[str] | str] = ()
 ) -> Path | None:
-    """Find the file behind an address in a URDF.
+    """Find the file that an address in a URDF refers to.
 
-    A package is looked for in `package_dirs`, then above the URDF file, in example-robot-data, and in the
-    entries of ROS_PACKAGE_PATH and AMENT_PREFIX_PATH; the first place that has the file wins.
+    Packages are searched in `package_dirs`, in the folders above the URDF file, in example-robot-data, and in the
+    entries of ROS_PACKAGE_PATH and AMENT_PREFIX_PATH, in this order. The first place that has the file wins.
 
     Args:
-        address: As written: "package://name/rest", "model://name/rest", "file:///path", or a path, which is
-            relative to the URDF file if it is not absolute.
-        urdf_path: The URDF file; None if the description came as text.
-        package_dirs: Directories that hold packages, or are packages.
+        address: The address as written: "package://name/rest", "model://name/rest", "file:///path", or a path. A
+            relative path starts at the URDF file's folder.
+        urdf_path: The URDF file; None if the description was given as text.
+        package_dirs: Folders that contain packages, or are packages.
 
     Returns:
-        The file; None where there is none, or where the address leaves its package by "..".
+        The file, or None if it does not exist or the address leaves its package through "..".
     """
     address = address.strip().replace("\\", "/")
     scheme, separator, rest = address.partition("://")
@@ -43,7 +43,7 @@ def resolve(
         return Path(path) if os.path.isfile(path) else None
     if scheme not in ("package", "model"):
         return None
-    # Some files write three slashes.
+    # Some files have three slashes.
     name, _, inside = rest.lstrip("/").partition("/")
     if name in ("", ".", "..") or not _stays_inside(inside):
         return None
@@ -55,7 +55,7 @@ def resolve(
 
 @functools.cache
 def example_robot_data() -> Path | None:
-    """The folder of example-robot-data's robots; None where that package is not installed."""
+    """The robots folder of example-robot-data, or None if that package is not installed."""
     prefixes = [Path(entry) / "cmeel.prefix" for entry in sys.path] + [Path(sys.prefix)]
     for prefix in prefixes:
         robots = prefix / "share" / "example-robot-data" / "robots"
@@ -84,7 +84,7 @@ def _stays_inside(inside: str) -> bool:
 def _package_places(
     name: str, urdf_path: Path | None, package_dirs: Sequence[os.PathLike[str] | str]
 ) -> Iterator[Path]:
-    """Where a package of this name may be, nearest first."""
+    """The folders in which a package of this name may be, nearest first."""
     homes = [Path(directory) for directory in package_dirs]
     if urdf_path is not None:
         homes.extend(urdf_path.absolute().parents)
@@ -107,7 +107,7 @@ def _package_places(
 
 
 def _manifest_name(directory: Path) -> str | None:
-    """The name in a directory's package.xml, for checkouts whose folder is called otherwise."""
+    """The name in the folder's package.xml, for checkouts whose folder has another name."""
     try:
         manifest = (directory / "package.xml").read_text(errors="replace")
     except OSError:

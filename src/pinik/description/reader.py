@@ -1,8 +1,8 @@
-"""Read a URDF safely and check it before Pinocchio sees it; every fault is named.
+"""Read a URDF safely, and check it before it is given to Pinocchio.
 
-Pinocchio itself answers nearly every fault with "does not contain a valid URDF model", and accepts others in
-silence. Here each one raises a `RobotLoadError` that names the element and the cause, and what is accepted is
-written anew, without shapes and with plain numbers, so that Pinocchio reads exactly what was checked.
+Pinocchio answers most faults with "does not contain a valid URDF model" and silently accepts others. Here each fault
+raises a `RobotLoadError` that names the element and the cause. What was checked is written as a new text, without
+shapes, so that Pinocchio reads exactly that.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ from .xml import MAX_BYTES, DocumentError, Element, parse
 
 __all__ = ["Description", "JointTag", "Mimic", "read"]
 
-# What a document is when its root element is not <robot>.
+# What a document is if its root element is not <robot>.
 OTHER_FORMATS = {
     "sdf": "an SDF file; convert it to URDF first",
     "world": "an SDF file; convert it to URDF first",
@@ -36,19 +36,19 @@ XACRO_HELP = "an unexpanded xacro file; expand it first: xacro file.xacro > file
 
 @dataclass(frozen=True)
 class Description:
-    """A robot description that was read and found good.
+    """A robot description that was read and checked.
 
     Attributes:
         name: The robot's name.
-        source: The file it came from, or "<text>".
-        path: That file, absolute; None for text.
+        source: The file that was read, or "<text>".
+        path: The absolute path of that file; None for text.
         root: The root link.
         links: The links, in the file's order.
-        joints: The joints, in the file's order; a mimic of a mimic names its ultimate leader.
-        meshes: The addresses of the meshes as written, each once, in order.
+        joints: The joints, in the file's order; a mimic of a mimic names the leader at the end of the chain.
+        meshes: The addresses of the meshes as written, in order, without repetitions.
         xml: The URDF text for Pinocchio: kinematics, inertias and limits, without shapes.
-        warnings: What was mended or left out, in words.
-        document: The bytes that were read, shapes and all.
+        warnings: What was repaired or left out.
+        document: The bytes that were read, shapes included.
     """
 
     name: str
@@ -67,12 +67,11 @@ def read(source: str | os.PathLike[str]) -> Description:
     """Read a URDF and check it.
 
     Args:
-        source: The path of a file, or URDF text: a str whose first character, white space and byte-order mark
-            aside, is "<".
+        source: The path of a file, or URDF text: a string that begins with "<" after any white space and byte-order
+            mark.
 
     Raises:
-        RobotLoadError: There is no such file, it is no URDF, or something in it is wrong; the message names
-            the element and the cause.
+        RobotLoadError: The file cannot be read, or is not a valid URDF; the message names the element and the cause.
     """
     if isinstance(source, str) and source.lstrip("\ufeff \t\r\n").startswith("<"):
         label, path = "<text>", None
@@ -106,18 +105,18 @@ def _file_bytes(path: Path) -> bytes:
             raise DocumentError("this is a directory, not a URDF file")
         if not (stat.S_ISREG(path.stat().st_mode) or _is_open_already(path)):
             raise DocumentError("this is a pipe or a device, not a URDF file")
-        # An endless stream must not fill the memory.
+        # An endless stream must not fill up the memory.
         with path.open("rb") as file:
             return file.read(MAX_BYTES + 1)
     except FileNotFoundError:
-        raise DocumentError("there is no such file (and URDF text would begin with '<')") from None
+        raise DocumentError("there is no such file (URDF text would begin with '<')") from None
     except (OSError, ValueError) as error:
         cause = getattr(error, "strerror", None) or str(error)
         raise DocumentError(f"the file cannot be read: {cause}") from None
 
 
 def _is_open_already(path: Path) -> bool:
-    """Whether it names a stream that somebody opened for us, as "<(xacro ...)" and "/dev/stdin" do."""
+    """Whether the path names a stream that is open already, such as "<(xacro ...)" or "/dev/stdin"."""
     return os.path.abspath(path).startswith(("/dev/fd/", "/proc/self/fd/", "/dev/stdin"))
 
 
@@ -134,7 +133,7 @@ def _describe(robot: Element, source: str, path: Path | None, document: bytes) -
     name = robot.attributes.get("name")
     if name is None:
         name = path.stem if path else "robot"
-        warnings.append(f"<robot> has no name; it is called {name!r}")
+        warnings.append(f"<robot> has no name; the robot is named {name!r}")
     return Description(
         name=name,
         source=source,
@@ -151,7 +150,7 @@ def _describe(robot: Element, source: str, path: Path | None, document: bytes) -
 
 def _check_root(robot: Element) -> None:
     if robot.tag != "robot":
-        kind = OTHER_FORMATS.get(robot.tag, "not a URDF, whose root is <robot>")
+        kind = OTHER_FORMATS.get(robot.tag, "not a URDF file, whose root is <robot>")
         raise DocumentError(f"the root element is <{robot.tag}>: this is {kind}", owner=f"<{robot.tag}>")
     for element in robot.walk():
         if element.tag.startswith("xacro:"):
@@ -171,5 +170,5 @@ def _why_no_links(robot: Element) -> str:
     if any(child.tag in SRDF_TAGS for child in robot.children):
         return "there are no <link> elements: this is an SRDF file; load the URDF that it belongs to"
     if "xmlns:xacro" in robot.attributes:
-        return "there are no <link> elements: the xacro file it was made from holds no robot, only macros"
+        return "there are no <link> elements: the xacro file from which it was made contains only macros"
     return "there are no <link> elements"

@@ -1,4 +1,4 @@
-"""How the links and joints of a URDF hang together: one tree, and mimics that end at a leader."""
+"""Check how links and joints are connected: in one tree, with every mimic chain ending at a leader."""
 
 from __future__ import annotations
 
@@ -15,27 +15,27 @@ __all__ = ["check_unique", "resolved_mimics", "root_link"]
 
 
 def check_unique(robot: Element) -> None:
-    """See that every link and joint of `<robot>` has a name, and its own.
+    """Check that every link and joint of `<robot>` has a name of its own.
 
     Raises:
-        DocumentError: One has no name, or two links or two joints share one.
+        DocumentError: A name is missing, or two links or two joints share one.
     """
     for tag in ("link", "joint"):
         first: dict[str, int] = {}
         for element in robot.named(tag):
             name = required_name(element)
             if name in first:
-                cause = f"defined twice, first in line {first[name]}"
+                cause = f"defined twice, first on line {first[name]}"
                 raise DocumentError(cause, owner=f"{tag} {name!r}", line=element.line)
             first[name] = element.line
 
 
 def root_link(links: Sequence[str], joints: Iterable[JointTag]) -> str:
-    """The one link without a parent, from which every other one hangs.
+    """The root: the only link without a parent.
 
     Raises:
-        DocumentError: A joint names a link that is not there, a link has two parents, links form a cycle, or
-            there are several roots.
+        DocumentError: A joint names a link that is not defined, a link has two parents, links form a cycle, or there
+            are several roots.
     """
     names = set(links)
     joint_above: dict[str, JointTag] = {}
@@ -55,15 +55,15 @@ def root_link(links: Sequence[str], joints: Iterable[JointTag]) -> str:
         raise DocumentError(f"links form a cycle: {_listed(cycle[::-1])}", owner=f"link {cycle[0]!r}")
     roots = [link for link in links if link not in joint_above]
     if len(roots) > 1:
-        cause = f"{len(roots)} root links where a robot has one: {_listed(roots)}; join them by fixed joints"
+        cause = f"{len(roots)} root links, but a robot has one: {_listed(roots)}; connect them by fixed joints"
         raise DocumentError(cause, owner="<robot>")
     return roots[0]
 
 
 def resolved_mimics(joints: Sequence[JointTag], warnings: list[str]) -> list[JointTag]:
-    """The joints, each mimic naming its ultimate leader with the whole chain's multiplier and offset.
+    """The joints, with each mimic naming the leader at the end of its chain, and the chain's multiplier and offset.
 
-    Mimics that can follow nothing are taken off, and named in `warnings` (appended to).
+    Mimics that have nothing to follow are removed and named in `warnings`, which is appended to.
 
     Raises:
         DocumentError: A joint mimics itself, or joints mimic each other in a circle.
@@ -71,15 +71,15 @@ def resolved_mimics(joints: Sequence[JointTag], warnings: list[str]) -> list[Joi
     by_name = {joint.name: joint for joint in joints}
     followers: dict[str, Mimic] = {}
     for joint in joints:
-        # A fixed joint with a mimic is the usual rest of a reduced robot; it simply stays fixed.
+        # Reduced robots often have fixed joints with a mimic left on them.
         if joint.mimic is None or joint.kind == "fixed":
             continue
         leader = by_name.get(joint.mimic.leader)
         common = None
         if joint.kind not in ONE_AXIS_KINDS:
-            cause = f"a {joint.kind} joint cannot mimic another; its mimic is ignored"
+            cause = f"a {joint.kind} joint cannot mimic another joint; its <mimic> is ignored"
         elif leader is None:
-            cause = f"it mimics {joint.mimic.leader!r}, and there is no such joint; it is left free"
+            cause = f"it mimics {joint.mimic.leader!r}, which does not exist; it is left free"
             common = "it mimics a joint that does not exist; it is left free"
         elif leader.kind not in ONE_AXIS_KINDS:
             cause = f"it mimics {leader.name!r}, which is a {leader.kind} joint; it is left free"
@@ -97,7 +97,7 @@ def resolved_mimics(joints: Sequence[JointTag], warnings: list[str]) -> list[Joi
 
 
 def _ultimate_leaders(followers: Mapping[str, Mimic]) -> dict[str, Mimic]:
-    """Every follower's mimic, composed along its chain; walked without recursion, for chains may be long."""
+    """The mimic of every follower, composed along its chain; without recursion, as chains may be long."""
     resolved: dict[str, Mimic] = {}
     for start in followers:
         chain = []
@@ -113,14 +113,14 @@ def _ultimate_leaders(followers: Mapping[str, Mimic]) -> dict[str, Mimic]:
                 offset = mimic.multiplier * above.offset + mimic.offset
                 mimic = Mimic(above.leader, multiplier, offset)
             if not (math.isfinite(mimic.multiplier) and math.isfinite(mimic.offset)):
-                cause = f"its chain of mimics up to {mimic.leader!r} has no finite multiplier and offset"
+                cause = f"the multiplier or offset of its chain of mimics up to {mimic.leader!r} is not finite"
                 raise DocumentError(cause, owner=f"joint {name!r}")
             resolved[name] = mimic
     return resolved
 
 
 def _cycle(above: Mapping[str, str]) -> list[str]:
-    """The names of one cycle, each followed by the one above it; empty where every walk up ends."""
+    """The names on one cycle, each followed by the one above it; empty if there is no cycle."""
     seen: set[str] = set()
     for start in above:
         walk: dict[str, None] = {}

@@ -1,4 +1,4 @@
-"""The smallest parts of a URDF: names, numbers, vectors and origins, each checked as it is read."""
+"""Read and check the smallest parts of a URDF: names, numbers, vectors and origins."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ __all__ = [
     "vector",
 ]
 
-# Beyond this, sums and squares of distances could overflow and leave a placement that is not finite.
+# [m]: beyond this, sums and squares of distances could overflow, and placements would not be finite.
 FARTHEST = 1e12
 LONGEST_NUMBER = 400
 NUMBER = re.compile(r"[+-]?(\d+(\.\d*)?|\.\d+)([eE][+-]?\d+)?", re.ASCII)
@@ -32,7 +32,7 @@ def required_name(element: Element) -> str:
     """The `name` of a link or joint.
 
     Raises:
-        DocumentError: There is none, or it is empty.
+        DocumentError: The name is missing or empty.
     """
     name = element.attributes.get("name")
     if name is None or not name.strip():
@@ -42,10 +42,10 @@ def required_name(element: Element) -> str:
 
 
 def only_child(parent: Element, tag: str, owner: str) -> Element | None:
-    """The child with this tag; None where absent.
+    """The child with this tag, or None.
 
     Raises:
-        DocumentError: There are several, and readers of URDF differ in which one they take.
+        DocumentError: There are several children with this tag; URDF readers differ in which one they take.
     """
     found = parent.named(tag)
     if len(found) > 1:
@@ -54,7 +54,11 @@ def only_child(parent: Element, tag: str, owner: str) -> Element | None:
 
 
 def attribute_text(element: Element, attribute: str, owner: str) -> str:
-    """The text of an attribute that must be there and not be empty."""
+    """The text of a required attribute.
+
+    Raises:
+        DocumentError: The attribute is missing or empty.
+    """
     text = element.attributes.get(attribute)
     if text is None or not text.strip():
         what = f"no {attribute}" if text is None else f"an empty {attribute}"
@@ -63,14 +67,14 @@ def attribute_text(element: Element, attribute: str, owner: str) -> str:
 
 
 def number(element: Element, attribute: str, owner: str) -> float | None:
-    """One finite number; None where the attribute is absent."""
+    """One finite number, or None if the attribute is missing."""
     if attribute not in element.attributes:
         return None
     return numbers(element, attribute, 1, owner)[0]
 
 
 def vector(element: Element, attribute: str, owner: str, default: Vector) -> Vector:
-    """Three finite numbers; `default` where the attribute is absent."""
+    """Three finite numbers, or `default` if the attribute is missing."""
     if attribute not in element.attributes:
         return default
     x, y, z = numbers(element, attribute, 3, owner)
@@ -78,10 +82,10 @@ def vector(element: Element, attribute: str, owner: str, default: Vector) -> Vec
 
 
 def numbers(element: Element, attribute: str, count: int, owner: str) -> list[float]:
-    """Exactly `count` finite numbers, in the notation that every URDF reader knows.
+    """Exactly `count` finite numbers, in the notation that all URDF readers accept.
 
     Raises:
-        DocumentError: One is malformed or not finite, or there are more or fewer.
+        DocumentError: A number is malformed or not finite, or there are more or fewer than `count`.
     """
     values = []
     for word in element.attributes[attribute].split():
@@ -94,12 +98,12 @@ def numbers(element: Element, attribute: str, count: int, owner: str) -> list[fl
         values.append(value)
     if len(values) != count:
         needed = "one number" if count == 1 else f"{count} numbers"
-        raise bad_value(element, attribute, owner, f"{len(values)} given where {needed} must be")
+        raise bad_value(element, attribute, owner, f"must be {needed}; {len(values)} given")
     return values
 
 
 def bad_value(element: Element, attribute: str, owner: str, cause: str) -> DocumentError:
-    """The error that quotes an attribute and says what is wrong with it."""
+    """An error that quotes an attribute and says what is wrong with it."""
     text = _shortened(element.attributes[attribute])
     return DocumentError(f'<{element.tag} {attribute}="{text}">: {cause}', owner=owner, line=element.line)
 
@@ -109,14 +113,14 @@ def _shortened(text: str) -> str:
 
 
 def read_origin(parent: Element, owner: str) -> tuple[Vector, Vector]:
-    """The `<origin>` of an element: xyz [m] and rpy [rad], zero where absent."""
+    """The `<origin>` of an element: xyz [m] and rpy [rad], zero if missing."""
     zero = (0.0, 0.0, 0.0)
     element = only_child(parent, "origin", owner)
     if element is None:
         return zero, zero
     if "quat_xyzw" in element.attributes:
-        raise bad_value(element, "quat_xyzw", owner, "quaternions (URDF 1.1) are not read; write rpy instead")
+        raise bad_value(element, "quat_xyzw", owner, "quaternions (URDF 1.1) are not supported; use rpy instead")
     xyz = vector(element, "xyz", owner, zero)
     if max(map(abs, xyz)) > FARTHEST:
-        raise bad_value(element, "xyz", owner, f"farther than {FARTHEST:g} m")
+        raise bad_value(element, "xyz", owner, f"must be at most {FARTHEST:g} m")
     return xyz, vector(element, "rpy", owner, zero)

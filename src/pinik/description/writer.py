@@ -1,4 +1,4 @@
-"""Write checked links and joints as the URDF text that Pinocchio gets: no shapes, plain numbers."""
+"""Write checked links and joints as the URDF text for Pinocchio, without shapes."""
 
 from __future__ import annotations
 
@@ -10,10 +10,10 @@ from .values import Vector
 
 __all__ = ["UNLIMITED", "written"]
 
-# Stands for efforts and velocities that the file leaves open: the number Pinocchio takes for its root joints.
+# For efforts and velocities that the file does not limit; Pinocchio uses the same number for its root joints.
 UNLIMITED = 1.7976931348623157e308
 _ENTITIES = {
-    "&": "&amp;",  # first: the others bring ampersands of their own
+    "&": "&amp;",  # first, because the others contain ampersands
     "<": "&lt;",
     ">": "&gt;",
     '"': "&quot;",
@@ -24,7 +24,7 @@ _ENTITIES = {
 
 
 def written(name: str, links: Iterable[LinkTag], joints: Iterable[JointTag]) -> str:
-    """The URDF text of a robot; every number survives exactly."""
+    """The URDF text of a robot; every number is written exactly."""
     lines = [f"<robot name={_quoted(name)}>"]
     lines.extend(_link(link) for link in links)
     lines.extend(_joint(joint) for joint in joints)
@@ -62,7 +62,7 @@ def _joint(joint: JointTag) -> str:
 
 
 def _limit(joint: JointTag) -> str:
-    """Bounds, effort and velocity; nothing where the kind needs none and none is given."""
+    """The `<limit>` of a joint; empty if its kind needs none and none is given."""
     bounded = joint.kind in ("revolute", "prismatic")
     if not bounded and joint.effort is None and joint.velocity is None:
         return ""
@@ -81,7 +81,7 @@ def _numbers(vector: Vector) -> str:
 
 
 def _quoted(text: str) -> str:
-    """`text` as an XML attribute's value, quotes included; xml.sax.saxutils has the same but imports urllib."""
+    """`text` as the value of an XML attribute, with quotes; like xml.sax.saxutils, which would import urllib."""
     for character, entity in _ENTITIES.items():
         text = text.replace(character, entity)
     return f'"{text}"'

@@ -1,4 +1,4 @@
-"""XML read with nothing but expat: no DTD, no entity, no outside reference, no bottomless nesting."""
+"""Read XML with expat alone: without document types, entities, external references or unbounded nesting."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from xml.parsers import expat
 
 __all__ = ["DocumentError", "Element", "parse"]
 
-# The largest robot known here has 0.2 MB, 5,000 elements and 9 levels: these bounds stop bombs, not robots.
+# The largest robot of the catalogue has 0.2 MB, 5,000 elements and 9 levels; these bounds stop XML bombs only.
 MAX_BYTES = 16 * 1024 * 1024
 MAX_ELEMENTS = 500_000
 MAX_DEPTH = 100
@@ -16,11 +16,11 @@ XINCLUDE = "http://www.w3.org/2001/XInclude"
 
 
 class DocumentError(Exception):
-    """What is wrong with a document, before it is known which file it came from.
+    """A fault in a document, raised where the name of the file is not known.
 
     Attributes:
-        message: The cause, in words.
-        owner: The faulty element, such as "joint 'elbow'", or None where the whole document is at fault.
+        message: The cause.
+        owner: The faulty element, such as "joint 'elbow'", or None if the whole document is at fault.
         line: Its line, from 1.
     """
 
@@ -33,13 +33,13 @@ class DocumentError(Exception):
 
 @dataclass(slots=True)
 class Element:
-    """One XML element without its text, which URDF does not use.
+    """An XML element without its text, which URDF does not use.
 
     Attributes:
-        tag: The name as written, a namespace prefix included.
-        attributes: The attributes, decoded.
-        line: The line where it begins, from 1.
-        children: The elements inside, in order.
+        tag: The name as written, with its namespace prefix.
+        attributes: The decoded attributes.
+        line: The line on which the element begins, from 1.
+        children: The child elements, in order.
     """
 
     tag: str
@@ -52,7 +52,7 @@ class Element:
         return [child for child in self.children if child.tag == tag]
 
     def walk(self) -> Iterator[Element]:
-        """This element and all inside it, parents first; the order of siblings is not kept."""
+        """This element and all its descendants, parents first; siblings come in any order."""
         pending = [self]
         while pending:
             element = pending.pop()
@@ -61,7 +61,7 @@ class Element:
 
 
 class _Builder:
-    """Collects expat's events into a tree of `Element`."""
+    """Builds a tree of `Element` from expat's events."""
 
     def __init__(self, parser: expat.XMLParserType, lines_before: int) -> None:
         self.root: Element | None = None
@@ -112,24 +112,24 @@ class _Builder:
 
 
 def parse(document: bytes, encoding: str | None = None) -> Element:
-    """Read an XML document.
+    """Parse an XML document.
 
     Args:
         document: The bytes of the file.
-        encoding: What they are encoded in; None where the document's own declaration decides.
+        encoding: Their encoding; None to take it from the document's declaration.
 
     Returns:
         The root element.
 
     Raises:
-        DocumentError: The document is not well-formed XML, declares a document type, or exceeds this module's
-            bounds.
+        DocumentError: The document is not well-formed XML, declares a document type, or exceeds the bounds of this
+            module.
     """
     if len(document) > MAX_BYTES:
         raise DocumentError(f"larger than {MAX_BYTES // 1024**2} MB, too large for a robot description")
     if not document.strip():
-        raise DocumentError("empty: there is no XML in it")
-    # Blank lines before the declaration are common in pasted text, and every URDF reader accepts them.
+        raise DocumentError("empty: it contains no XML")
+    # Blank lines before the declaration are common in pasted text, and other URDF readers accept them.
     blank = document[: len(document) - len(document.lstrip())]
     parser = expat.ParserCreate(encoding)
     builder = _Builder(parser, blank.count(b"\n"))
@@ -142,12 +142,12 @@ def parse(document: bytes, encoding: str | None = None) -> Element:
     except (UnicodeError, LookupError, ValueError) as error:
         raise DocumentError(f"not XML: its encoding cannot be read ({error})") from None
     if builder.root is None:
-        raise DocumentError("not XML: there is no element in it")
+        raise DocumentError("not XML: it contains no element")
     return builder.root
 
 
 def _encoding_fault(document: bytes, code: int) -> str | None:
-    """A plainer name for expat's "invalid token" where the bytes are no text at all."""
+    """A plainer description of expat's "invalid token" where the bytes are not text."""
     if code != expat.errors.codes[expat.errors.XML_ERROR_INVALID_TOKEN]:
         return None
     if b"\0" in document:

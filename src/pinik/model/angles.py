@@ -1,4 +1,4 @@
-"""Angles by name into a configuration: leaders, and followers that must agree with them"""
+"""Set the angles of several joints at once, followers among them."""
 
 from __future__ import annotations
 
@@ -14,14 +14,13 @@ __all__ = ["set_angles"]
 
 Array = NDArray[np.float64]
 
-_ROUNDING = 1e-9  # of the largest number involved, at least 1 rad or 1 m: nearer than this, two angles agree
+_ROUNDING = 1e-9  # how far two angles that agree may differ, relative to the largest term, or to 1 rad or 1 m
 
 
 def set_angles(q: Array, angles: Mapping[Joint, float]) -> None:
-    """Write the angles of one-axis joints into `q`, in place.
+    """Set the angles of one-axis joints in `q`, in place.
 
-    A follower whose leader is not given sets its leader. Where several of the joints share an entry of q, they must
-    agree to rounding.
+    A follower that is given without its leader sets the leader. Joints that share an entry of q must agree to rounding.
 
     Args:
         q: The configuration (nq,).
@@ -30,8 +29,8 @@ def set_angles(q: Array, angles: Mapping[Joint, float]) -> None:
     Raises:
         InputError: A follower disagrees with its leader or with another follower, or a joint has no angle.
     """
-    set_by: dict[str, tuple[Joint, float]] = {}  # leader → the joint that set it, and that joint's angle
-    # Leaders first, then the followers that determine theirs best; those with multiplier 0 do not at all.
+    set_by: dict[str, tuple[Joint, float]] = {}  # leader → the joint that set it, and the angle of that joint
+    # Leaders come first, then the followers with the largest multipliers, which determine their leader best.
     for joint, angle in sorted(angles.items(), key=_precedence):
         leader = joint.leader or joint.name
         if leader not in set_by and joint.multiplier != 0.0:

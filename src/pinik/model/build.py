@@ -1,4 +1,4 @@
-"""From a checked description to Pinocchio's model, with every mimic joint that Pinocchio gets right."""
+"""Build Pinocchio's model from a checked description, with the mimic joints that Pinocchio supports."""
 
 from __future__ import annotations
 
@@ -16,14 +16,14 @@ from .ranges import set_position_limits
 
 __all__ = ["MAX_DEGREES_OF_FREEDOM", "MAX_LINKS", "build_model"]
 
-# pinocchio.Data holds tensors of nv³ numbers, and a solve has two of them, the robot's and its own: 0.9 GB at
-# nv = 200, 1.6 GB at 250, 2.7 GB at 300 (measured as the largest resident size of `pinik solve`).
+# pinocchio.Data contains tensors of nv³ numbers, and a solve needs two of them: 0.9 GB at nv = 200, 1.6 GB at 250,
+# 2.7 GB at 300 (the largest resident size of `pinik solve`).
 MAX_DEGREES_OF_FREEDOM = 250
-# The parser looks every parent up by a walk over all frames: 10,000 links take a second, 100,000 minutes.
+# The parser searches all frames for each parent: 10,000 links take a second, 100,000 take minutes.
 MAX_LINKS = 10_000
 
-# The parser calls itself once per link of a chain and needs 2.1 to 2.4 kB of stack for it (an 8 MB stack ends
-# between 3,500 and 4,000 links). Deeper trees are built on a stack that holds MAX_LINKS of them twice over.
+# The parser recurses once for each link of a chain, with 2.1 to 2.4 kB of stack each: an 8 MB stack overflows between
+# 3,500 and 4,000 links. Deep trees are built on a stack with room for twice MAX_LINKS.
 DEEP_TREE = 100
 DEEP_STACK_BYTES = 64 * 1024 * 1024
 _stack_size_lock = threading.Lock()
@@ -42,21 +42,21 @@ def build_model(
     """Build Pinocchio's model of a robot.
 
     Args:
-        description: What `urdf.read` returned.
-        root: How the root link hangs in the world: "fixed", "free_flyer" (6 degrees of freedom) or "planar"
-            (3); the joint is called "root_joint".
-        mimic: Whether mimic joints follow their leaders; else all of them are free.
+        description: The checked URDF.
+        root: How the root link is attached to the world: "fixed", "free_flyer" (6 degrees of freedom) or "planar"
+            (3). The joint is called "root_joint".
+        mimic: Whether mimic joints follow their leaders; if not, they are free.
 
     Returns:
-        The model, whose position limits are those that hold (`ranges.set_position_limits`), and warnings in words:
-        mimic joints that Pinocchio cannot represent and that are left free, and followers whose limits are ignored.
+        The model, with the robot's position limits (`ranges.set_position_limits`), and warnings: mimic joints that are
+        left free because Pinocchio does not support them, and followers whose limits are ignored.
 
     Raises:
-        InputError: `root` is none of these.
-        RobotLoadError: The robot is too large for Pinocchio, or Pinocchio refuses it.
+        InputError: Another root than these.
+        RobotLoadError: The robot is too large, or Pinocchio refuses it.
     """
     if not isinstance(root, str) or root not in ROOT_JOINTS:
-        raise InputError(f"no root {root!r}; there are: {', '.join(map(repr, ROOT_JOINTS))}")
+        raise InputError(f"root must be one of {', '.join(map(repr, ROOT_JOINTS))}; got {root!r}")
     root_joint = None if ROOT_JOINTS[root] is None else ROOT_JOINTS[root]()
     _check_names(description, root)
     _check_size(description, 0 if root_joint is None else root_joint.nv)
@@ -80,16 +80,16 @@ def build_model(
 
 
 def _check_names(description: Description, root: str) -> None:
-    """Refuse the two joint names that Pinocchio gives to its own joints."""
+    """Refuse the two names that Pinocchio reserves for its own joints."""
     for joint in description.joints:
         owner = f"joint {joint.name!r}"
         if joint.name == "universe":
             raise RobotLoadError(
-                "Pinocchio keeps this name for the world; rename it", source=description.source, element=owner
+                "Pinocchio uses this name for the world; rename the joint", source=description.source, element=owner
             )
         if joint.name == "root_joint" and root != "fixed" and joint.kind != "fixed":
             raise RobotLoadError(
-                f"with root={root!r} Pinocchio's root joint has this name; rename it",
+                f"with root={root!r}, Pinocchio uses this name for the root joint; rename the joint",
                 source=description.source,
                 element=owner,
             )
@@ -98,30 +98,30 @@ def _check_names(description: Description, root: str) -> None:
 def _check_size(description: Description, root_freedoms: int) -> None:
     if len(description.links) > MAX_LINKS:
         raise RobotLoadError(
-            f"{len(description.links):,} links; at most {MAX_LINKS:,} can be loaded",
+            f"it has {len(description.links):,} links; at most {MAX_LINKS:,} can be loaded",
             source=description.source,
         )
     freedoms = root_freedoms + sum(FREEDOMS[joint.kind] for joint in description.joints)
     if freedoms > MAX_DEGREES_OF_FREEDOM:
         raise RobotLoadError(
-            f"{freedoms:,} degrees of freedom; at most {MAX_DEGREES_OF_FREEDOM} can be loaded, because "
-            "Pinocchio's working memory grows with their third power (a solve at 250 takes 1.6 GB)",
+            f"it has {freedoms:,} degrees of freedom; at most {MAX_DEGREES_OF_FREEDOM} can be loaded, because "
+            "Pinocchio's memory grows with their third power (a solve with 250 takes 1.6 GB)",
             source=description.source,
         )
 
 
 def _why_left_free(follower: str, leader: str, free: pinocchio.Model) -> str | None:
-    """Why Pinocchio cannot make this joint follow its leader; None where it can."""
+    """Why Pinocchio cannot make this joint follow its leader; None if it can."""
     if free.getJointId(follower) < free.getJointId(leader):
         return f"it mimics {leader!r}, which comes after it in Pinocchio's order of joints"
     return None
 
 
 def _with_mimics(xml: str, honoured: Collection[str], leaders: Collection[str]) -> str:
-    """The text with the honoured mimics alone, and no continuous joint among leaders and followers.
+    """The text with only the honoured mimics, and with revolute joints for continuous leaders and followers.
 
-    As (cos, sin) a leader would forget its whole turns, which its followers need, and could keep no limits that
-    theirs impose; and Pinocchio pairs continuous joints with continuous ones only.
+    As (cos, sin), a leader would lose its whole turns, which its followers need, and could not have the limits that
+    they impose. Besides, Pinocchio pairs continuous joints only with each other.
     """
     robot = ElementTree.fromstring(xml)
     for joint in robot.iter("joint"):
@@ -133,14 +133,14 @@ def _with_mimics(xml: str, honoured: Collection[str], leaders: Collection[str]) 
             limit = joint.find("limit")
             if limit is None:
                 limit = ElementTree.SubElement(joint, "limit", effort=repr(UNLIMITED), velocity=repr(UNLIMITED))
-            limit.attrib.update(lower="0", upper="0")  # URDF wants bounds here; `set_position_limits` lifts them
+            limit.attrib.update(lower="0", upper="0")  # required by URDF; `set_position_limits` removes them
     return ElementTree.tostring(robot, encoding="unicode")
 
 
 def _built(
     description: Description, xml: str, root_joint: pinocchio.JointModel | None, *, mimic: bool
 ) -> pinocchio.Model:
-    """Pinocchio's model of a URDF text; what Pinocchio raises becomes a `RobotLoadError`."""
+    """Pinocchio's model of a URDF text; its errors are raised as `RobotLoadError`."""
     arguments = (xml, mimic) if root_joint is None else (xml, root_joint, mimic)
 
     def build() -> pinocchio.Model:
@@ -154,7 +154,7 @@ def _built(
 
 
 def _depth(description: Description) -> int:
-    """The number of joints between the root and the link farthest from it."""
+    """The largest number of joints between the root and a link."""
     above = {joint.child: joint.parent for joint in description.joints}
     depth = {description.root: 0}
     for link in description.links:
@@ -168,8 +168,8 @@ def _depth(description: Description) -> int:
 
 
 def _on_deep_stack(build: Callable[[], pinocchio.Model]) -> pinocchio.Model:
-    """Run `build` in a thread of its own, whose stack is large enough for the deepest tree admitted."""
-    from concurrent.futures import ThreadPoolExecutor  # slow to import, seldom needed
+    """Run `build` in a thread whose stack is large enough for the deepest tree that is allowed."""
+    from concurrent.futures import ThreadPoolExecutor  # slow to import and rarely needed
 
     with _stack_size_lock, ThreadPoolExecutor(max_workers=1) as pool:
         usual = threading.stack_size(DEEP_STACK_BYTES)

@@ -1,4 +1,4 @@
-"""One movable joint: where it stands in Pinocchio's vectors, its angle or placement, its limits."""
+"""One movable joint: its place in Pinocchio's vectors, its angle or placement, and its limits."""
 
 from __future__ import annotations
 
@@ -16,25 +16,25 @@ __all__ = ["Joint", "joints_of"]
 
 Array = NDArray[np.float64]
 
-_WIDEST_RANGE = 100.0  # [rad or m]: wider limits, such as the ±1e16 of some files, are none
+_WIDEST_RANGE = 100.0  # [rad or m]: wider limits, such as ±1e16 in some files, count as none
 _FREE = (-math.inf, math.inf)
 
 
 @dataclass(frozen=True)
 class Joint:
-    """One movable joint and its place in the model's vectors.
+    """A movable joint, and its place in the vectors of the model.
 
     Attributes:
-        name: As in the URDF; the root joint of a free or planar root is "root_joint".
-        kind: "revolute", "continuous", "prismatic", "floating" or "planar". A continuous joint holds (cos, sin) in q,
-            or its angle where others mimic it.
+        name: The name in the URDF; the joint of a free or planar root is called "root_joint".
+        kind: "revolute", "continuous", "prismatic", "floating" or "planar". A continuous joint is (cos, sin) in q, or
+            its angle if another joint mimics it.
         id: Index in `pinocchio.Model.joints`.
-        idx_q, nq: First entry and number of entries in `q`; a follower has none of its own.
-        idx_v, nv: The same in a tangent vector.
-        axis: Unit vector (3,) in the joint's frame, for the one-axis kinds.
-        lower, upper: Its own limits in the URDF [rad or m]; infinite for the kinds that have none.
-        leader: The joint that this one mimics, or None; then angle = multiplier · leader + offset, and the entries of
-            q and v are the leader's.
+        idx_q, nq: First entry and number of entries in q. A follower has nq = 0, and its leader's first entry.
+        idx_v, nv: The same for tangent vectors.
+        axis: Unit axis (3,) in the joint's frame, for joints with one axis.
+        lower, upper: Its own limits in the URDF [rad or m], infinite where there are none.
+        leader: The name of the joint that it mimics, or None.
+        multiplier, offset: A follower's angle is multiplier · leader's angle + offset.
     """
 
     name: str
@@ -53,11 +53,11 @@ class Joint:
 
     @property
     def has_one_axis(self) -> bool:
-        """Whether one scalar (rad, or m for prismatic) describes the joint."""
+        """Whether one number describes the joint: its angle [rad], or its position [m] if it is prismatic."""
         return self.kind in ("revolute", "continuous", "prismatic")
 
     def angle(self, q: Array) -> float:
-        """The angle of a one-axis joint at `q` [rad or m]; for a follower, the angle that it takes from its leader."""
+        """The angle of a one-axis joint at `q` [rad or m]; a follower's is computed from its leader's."""
         own = math.atan2(q[self.idx_q + 1], q[self.idx_q]) if self.nq == 2 else float(q[self.idx_q])
         return own if self.leader is None else self.multiplier * own + self.offset
 
@@ -97,7 +97,7 @@ class Joint:
         return leader
 
     def placement(self, q: Array) -> pinocchio.SE3:
-        """A floating or planar joint's SE3 in its parent at `q`."""
+        """The placement of a floating or planar joint in its parent at `q`."""
         if self.kind == "floating":
             return pinocchio.XYZQUATToSE3(q[self.idx_q : self.idx_q + 7])
         x, y, cosine, sine = q[self.idx_q : self.idx_q + 4]
@@ -105,35 +105,35 @@ class Joint:
         return pinocchio.SE3(rotation, np.array([x, y, 0.0]))
 
     def set_placement(self, q: Array, placement: pinocchio.SE3) -> None:
-        """Write a floating or planar joint's SE3 into `q`, in place.
+        """Set the placement of a floating or planar joint in `q`, in place.
 
         Raises:
-            InputError: A placement outside a planar joint's plane.
+            InputError: The placement is outside the plane of a planar joint.
         """
         if self.kind == "floating":
             q[self.idx_q : self.idx_q + 7] = pinocchio.SE3ToXYZQUAT(placement)
             return
         out_of_plane = max(abs(placement.translation[2]), abs(placement.rotation[2, 2] - 1.0))
         if out_of_plane > 1e-9:
-            raise InputError(f"planar joint {self.name!r} moves in its x-y plane only and turns about z")
+            raise InputError(f"planar joint {self.name!r} moves only in its x-y plane and turns only about z")
         cosine, sine = placement.rotation[0, 0], placement.rotation[1, 0]
         q[self.idx_q : self.idx_q + 4] = (*placement.translation[:2], cosine, sine)
 
     def circle(self, q: Array) -> tuple[Array, str] | None:
-        """(the entries of `q` that have unit length, what they are), or None where there are none."""
+        """The entries of `q` that must have length 1, and their name in words; None if there are none."""
         if self.nq == 2:
             return q[self.idx_q : self.idx_q + 2], "(cos, sin)"
         if self.kind == "floating":
-            return q[self.idx_q + 3 : self.idx_q + 7], "its quaternion xyzw"
+            return q[self.idx_q + 3 : self.idx_q + 7], "the quaternion xyzw"
         if self.kind == "planar":
-            return q[self.idx_q + 2 : self.idx_q + 4], "its (cos, sin)"
+            return q[self.idx_q + 2 : self.idx_q + 4], "(cos, sin)"
         return None
 
     def range_to_draw_from(self, lower: float, upper: float, slide_about: float = 0.0) -> tuple[float, float]:
-        """The limits [rad or m] made finite, for drawing angles at random.
+        """A finite range inside the limits [rad or m], from which random angles are drawn.
 
-        Without limits, or with limits so wide that they are none, ±π about zero for a turning joint and ±1 m about
-        `slide_about` for a sliding one; moved inside the limits where it would reach out.
+        It is the whole range, unless that is infinite or wider than 100. Then it is ±π about 0 for turning joints and
+        ±1 m about `slide_about` for sliding joints, shifted into the limits.
         """
         if upper - lower <= _WIDEST_RANGE:
             return lower, upper
@@ -143,7 +143,7 @@ class Joint:
 
 
 def joints_of(model: pinocchio.Model, description: Description) -> tuple[Joint, ...]:
-    """Every movable joint of a model, in its order; what the model does not tell comes from the description."""
+    """All movable joints of a model, in its order, with what only the description knows."""
     tags = {tag.name: tag for tag in description.joints}
     joints = []
     for joint_id in range(1, model.njoints):

@@ -1,4 +1,4 @@
-"""Joint limits as a box in which configurations are kept."""
+"""Joint limits as a box of configurations."""
 
 from __future__ import annotations
 
@@ -15,19 +15,20 @@ __all__ = ["Limits"]
 
 Array = NDArray[np.float64]
 
-_AT_LIMIT = 1e-6  # [rad or m]: nearer than this a joint is said to sit at its limit
+_AT_LIMIT = 1e-6  # [rad or m]: a joint nearer to its limit than this is at its limit
 
 
 @dataclass(frozen=True)
 class Limits:
-    """A robot's limits, switched on or off.
+    """The limits of a robot, enabled or disabled.
 
     Attributes:
-        robot: Whose they are.
-        enabled: Whether they hold.
-        lower, upper: (nq,) bounds of the entries of q; infinite where there are none.
-        entry: (nv,) the entry of q behind each tangent coordinate that has bounds, −1 for the others.
-        turning: (nq,) which entries are hinge angles, equal when 2π apart; not so for what others mimic.
+        robot: The robot.
+        enabled: Whether the limits hold.
+        lower, upper: Limits of the entries of q (nq,) [rad or m], infinite where there are none.
+        entry: For each tangent coordinate (nv,), the entry of q that has its limits, or −1.
+        turning: For each entry of q (nq,), whether it is the angle of a hinge that no joint mimics, for which angles 2π
+            apart are equivalent.
     """
 
     robot: RobotModel
@@ -39,7 +40,7 @@ class Limits:
 
     @classmethod
     def of(cls, robot: RobotModel, enabled: bool = True) -> Limits:
-        """The limits of a robot, all infinite unless `enabled`."""
+        """The limits of a robot; all infinite unless `enabled`."""
         entry = np.full(robot.model.nv, -1, dtype=np.intp)
         turning = np.zeros(robot.model.nq, dtype=bool)
         leaders = {joint.leader for joint in robot.joints}
@@ -53,7 +54,7 @@ class Limits:
         return cls(robot, False, np.full(robot.model.nq, -np.inf), np.full(robot.model.nq, np.inf), entry, turning)
 
     def loosened(self) -> Limits:
-        """Without the limits, but for those that leave a joint only one value."""
+        """The same without limits, except for those of joints that have a single value."""
         single = self.lower == self.upper
         if not single.any():
             return Limits.of(self.robot, False)
@@ -61,15 +62,15 @@ class Limits:
         return dataclasses.replace(self, lower=lower, upper=upper)
 
     def clip(self, q: Array) -> Array:
-        """The nearest configurations (…, nq) inside, entry by entry."""
+        """The nearest configurations (…, nq) inside the limits, entry by entry."""
         return np.minimum(np.maximum(q, self.lower), self.upper)
 
     def contains(self, q: Array) -> bool:
-        """Whether `q` lies inside."""
+        """Whether `q` is inside the limits."""
         return bool(((q >= self.lower) & (q <= self.upper)).all())
 
     def wrap(self, q: Array) -> Array:
-        """`q` (…, nq), hinge angles that lie outside turned by whole turns, as near to their limits as they get."""
+        """`q` (…, nq), where hinges outside their limits are moved by whole turns, as near to them as possible."""
         outside = self.turning & ((q < self.lower) | (q > self.upper))
         if not outside.any():
             return q
@@ -81,12 +82,15 @@ class Limits:
         return wrapped
 
     def blocked(self, q: Array, wanted: Array, inside: Array) -> NDArray[np.bool_]:
-        """(nv,) the coordinates that sat at a limit at `q` and would leave it towards `wanted`; `inside`: its clip."""
+        """Which tangent coordinates (nv,) are at a limit at `q` and would cross it on the way to `wanted`.
+
+        `inside` is `wanted`, clipped to the limits.
+        """
         entries: NDArray[np.bool_] = (inside != wanted) & (inside == q)
         return np.asarray(entries[self.entry] & (self.entry >= 0))
 
     def active(self, q: Array) -> dict[str, str]:
-        """Joint name → "lower", "upper" or "both", for the joints that sit at a limit."""
+        """The joints that are at a limit at `q`: joint name → "lower", "upper" or "both"."""
         sides = {}
         for joint in self.robot.joints:
             if joint.nq == 1:

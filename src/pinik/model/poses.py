@@ -1,4 +1,4 @@
-"""Named configurations: the poses of an SRDF, read by Pinocchio."""
+"""Named configurations: the poses in an SRDF file, read by Pinocchio."""
 
 from __future__ import annotations
 
@@ -20,17 +20,17 @@ Array = NDArray[np.float64]
 
 
 def read_poses(srdf: Path, model: pinocchio.Model, joints: Iterable[Joint]) -> dict[str, Array]:
-    """The poses of an SRDF: name → q (nq,), what a pose leaves out neutral.
+    """The poses in an SRDF file: name → q (nq,). Joints that a pose does not mention are neutral.
 
-    Joints that `model` does not have, and followers, are passed over.
+    Followers, and joints that the model does not have, are skipped.
 
     Args:
-        srdf: The file.
+        srdf: The SRDF file.
         model: Pinocchio's model; it is not modified.
-        joints: Its joints.
+        joints: The joints of the model.
 
     Raises:
-        RobotLoadError: The file cannot be read, or is no XML.
+        RobotLoadError: The file cannot be read, or is not XML.
     """
     try:
         with srdf.open("rb") as file:
@@ -51,7 +51,7 @@ def read_poses(srdf: Path, model: pinocchio.Model, joints: Iterable[Joint]) -> d
 
 
 def _of_joints_that_can_be_set(robot: Element, joints: dict[str, Joint]) -> str:
-    """The poses alone, without the joints about which Pinocchio would write to the process's own stdout."""
+    """The poses as XML, without joints for which Pinocchio would print a message to stdout."""
     kept = ElementTree.Element("robot", name="poses")
     for state in robot.named("group_state"):
         pose = ElementTree.SubElement(kept, "group_state", state.attributes)

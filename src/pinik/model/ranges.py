@@ -1,4 +1,4 @@
-"""How far each joint may go: its own limits, cut by those of the joints that mimic it; written into the model."""
+"""Position limits of the model: each joint's own, cut by those of the joints that mimic it."""
 
 from __future__ import annotations
 
@@ -21,19 +21,20 @@ _FREE_TRANSLATION = {"floating": 3, "planar": 2}  # entries of q
 
 
 def set_position_limits(model: pinocchio.Model, joints: Sequence[Joint]) -> tuple[Flaw, ...]:
-    """Write the limits that hold on a robot into `model.lowerPositionLimit` and `model.upperPositionLimit`.
+    """Set `model.lowerPositionLimit` and `model.upperPositionLimit` to the limits of the robot.
 
-    Each joint with one entry in q gets its own limits, cut where a follower would leave its own; they are infinite
-    where there are none. So are those of a free translation, where Pinocchio's largest double makes
-    `pinocchio.randomConfiguration` return infinite positions; with infinite limits it refuses to draw, in words. The
-    entries of unit length, (cos, sin) and quaternions, keep the limits that Pinocchio gives them: they exclude nothing.
+    The limits of a joint with one entry in q are its own, cut so that its followers stay inside theirs, and infinite
+    where there are none. The translations of floating and planar joints have infinite limits too: with the largest
+    double, which Pinocchio sets for root joints, `pinocchio.randomConfiguration` returns infinite positions, while for
+    infinite limits it raises an error. Quaternions and (cos, sin) pairs keep the limits that Pinocchio sets, which
+    exclude no orientation.
 
     Args:
         model: The model; it is modified.
-        joints: All of its joints.
+        joints: All joints of the model.
 
     Returns:
-        Warnings that name the followers whose limits are ignored, because they would stop their leader.
+        A warning for each follower whose limits are ignored because they would stop its leader.
     """
     lower, upper = np.array(model.lowerPositionLimit), np.array(model.upperPositionLimit)
     warnings: list[Flaw] = []
@@ -49,7 +50,7 @@ def set_position_limits(model: pinocchio.Model, joints: Sequence[Joint]) -> tupl
 
 
 def configuration_limits(model: pinocchio.Model, joints: Iterable[Joint]) -> tuple[Array, Array]:
-    """The model's (lower, upper) limits (nq,), infinite for the entries that are no joint's angle [rad or m]."""
+    """The model's lower and upper limits (nq,) [rad or m], infinite for entries that are not the angle of a joint."""
     lower, upper = np.full(model.nq, -np.inf), np.full(model.nq, np.inf)
     for joint in joints:
         if joint.nq == 1:
@@ -59,10 +60,10 @@ def configuration_limits(model: pinocchio.Model, joints: Iterable[Joint]) -> tup
 
 
 def _cut_by_followers(joint: Joint, followers: Iterable[Joint], warnings: list[Flaw]) -> tuple[float, float]:
-    """The limits of a joint [rad or m] that keep its followers inside theirs.
+    """The limits of a joint [rad or m], cut so that its followers stay inside theirs.
 
-    A follower whose limits would leave the joint nothing, or a single value out of a range, does not count;
-    `warnings` (appended to) names it.
+    A follower that would leave the joint no value, or a single value of a range, is ignored and named in `warnings`,
+    which is appended to.
     """
     lower, upper = joint.lower, joint.upper
     for follower in followers:
@@ -80,4 +81,4 @@ def _cut_by_followers(joint: Joint, followers: Iterable[Joint], warnings: list[F
             warnings.append(Flaw(f"joint {follower.name!r}", cause, common=common))
         else:
             lower, upper = low, high
-    return lower + 0.0, upper + 0.0  # a negative multiplier turns 0 into −0, which numpy holds to be below 0
+    return lower + 0.0, upper + 0.0  # no −0, which a negative multiplier makes of 0

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 import os
 import threading
 from collections.abc import Mapping, Sequence
@@ -14,11 +13,13 @@ import numpy as np
 import pinocchio
 from numpy.typing import ArrayLike, NDArray
 
-from ..checks import as_finite_number, as_many, as_se3, as_vector
+from ..checks import as_finite_number, as_se3
 from ..description import reader as urdf
 from ..errors import InputError, UnknownNameError
 from .angles import set_angles
 from .build import build_model
+from .configurations import checked, checked_many, random_configuration
+from .jacobians import as_reference_frame, frame_jacobian, relative_jacobian
 from .joint import Joint, joints_of
 from .poses import read_poses
 from .ranges import configuration_limits
@@ -27,32 +28,32 @@ __all__ = ["RobotModel"]
 
 Array = NDArray[np.float64]
 
-_AXES = {
-    "local_world_aligned": pinocchio.LOCAL_WORLD_ALIGNED,
-    "local": pinocchio.LOCAL,
-    "world": pinocchio.WORLD,
-}
-
 
 class RobotModel:
-    """A Pinocchio model that speaks in names.
+    """A robot, loaded from a URDF by `pinik.load`: a Pinocchio model whose joints and frames are addressed by name.
 
-    Made by `pinik.load`. Configurations `q` are Pinocchio's own vectors; people and files use *angles*, one scalar
-    per one-axis joint by name (rad, or m for prismatic joints).
+    A *configuration* `q` is Pinocchio's own vector (nq,): a continuous joint takes two entries, (cos, sin), and a
+    floating joint takes seven, xyz and a quaternion xyzw. *Angles* describe the same configuration by joint name, with
+    one number for each joint that turns about or slides along one axis [rad or m]. `configuration` and `angles` convert
+    between them. The world is the root link if the root is fixed, else the frame in which the root joint moves.
+
+    All methods check their arguments, and none modifies them. Robots can be pickled and used from several threads.
 
     Attributes:
-        name: The catalogue's name, or the one that the URDF gives itself.
-        model: The `pinocchio.Model`; do not modify it.
+        name: The name in the catalogue, or the name that the URDF gives.
+        model: The `pinocchio.Model`, for use with Pinocchio's own functions; do not modify it. Its position limits are
+            those of the robot.
         description: The checked URDF.
-        root: "fixed", "free_flyer" or "planar".
-        package_dirs: Where the meshes' packages are looked for first.
-        warnings: What was mended or left out while loading, in words.
-        joints: Every movable joint, followers and the root joint included, in the model's order.
-        joint_names: The one-axis joints that can be set, in the model's order.
-        frame_names: Every frame, in the model's order, links before joints of the same name.
-        mimics: follower → (leader, multiplier, offset).
-        lower, upper: Limits (n_joints,) in the order of `joint_names` [rad or m], infinite where unbounded;
-            a leader's are cut by its followers'.
+        root: How the root link is attached to the world: "fixed", "free_flyer" or "planar".
+        package_dirs: The folders that are searched first for the packages of meshes.
+        warnings: What was repaired or left out while loading.
+        joints: All movable joints in the model's order, including followers and the root joint.
+        joint_names: The names of the one-axis joints that are not followers, in the model's order.
+        frame_names: The names of all frames, in the model's order.
+        mimics: Follower → (leader, multiplier, offset), where follower = multiplier · leader + offset.
+        lower, upper: Joint limits (n_joints,) in the order of `joint_names` [rad or m], infinite where there are none.
+            Those of a leader also keep its followers inside their limits.
+        lower_q, upper_q: The same limits for the entries of q (nq,), infinite for entries that are not an angle.
     """
 
     def __init__(
@@ -92,18 +93,22 @@ class RobotModel:
         return f"<{type(self).__name__} {self.name!r}: {counts}, {self.root} root>"
 
     def __reduce__(self) -> tuple[Any, ...]:
-        # Built anew: a serialized Pinocchio 4.1.0 model with mimic joints crashes when it is used.
+        # The model is built again, because Pinocchio 4.1.0 crashes when it uses a deserialised model with mimic joints.
         build = partial(type(self), name=self.name, root=self.root, package_dirs=self.package_dirs)
         return partial(build, mimic=self._mimic, srdf=self._srdf), (self.description,), {"warnings": self.warnings}
 
     def with_root(self, root: str) -> Self:
-        """The same robot, hung in the world otherwise: "fixed", "free_flyer" or "planar"."""
+        """The same robot with another root joint: "fixed", "free_flyer" or "planar".
+
+        Raises:
+            InputError: Another root than these.
+        """
         settings: dict[str, Any] = {"package_dirs": self.package_dirs, "mimic": self._mimic, "srdf": self._srdf}
         return type(self)(self.description, name=self.name, root=root, **settings)
 
     @property
     def data(self) -> Any:
-        """This thread's `pinocchio.Data`, used by `placement` and `jacobian`."""
+        """The `pinocchio.Data` of the calling thread, which `placement` and `jacobian` use."""
         if not hasattr(self._local, "data"):
             self._local.data = self.model.createData()
         return self._local.data
@@ -115,10 +120,13 @@ class RobotModel:
 
     @property
     def poses(self) -> dict[str, Array]:
-        """Named configurations from the SRDF beside the URDF: name → q (nq,), read-only; copy one to change it.
+        """The named configurations in the SRDF file that belongs to the URDF: name → q (nq,).
+
+        The arrays are read-only; copy one to change it. Joints that a pose does not mention are neutral. Without an
+        SRDF file there are no poses.
 
         Raises:
-            RobotLoadError: There is an SRDF, and it is faulty.
+            RobotLoadError: The SRDF file is faulty.
         """
         poses = {name: q.copy() for name, q in self._poses.items()}
         for q in poses.values():
@@ -130,7 +138,7 @@ class RobotModel:
         return {} if self._srdf is None else read_poses(self._srdf, self.model, self.joints)
 
     def frame_id(self, name: str) -> int:
-        """The model's index of a frame; a link is meant where a link and a joint share the name.
+        """The index of a frame in the model. If a link and a joint share the name, it is the link's.
 
         Raises:
             UnknownNameError: No such frame; the message lists near names.
@@ -141,7 +149,7 @@ class RobotModel:
             raise UnknownNameError("frame", name, self.frame_names) from None
 
     def joint(self, name: str) -> Joint:
-        """The movable joint of that name.
+        """The movable joint of this name.
 
         Raises:
             UnknownNameError: No such joint; the message lists near names.
@@ -150,73 +158,69 @@ class RobotModel:
             return self._joints_by_name[name]
         except (KeyError, TypeError):
             fixed = any(tag.name == name and tag.kind == "fixed" for tag in self.description.joints)
-            hint = "that one is a fixed joint" if fixed else ""
+            hint = "it is a fixed joint" if fixed else ""
             raise UnknownNameError("joint", name, self._joints_by_name, hint) from None
 
     def settable_joint(self, name: str) -> Joint:
-        """The joint of that name, if it can be set: not a follower.
+        """The joint of this name, which must not be a follower.
 
         Raises:
-            UnknownNameError: No such joint.
-            InputError: The joint mimics another one; the message names it.
+            UnknownNameError: No such joint; the message lists near names.
+            InputError: The joint mimics another one; the message names that one.
         """
         joint = self.joint(name)
         if joint.leader is not None:
             raise InputError(
-                f"joint {name!r} mimics {joint.leader!r} and cannot be set by itself; set {joint.leader!r}"
+                f"joint {name!r} mimics {joint.leader!r} and does not move by itself; name {joint.leader!r} instead"
             )
         return joint
 
     def neutral(self) -> Array:
-        """Pinocchio's neutral configuration (nq,): every angle 0, every joint placement the identity."""
+        """The neutral configuration (nq,): joints that are not followers at 0, joint placements the identity."""
         return np.array(pinocchio.neutral(self.model))
 
     def random(self, rng: np.random.Generator | int | None = None) -> Array:
-        """A random configuration (nq,).
+        """A random configuration (nq,) inside the limits.
 
-        Angles are uniform inside the limits; where there are none, in ±π for a turning joint and ±1 m for a sliding
-        one (see `Joint.range_to_draw_from`); free joint placements are uniform in orientation and in a cube of ±1 m.
+        Angles are uniform between their limits; without limits, in ±π for turning joints and in ±1 m for sliding
+        joints (`Joint.range_to_draw_from`). Placements of floating and planar joints are uniform in orientation, and in
+        ±1 m along each axis.
 
         Args:
-            rng: A `numpy.random.Generator`, or a seed for one.
+            rng: A `numpy.random.Generator`, or a seed for one; None for a different configuration each time.
+
+        Raises:
+            InputError: `rng` is neither a generator nor a seed.
         """
         try:
             rng = np.random.default_rng(rng)
         except (TypeError, ValueError):
-            raise InputError(f"rng is a numpy Generator or a seed, a whole number from 0; got {rng!r}") from None
-        q = self.neutral()
-        for joint, lower, upper in zip(self._settable, self.lower, self.upper, strict=True):
-            low, high = joint.range_to_draw_from(lower, upper)
-            joint.set_angle(q, rng.uniform(low, high))
-        for joint in self.joints:
-            if joint.kind == "floating":
-                quaternion = rng.normal(size=4)
-                q[joint.idx_q : joint.idx_q + 3] = rng.uniform(-1, 1, 3)
-                q[joint.idx_q + 3 : joint.idx_q + 7] = quaternion / np.linalg.norm(quaternion)
-            elif joint.kind == "planar":
-                angle = rng.uniform(-math.pi, math.pi)
-                q[joint.idx_q : joint.idx_q + 4] = (*rng.uniform(-1, 1, 2), math.cos(angle), math.sin(angle))
-        return q
+            raise InputError(f"rng must be a numpy Generator or a whole number of at least 0; got {rng!r}") from None
+        return random_configuration(self.neutral(), self.joints, (self.lower_q, self.upper_q), rng)
 
     def configuration(
         self,
         angles: Mapping[str, float] | None = None,
         joint_placements: Mapping[str, pinocchio.SE3 | ArrayLike] | None = None,
     ) -> Array:
-        """The configuration (nq,) with these angles and joint placements, the rest neutral.
+        """The configuration (nq,) with these angles and joint placements; all other joints are neutral.
+
+        Limits are not checked. Followers may be given too: one that is given without its leader sets the leader, and
+        one that is given with it must agree. `configuration(angles(q), joint_placements(q))` returns `q`, except for
+        rounding and the signs of quaternions.
 
         Args:
-            angles: Joint name → rad, or m for prismatic joints.
-            joint_placements: Name of a floating or planar joint → its SE3 (or 4×4 matrix) in its parent.
+            angles: Joint name → angle [rad], or position [m] for prismatic joints.
+            joint_placements: Name of a floating or planar joint → its placement in its parent, an SE3 or a 4×4 matrix.
 
         Raises:
-            UnknownNameError: No such joint.
-            InputError: A follower, a joint of the other kind, a number that is not finite, or a placement of a
-                planar joint outside its plane.
+            UnknownNameError: No such joint; the message lists near names.
+            InputError: A follower that disagrees with its leader, a joint of the wrong kind, a number that is not
+                finite, or a placement outside the plane of a planar joint.
         """
         for given in (angles, joint_placements):
             if given is not None and not isinstance(given, Mapping):
-                raise InputError(f"joints are given by name, as in {{'joint': 0.3}}; got {given!r}")
+                raise InputError(f"joints must be given by name, as in {{'joint': 0.3}}; got {given!r}")
         q = self.neutral()
         set_angles(
             q,
@@ -228,66 +232,62 @@ class RobotModel:
         for name, placement in (joint_placements or {}).items():
             joint = self.joint(name)
             if joint.has_one_axis:
-                raise InputError(f"joint {name!r} is {joint.kind}; give its scalar in angles")
+                raise InputError(f"joint {name!r} is {joint.kind}; give its angle in angles, not a placement")
             joint.set_placement(q, as_se3(placement, f"the placement of joint {name!r}"))
         return q
 
     def angles(self, q: ArrayLike) -> dict[str, float]:
-        """Joint name → angle (rad, or m for prismatic) at `q`, followers included.
+        """The angles of all one-axis joints at `q`, followers included: joint name → angle [rad or m].
 
-        A continuous joint's angle lies in (−π, π], unless others mimic it.
+        The angle of a continuous joint lies in (−π, π], unless another joint mimics it.
+
+        Raises:
+            InputError: `q` is not a configuration of this robot.
         """
         values = self.check_configuration(q)
         return {joint.name: joint.angle(values) for joint in self.joints if joint.has_one_axis}
 
     def joint_placements(self, q: ArrayLike) -> dict[str, pinocchio.SE3]:
-        """Name → SE3 in its parent, for the floating and planar joints and a free root."""
+        """The placements of all floating and planar joints at `q`, a free root included: name → SE3 in its parent.
+
+        Raises:
+            InputError: `q` is not a configuration of this robot.
+        """
         values = self.check_configuration(q)
         return {j.name: j.placement(values) for j in self.joints if not j.has_one_axis}
 
     def check_configuration(self, q: ArrayLike, what: str = "q") -> Array:
-        """A fresh float64 copy of `q`, checked.
+        """Check that `q` is a configuration of this robot, and return a copy as float64.
 
-        Raises:
-            InputError: Wrong shape, not finite, or a (cos, sin) pair or quaternion that is not of unit length.
-        """
-        values = as_vector(q, self.model.nq, what, f"the configuration of {self.name!r}")
-        if self.model.nq == self.model.nv:  # only numbers, each for itself
-            return values
-        for joint in self.joints:
-            circle = joint.circle(values)
-            if circle is not None and abs(float(circle[0] @ circle[0]) - 1.0) > 1e-3:
-                got, words = circle
-                raise InputError(
-                    f"{what}: {joint.kind} joint {joint.name!r} holds {words}, of unit length; got {got.tolist()}"
-                )
-        return np.array(pinocchio.normalize(self.model, values))
-
-    def check_configurations(self, q: ArrayLike, what: str = "q") -> Array:
-        """A fresh float64 copy of N configurations (N, nq), each checked as `check_configuration` does."""
-        values = as_many(q, (self.model.nq,), what)
-        for joint in self.joints:
-            circle = joint.circle(values.T)
-            if circle is not None:
-                lengths = np.linalg.norm(circle[0], axis=0)
-                for k in np.flatnonzero(np.abs(lengths**2 - 1.0) > 1e-3)[:1]:
-                    self.check_configuration(values[k], f"{what}[{k}]")
-                circle[0][:] /= lengths
-        return values
-
-    def placement(self, frame: str, q: ArrayLike, relative_to: str | None = None) -> pinocchio.SE3:
-        """Where a frame is.
+        Quaternions and (cos, sin) pairs are normalised.
 
         Args:
-            frame: Its name.
             q: The configuration (nq,).
-            relative_to: A frame to express it in; the world when None.
-
-        Returns:
-            oMf, or rMf with `relative_to` [m].
+            what: What the error message calls it.
 
         Raises:
-            UnknownNameError: No such frame.
+            InputError: A wrong shape, a number that is not finite, or a quaternion or (cos, sin) pair that is not of
+                unit length.
+        """
+        return checked(self.model, self.joints, q, what, f"the configuration of {self.name!r}")
+
+    def check_configurations(self, q: ArrayLike, what: str = "q") -> Array:
+        """Check N configurations (N, nq) as `check_configuration` does, and return a copy as float64."""
+        return checked_many(self.model, self.joints, q, what)
+
+    def placement(self, frame: str, q: ArrayLike, relative_to: str | None = None) -> pinocchio.SE3:
+        """The placement of a frame, by forward kinematics.
+
+        Args:
+            frame: The name of the frame.
+            q: The configuration (nq,).
+            relative_to: The frame in which the placement is expressed; the world when None.
+
+        Returns:
+            The SE3 of the frame [m]: oMf, or rMf where r is `relative_to`.
+
+        Raises:
+            UnknownNameError: No such frame; the message lists near names.
             InputError: `q` is not a configuration of this robot.
         """
         frame_id = self.frame_id(frame)
@@ -305,50 +305,30 @@ class RobotModel:
         axes: str | pinocchio.ReferenceFrame = "local_world_aligned",
         relative_to: str | None = None,
     ) -> Array:
-        """The Jacobian (6, nv) of a frame: its velocity is J·v, linear rows [m] first, then angular rows [rad].
+        """The Jacobian of a frame: J v is the velocity of the frame for joint velocities v (nv,).
 
         Args:
-            frame: Its name.
+            frame: The name of the frame.
             q: The configuration (nq,).
-            axes: "local_world_aligned" (the frame's origin, the world's axes), "local" (the frame's origin and
-                axes), "world" (the world's origin and axes), or a `pinocchio.ReferenceFrame`.
-            relative_to: A frame that takes the world's place: the motion is that relative to it, in its axes.
+            axes: Where and in which axes the velocity is expressed: "local_world_aligned" (at the frame's origin, in
+                the world's axes), "local" (at the frame's origin, in its own axes), "world" (at the world's origin, in
+                its axes), or a `pinocchio.ReferenceFrame`.
+            relative_to: A frame that replaces the world: the velocity is relative to it, and expressed in its axes.
+
+        Returns:
+            J (6, nv), with the linear rows first [m/rad or m/m], then the angular rows [rad/rad or rad/m].
 
         Raises:
-            UnknownNameError: No such frame.
+            UnknownNameError: No such frame; the message lists near names.
             InputError: Unknown axes, or `q` is not a configuration of this robot.
         """
-        if not isinstance(axes, pinocchio.ReferenceFrame):
-            if not isinstance(axes, str) or axes not in _AXES:
-                raise InputError(
-                    f"axes is one of {', '.join(map(repr, _AXES))} or a pinocchio.ReferenceFrame; got {axes!r}"
-                )
-            axes = _AXES[axes]
+        axes = as_reference_frame(axes)
         frame_id = self.frame_id(frame)
         reference = None if relative_to is None else self.frame_id(relative_to)
-        values = self.check_configuration(q)
-        pinocchio.computeJointJacobians(self.model, self.data, values)
+        pinocchio.computeJointJacobians(self.model, self.data, self.check_configuration(q))
         if reference is None:
-            return self._frame_jacobian(frame_id, axes)
-        return self._relative_jacobian(frame_id, reference, axes)
-
-    def _frame_jacobian(self, frame_id: int, axes: pinocchio.ReferenceFrame) -> Array:
-        if self.model.nv == 0:
-            return np.zeros((6, 0))  # without a column Pinocchio ends the process
-        J = np.array(pinocchio.getFrameJacobian(self.model, self.data, frame_id, axes))
-        return J.reshape(6, self.model.nv)  # a single one comes back as (6,)
-
-    def _relative_jacobian(self, frame_id: int, reference: int, axes: pinocchio.ReferenceFrame) -> Array:
-        local = self._frame_jacobian(frame_id, pinocchio.LOCAL)
-        moving = self._frame_jacobian(reference, pinocchio.LOCAL)
-        oMf = pinocchio.updateFramePlacement(self.model, self.data, frame_id)
-        rMf = pinocchio.updateFramePlacement(self.model, self.data, reference).actInv(oMf)
-        J = local - rMf.toActionMatrixInverse() @ moving
-        if axes == pinocchio.LOCAL:
-            return np.array(J)
-        if axes == pinocchio.WORLD:
-            return np.array(rMf.toActionMatrix() @ J)
-        return np.vstack([rMf.rotation @ J[:3], rMf.rotation @ J[3:]])
+            return frame_jacobian(self.model, self.data, frame_id, axes)
+        return relative_jacobian(self.model, self.data, frame_id, reference, axes)
 
 
 def _frames_by_name(model: pinocchio.Model) -> dict[str, int]:

@@ -1,4 +1,4 @@
-"""The closed curves that a ball can follow."""
+"""Closed curves that a ball can follow."""
 
 from __future__ import annotations
 
@@ -15,11 +15,12 @@ Array = NDArray[np.float64]
 
 
 class Curve(NamedTuple):
-    """One closed curve.
+    """A closed curve.
 
     Attributes:
-        title: What people read.
-        point: Phase in [0, 1) → a point (u, v, w) within the unit ball: u to the side, v up, w towards the viewer.
+        title: The name shown to users.
+        point: Function from phase in [0, 1) to a point (u, v, w) in the unit ball: u sideways, v up, w towards the
+            viewer.
     """
 
     title: str
@@ -32,7 +33,7 @@ def _circle(phase: float) -> tuple[float, float, float]:
 
 
 def _eight(phase: float) -> tuple[float, float, float]:
-    """Bernoulli's lemniscate, √2 times as high."""
+    """Bernoulli's lemniscate, stretched vertically by √2."""
     t = 2.0 * math.pi * phase
     size = 1.0 / (1.0 + math.sin(t) ** 2)
     return size * math.cos(t), size * math.sin(t) * math.cos(t) * math.sqrt(2.0), 0.0
@@ -55,7 +56,7 @@ def _knot(phase: float) -> tuple[float, float, float]:
 
 
 def _wave(phase: float) -> tuple[float, float, float]:
-    """A circle seen from above that rises and falls four times."""
+    """A curve that is a circle seen from above, and rises and falls four times."""
     t = 2.0 * math.pi * phase
     return 0.9 * math.cos(t), 0.35 * math.sin(4.0 * t), 0.9 * math.sin(t)
 
@@ -71,6 +72,6 @@ CURVES: dict[str, Curve] = {
 
 
 def polyline(curve: Curve, center: Array, axes: Array, count: int = 128) -> Array:
-    """`count` points (count, 3) of a curve about `center` (3,) [m]; the rows of `axes` (3, 3) [m] are its u, v, w."""
+    """Points (count, 3) [m] on a curve about `center` (3,) [m]; the rows of `axes` (3, 3) [m] are u, v and w."""
     unit = np.array([curve.point(k / count) for k in range(count)])
     return np.asarray(center + unit @ axes)

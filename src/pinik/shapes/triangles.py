@@ -1,4 +1,4 @@
-"""Triangle meshes: boxes, spheres, cylinders, capsules, and those in files, with edges that stay sharp"""
+"""Triangle meshes: boxes, spheres, cylinders, capsules, and those in files, with edges that stay sharp."""
 
 from __future__ import annotations
 
@@ -26,8 +26,8 @@ def box(size: NDArray[np.float64]) -> trimesh.Trimesh:
 
 def sphere(radius: float) -> trimesh.Trimesh:
     """A sphere about the origin [m]."""
-    made: trimesh.Trimesh = trimesh.creation.icosphere(3, radius)
-    return made
+    mesh: trimesh.Trimesh = trimesh.creation.icosphere(3, radius)
+    return mesh
 
 
 def cylinder(radius: float, length: float) -> trimesh.Trimesh:

@@ -95,7 +95,7 @@ def test_a_method_of_ones_own_and_a_file(environment, tmp_path):
     [
         (["armm"], 3, "no robot 'armm'; did you mean 'arm'"),
         (["/nowhere/robot.urdf"], 3, "/nowhere/robot.urdf"),
-        (["ur3_empty"], 3, "holds no robot, only macros"),
+        (["ur3_empty"], 3, "contains only macros"),
         (["--methods", "ccdd"], 2, "no method 'ccdd'; did you mean 'ccd'"),
         (["--methods", ""], 2, "no method ''"),
         (["--methods", "ccd,,dls"], 2, "no method ''"),
