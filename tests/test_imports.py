@@ -33,7 +33,7 @@ ONLY_THERE = {
     "yourdfpy": {"shapes.second_opinion"},
     "trimesh": {"shapes.meshes"},
     "scipy": {"shapes.meshes"},
-    "PIL": {"picture.draw"},
+    "PIL": {"picture.picture"},
     "meshcat": set(),  # of meshcat the page takes the JavaScript; the Python package brings IPython and ZeroMQ
     "zmq": set(),
     "tornado": {"viewer.web.server", "viewer.web.live_view"},

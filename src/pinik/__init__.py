@@ -12,7 +12,8 @@ from .extras import MissingExtraError
 from .loading import load
 from .model.joint import Joint
 from .model.robot_model import Robot
-from .picture.draw import Picture, draw
+from .picture.draw import draw
+from .picture.picture import Picture
 from .problem.kinematics import Kinematics, Linearization
 from .problem.targets import Target, TargetError, Tolerance
 from .solvers.base import JacobianSolver, Patience, Solver, SweepingSolver, parameter

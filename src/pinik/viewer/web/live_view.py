@@ -25,7 +25,7 @@ from numpy.typing import ArrayLike, NDArray
 from ... import errors
 from ...model.robot_model import Robot
 from ...picture.camera import Camera
-from ...picture.draw import Picture
+from ...picture.picture import Picture
 from ..simulation.session import STEPS_PER_SECOND, Methods, Session
 from .notebook import as_html, draw_beside
 from .server import later_in_threads, make_application
