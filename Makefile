@@ -1,24 +1,24 @@
-# One environment, .venv, for everything. `make` alone says what there is.
+# One environment, .venv, for everything. `make` alone lists the targets.
 
 VENV := .venv
 python := $(VENV)/bin/python
 pip := $(python) -m pip --quiet --quiet --no-input --disable-pip-version-check
 engine := CMakeLists.txt $(wildcard src/native/*)
 
-# A sourced ROS workspace puts another Pinocchio, built for another Python, in front of ours.
+# A sourced ROS workspace would put another Pinocchio, built for another Python, before ours.
 unexport PYTHONPATH
 
 .PHONY: help run test lint bench notebooks clean
 
 help:
-	@echo "make run       install what is missing into $(VENV) and show a tour, then the live view"
-	@echo "make test      everything that is checked: style, types, tests"
-	@echo "make lint      style and types only"
-	@echo "make bench     how fast the solvers are"
-	@echo "make notebooks run the notebooks and write them with their pictures"
-	@echo "make clean     remove $(VENV) and everything else that was made here"
+	@echo "make run       install what is missing into $(VENV), run a tour and open the live view"
+	@echo "make test      run every check: style, types and tests"
+	@echo "make lint      check style and types only"
+	@echo "make bench     measure how fast the solvers are"
+	@echo "make notebooks run the notebooks and save them with their pictures"
+	@echo "make clean     remove $(VENV) and everything else that was built here"
 	@echo
-	@echo "make PYTHON=/path/to/python3 … takes that Python for $(VENV)."
+	@echo "make PYTHON=/path/to/python3 … uses that Python for $(VENV)."
 
 run: $(VENV)/installed
 	@$(python) examples/tour.py

@@ -1,4 +1,4 @@
-"""A short tour: real targets on three robots, each by all four methods, with what every one of them says."""
+"""A short tour: four problems on three robots, each solved by all four methods, and what each method answers."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from rich.text import Text
 import pinik
 
 POSITION, ORIENTATION = 1e-4, 1e-3  # [m], [rad]: pinik's own default tolerance
-# Title → width: fits 80 columns and lines the tables up.
+# Title → width: fits into 80 columns, and all tables line up.
 COLUMNS = {
     "method": 6,
     "verdict": 14,
@@ -32,7 +32,7 @@ COLUMNS = {
 
 @dataclass(frozen=True)
 class Question:
-    """What a robot is asked, in words and as targets."""
+    """A problem for a robot, in words and as targets."""
 
     words: str
     robot: pinik.Robot
@@ -56,15 +56,17 @@ def questions() -> list[Question]:
 
     return [
         Question("the tip to (0.6, 0.3, 0.7)", arm, [pinik.Target("tip", [0.6, 0.3, 0.7])], arm.poses["relaxed"]),
-        Question("left fore paw on a ball, nose towards it, the other paws where they stand", lion, reaching, relaxed),
         Question(
-            "the hand to (0.4, -0.3, 0.35), pointing straight down, turned by 34°",
+            "left fore paw on a ball, nose pointing at the ball, the other paws in place", lion, reaching, relaxed
+        ),
+        Question(
+            "the hand to (0.4, -0.3, 0.35), pointing straight down, rotated by 34°",
             panda,
             [pinik.Target("panda_hand_tcp", [0.4, -0.3, 0.35], rpy=[math.pi, 0.0, 0.6])],
             panda.poses["default"],
         ),
         Question(
-            "the tip to (0.9, 0.9, 0.9), which no arm of its length can reach",
+            "the tip to (0.9, 0.9, 0.9), farther than the arm can reach",
             arm,
             [pinik.Target("tip", [0.9, 0.9, 0.9])],
             arm.poses["relaxed"],
@@ -73,15 +75,15 @@ def questions() -> list[Question]:
 
 
 def answers(question: Question) -> list[pinik.Solution]:
-    """The question by every method."""
+    """The answer of every method."""
     return [question.robot.solve(question.targets, method=name, q0=question.start) for name in pinik.SOLVERS]
 
 
 def check(solution: pinik.Solution) -> None:
-    """Hold a claimed success against Pinocchio's forward kinematics, without pinik.
+    """Check a success with Pinocchio's forward kinematics, without pinik.
 
     Raises:
-        RuntimeError: It is untrue.
+        RuntimeError: The solution misses a target although it reports success.
     """
     model = solution.robot.model
     data = model.createData()
@@ -98,11 +100,13 @@ def check(solution: pinik.Solution) -> None:
             facing = placement.rotation @ target.axis
             angle = math.atan2(np.linalg.norm(np.cross(facing, line)), facing @ line)
         if solution.success and (off > POSITION or angle > ORIENTATION):
-            raise RuntimeError(f"{solution.method} claims {target.frame}, which is {off:.2g} m and {angle:.2g} rad off")
+            raise RuntimeError(
+                f"{solution.method} reports success, but {target.frame} is {off:.2g} m and {angle:.2g} rad off"
+            )
 
 
 def show(question: Question, solutions: list[pinik.Solution], console: Console) -> None:
-    """Print a question and its answers."""
+    """Print a problem and its answers."""
     console.print(Text.assemble((question.robot.name, "bold cyan"), ": ", question.words))
     table = Table(box=None, pad_edge=False, header_style="bold", padding=(0, 2, 0, 0))
     for title, width in COLUMNS.items():
@@ -130,12 +134,12 @@ def main() -> int:
     """Run the tour.
 
     Returns:
-        The exit status: 0 when every claim held.
+        The exit status, 0 if every success was confirmed.
     """
     sys.stdout.reconfigure(errors="replace")
     console = Console(highlight=False, markup=False)
     if not console.is_terminal:
-        console.width = 240  # a line stays a line for the program that reads it
+        console.width = 240  # keeps each row on one line for a program that reads it
     began = time.perf_counter()
     console.print(f"pinik {pinik.__version__} on Pinocchio {pinocchio.__version__}\n")
     asked = questions()
@@ -145,8 +149,8 @@ def main() -> int:
             check(solution)
         show(question, solutions, console)
     console.print(
-        f"{len(asked)} questions, {len(pinik.SOLVERS)} methods, {time.perf_counter() - began:.1f} s with loading.\n"
-        "Pinocchio's own forward kinematics agrees with every success."
+        f"{len(asked)} problems, {len(pinik.SOLVERS)} methods, {time.perf_counter() - began:.1f} s including loading.\n"
+        "Pinocchio's own forward kinematics confirms every success."
     )
     return 0
 

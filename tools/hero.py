@@ -1,4 +1,4 @@
-"""Make docs/images/robots.png: the arm, the lion and the Panda reach for a ball each. `python tools/hero.py`"""
+"""Render docs/images/robots.png, in which the arm, the lion and the Panda each reach for a ball: `python tools/hero.py`"""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ PANDA = {
 def ball_at(
     scene: Scene, robot: pinik.Robot, q: Matrix, frame: str, offset: list[float], radius: float, at: Matrix
 ) -> None:
-    """A ball at a point of a frame."""
+    """Add a ball at a point given in a frame."""
     point = robot.placement(frame, q).act(np.array(offset))
     scene.add_ball((at @ [*point, 1.0])[:3], radius)
 

@@ -1,4 +1,4 @@
-"""Write pinik's own robots to urdf/: `python tools/make_robots.py [FOLDER]`. The result is committed."""
+"""Write pinik's own robots to urdf/, where they are committed: `python tools/make_robots.py [FOLDER]`."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from makers import arm, lion, two_link
 
 
 def files() -> dict[str, bytes]:
-    """Everything that stands in urdf/, by path."""
+    """Every file of urdf/, by path."""
     made: dict[str, bytes] = {}
     for module in (arm, lion, two_link):
         robot = module.build()

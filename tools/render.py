@@ -1,9 +1,8 @@
 """Render robots to a PNG: `python tools/render.py ROBOT [--pose NAME | --angles JSON] [--out FILE.png]`.
 
-Shapes come from pinik.shapes.meshes, placements from Pinocchio, the picture from meshcat's three.js in Debian's
-chromium.
-It needs the dev extras (`make lint` installs them) and `apt install chromium`.
-docs/images/robots.png is made by tools/hero.py.
+pinik.shapes.meshes provides the shapes, Pinocchio the placements, and meshcat's three.js in Debian's chromium the picture.
+The script needs the dev extra, which `make lint` installs, and `apt install chromium`. tools/hero.py uses it to render
+docs/images/robots.png.
 """
 
 from __future__ import annotations
@@ -49,7 +48,7 @@ class Scene:
     parts: list[tuple[trimesh.Trimesh, Matrix, Color, float]] = field(default_factory=list)
 
     def add_robot(self, robot: pinik.Robot, q: Matrix, at: Matrix | None = None) -> None:
-        """A robot in configuration `q`, its world placed at `at`."""
+        """Add a robot at the configuration `q`, with its world placed at `at`."""
         shapes, warnings = load_shapes(robot)
         for warning in warnings:
             print(warning, file=sys.stderr)
@@ -62,7 +61,7 @@ class Scene:
         self.parts.append((trimesh.creation.icosphere(4, radius), translation(position), color, 0.35))
 
     def bounds(self) -> Matrix:
-        """The corners (2, 3) of the box around everything."""
+        """The opposite corners (2, 3) of the box around everything."""
         corners = [trimesh.transform_points(mesh.bounding_box.vertices, at) for mesh, at, _, _ in self.parts]
         points = np.vstack(corners)
         return np.stack([points.min(axis=0), points.max(axis=0)])
@@ -75,7 +74,7 @@ def translation(position: Point) -> Matrix:
 
 
 def turned(position: Point, yaw: float) -> Matrix:
-    """A place on the ground, facing `yaw` [deg]."""
+    """A placement on the ground, facing `yaw` [deg]."""
     return translation(position) @ trimesh.transformations.rotation_matrix(np.deg2rad(yaw), (0, 0, 1))
 
 
@@ -93,7 +92,7 @@ def render(
     background: Sequence[float] = (0.93, 0.935, 0.94),
     ground: float | None = None,
 ) -> None:
-    """Draw the scene as a PNG of `size` pixels; without a camera, three quarters from the front."""
+    """Render the scene to a PNG of `size` pixels; the default camera looks at it diagonally from the front."""
     low, high = scene.bounds()
     middle, radius = (low + high) / 2, float(np.linalg.norm(high - low)) / 2
     target = middle if look_at is None else np.asarray(look_at, dtype=float)
@@ -143,7 +142,7 @@ def _meshes(scene: Scene) -> dict[str, object]:
 
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("robot", help="a name of the catalogue, or a path")
+    parser.add_argument("robot", help="a name from the catalogue, or a path")
     parser.add_argument("--pose", default="", help="a named pose of the SRDF")
     parser.add_argument("--angles", type=json.loads, help='JSON, such as {"elbow": 30}')
     parser.add_argument("--deg", action="store_true", help="the angles are in degrees")
@@ -152,7 +151,7 @@ def main() -> None:
     parser.add_argument("--camera", type=float, nargs=3)
     parser.add_argument("--look-at", type=float, nargs=3)
     parser.add_argument("--ball", type=float, nargs=3, action="append", default=[], metavar=("X", "Y", "Z"))
-    parser.add_argument("--frames", type=int, default=48, help="more are smoother and slower")
+    parser.add_argument("--frames", type=int, default=48, help="how many are averaged; more are smoother and slower")
     parser.add_argument("--scale", type=float, default=1.0, help="device pixels per pixel")
     arguments = parser.parse_args()
     robot = pinik.load(arguments.robot)

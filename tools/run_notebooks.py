@@ -1,10 +1,10 @@
-"""Run notebooks from top to bottom and write them with what they showed.
+"""Run notebooks from top to bottom and save them with their outputs.
 
-What the file says of the kernel and the hour is left out; what cells show stays as it was, with its times, ports and
-ids, and with the last digits of this machine.
+The outputs stay as the cells made them, with times, ports, ids and this machine's last digits; metadata about the kernel
+and the time of day is removed.
 
 python tools/run_notebooks.py             # all of notebooks/
-python tools/run_notebooks.py 05 06       # those whose names begin so
+python tools/run_notebooks.py 05 06       # those whose names start with 05 or 06
 """
 
 from __future__ import annotations
@@ -18,21 +18,21 @@ import nbformat
 from nbclient import NotebookClient
 
 FOLDER = Path(__file__).parents[1] / "notebooks"
-LONGEST = 120  # seconds that one cell may take
+LONGEST = 120  # the most time for one cell [s]
 
 
 def run(path: Path) -> nbformat.NotebookNode:
-    """The notebook with the outputs of a fresh kernel in its own folder; the file stays as it is.
+    """Execute a notebook in a fresh kernel in its own folder, without changing the file.
 
     Raises:
-        nbclient.exceptions.CellExecutionError: A cell raised; the message shows it.
+        nbclient.exceptions.CellExecutionError: A cell raised an exception; the message shows it.
     """
     notebook = nbformat.read(path, as_version=4)
     client = NotebookClient(
         notebook,
         timeout=LONGEST,
         kernel_name="python3",
-        extra_arguments=["--log-level=ERROR"],  # else each kernel warns that it is spoken to without encryption
+        extra_arguments=["--log-level=ERROR"],  # silences a warning about unencrypted connections
         record_timing=False,
         coalesce_streams=True,
         resources={"metadata": {"path": str(path.parent)}},
@@ -42,7 +42,7 @@ def run(path: Path) -> nbformat.NotebookNode:
 
 
 def tidy(notebook: nbformat.NotebookNode) -> nbformat.NotebookNode:
-    """Without what the file says of the machine's Python and of the hour; the outputs themselves stay as they are."""
+    """Remove metadata about the machine's Python and the time of day; the outputs themselves are unchanged."""
     notebook.metadata = nbformat.from_dict(
         {
             "kernelspec": {"display_name": "Python 3", "language": "python", "name": "python3"},
@@ -60,13 +60,15 @@ def tidy(notebook: nbformat.NotebookNode) -> nbformat.NotebookNode:
 
 def main(arguments: Sequence[str] | None = None) -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("names", nargs="*", default=[""], help="how the names of the wanted ones begin; all when none")
+    parser.add_argument(
+        "names", nargs="*", default=[""], help="the first characters of the notebooks' names; all notebooks by default"
+    )
     names = parser.parse_args(arguments).names
     paths = sorted(FOLDER.glob("*.ipynb"))
     for name in names:
         if not any(path.name.startswith(name) for path in paths):
             parser.error(
-                f"no notebook's name begins with {name!r}; there are: {', '.join(path.stem for path in paths)}"
+                f"no notebook's name starts with {name!r}; there are: {', '.join(path.stem for path in paths)}"
             )
     for path in paths:
         if path.name.startswith(tuple(names)):

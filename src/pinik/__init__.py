@@ -11,7 +11,8 @@ from .errors import EngineError, InputError, PinikError, RobotLoadError, SolveEr
 from .extras import MissingExtraError
 from .loading import load
 from .model.joint import Joint
-from .picture.draw import Picture, draw
+from .picture.draw import draw
+from .picture.picture import Picture
 from .problem.kinematics import Kinematics, Linearization
 from .problem.targets import Target, TargetError, Tolerance
 from .robot import Robot

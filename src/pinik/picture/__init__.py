@@ -1,1 +1,1 @@
-"""Pictures of robots without a browser."""
+"""Pictures of robots, drawn without a browser."""

@@ -1,4 +1,4 @@
-"""What a picture shows as triangles: a robot's shapes at a configuration, or its skeleton."""
+"""The surfaces in a picture: a robot's shapes at one configuration, or its skeleton."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ __all__ = ["Body", "bodies_of"]
 
 Array = NDArray[np.float64]
 
-_BONE = np.array([0.553, 0.596, 0.647])  # the live view's colours of a skeleton
+_BONE = np.array([0.553, 0.596, 0.647])  # the colours of a skeleton in the live view
 _JOINT = np.array([0.122, 0.435, 0.769])
 
 
@@ -29,11 +29,11 @@ class Body:
     """A surface in one colour.
 
     Attributes:
-        solid: Its triangles, in the world.
+        solid: Its triangles in the world.
         color: Red, green, blue (3,), each in 0..1.
         opacity: In 0..1.
-        gloss: How much it shines, in 0..1.
-        glow: How much light of its own it has, so that it keeps its colour in the shade.
+        gloss: The strength of its highlights, in 0..1.
+        glow: The light that it emits, which keeps its colour in the shade.
     """
 
     solid: Solid
@@ -57,10 +57,10 @@ _PARTS: weakref.WeakKeyDictionary[Robot, list[_Part]] = weakref.WeakKeyDictionar
 
 
 def bodies_of(robot: Robot, q: Array) -> list[Body]:
-    """A robot's shapes at `q` (nq,), or its skeleton where it has none.
+    """A robot's shapes at `q` (nq,), or its skeleton if it has no shapes.
 
     Warns:
-        UrdfWarning: Shapes that could not be read, the first time.
+        UrdfWarning: Some shapes could not be read. Given once for each robot.
     """
     parts = _parts(robot)
     if not parts:
@@ -73,14 +73,14 @@ def bodies_of(robot: Robot, q: Array) -> list[Body]:
 
 
 def _parts(robot: Robot) -> list[_Part]:
-    """Read once for each robot: it takes seconds for a large one."""
+    """A robot's shapes, read once; a large robot takes seconds."""
     if robot not in _PARTS:
         with needed_by("a picture", "pictures"):
             from ..shapes.meshes import load_shapes  # over a second to import
 
         shapes, faults = load_shapes(robot)
         for fault in faults:
-            warnings.warn(f"{robot.name}: {fault}", UrdfWarning, stacklevel=4)
+            warnings.warn(f"{robot.name}: {fault}", UrdfWarning, stacklevel=5)
         _PARTS[robot] = [
             _Part(
                 shape.link,
@@ -98,11 +98,11 @@ def _parts(robot: Robot) -> list[_Part]:
 
 
 def _skeleton(robot: Robot, q: Array) -> Iterable[Body]:
-    """Spheres at the joints and rods between them, as the live view draws a robot without shapes."""
+    """Spheres at the joints and rods between them, as in the live view."""
     model = robot.model
     size = robot_size(robot)
     radius = 0.018 * size
-    robot.placement(robot.frame_names[0], q)  # puts the joints where they are
+    robot.placement(robot.frame_names[0], q)  # updates the joints' placements
     joints = [joint.copy() for joint in robot.data.oMi]
     for joint_id, joint in enumerate(joints):
         yield Body(ball(joint.translation, radius), _JOINT if joint_id else _BONE)
@@ -110,7 +110,7 @@ def _skeleton(robot: Robot, q: Array) -> Iterable[Body]:
     for name in robot.description.links:
         link = model.frames[robot.frame_id(name)]
         if np.linalg.norm(link.placement.translation) > 0.01 * size:
-            # A link that begins away from its joint, such as a tool's tip, is the end of one more rod.
+            # A link whose frame lies away from its joint, such as a tool's tip, ends another rod.
             ways.append((joints[link.parentJoint].translation, robot.placement(name, q).translation))
     for start, end in ways:
         if np.linalg.norm(end - start) > 1e-4 * size:

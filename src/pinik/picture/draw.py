@@ -1,24 +1,18 @@
-"""Pictures of robots without a browser or a server: `draw`."""
+"""`draw`: a robot, at one configuration or several, as a picture."""
 
 from __future__ import annotations
 
-import io
-import os
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
-from pathlib import Path
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..checks import as_length
 from ..errors import InputError
-from ..extras import needed_by
 from ..model.home import robot_size
 from ..robot import Robot
 from .arguments import (
-    SMALLEST,
     as_any_points,
     as_color,
     as_colors,
@@ -26,18 +20,15 @@ from .arguments import (
     as_offsets,
     as_opacities,
     checked_size,
-    depth_of,
     view_direction,
 )
 from .bodies import Body, bodies_of
 from .camera import Camera, look_from
+from .picture import Picture
 from .render import render
 from .solids import ball
 
-if TYPE_CHECKING:
-    from PIL.Image import Image
-
-__all__ = ["BALL", "Picture", "ball_radius", "draw"]
+__all__ = ["BALL", "ball_radius", "draw"]
 
 Array = NDArray[np.float64]
 
@@ -45,88 +36,7 @@ BALL = "#d81f2f"
 _TINT = 0.75
 _LENS = float(np.tan(np.deg2rad(26.0) / 2))
 _FILLED = 0.86
-_WITH_OPACITY = ("AVIF", "DDS", "ICNS", "ICO", "JPEG2000", "PNG", "QOI", "SGI", "TGA", "TIFF", "WEBP")
-
-
-@dataclass(frozen=True, eq=False)
-class Picture:
-    """A drawn picture. A notebook shows it as it is; for matplotlib it is `axes.imshow(picture.pixels)`.
-
-    Attributes:
-        pixels: Red, green, blue, opacity (h, w, 4), 0..255.
-        camera: From where it was drawn; `draw(..., view=picture.camera)` draws another from there.
-    """
-
-    pixels: NDArray[np.uint8]
-    camera: Camera
-
-    @property
-    def size(self) -> tuple[int, int]:
-        """Width and height [pixels]."""
-        height, width = self.pixels.shape[:2]
-        return width, height
-
-    def project(self, points: ArrayLike) -> Array:
-        """Where points of the robot's world are seen, for labels.
-
-        Args:
-            points: (3,) or (n, 3) [m].
-
-        Returns:
-            Pixels from the left and from the top (2,) or (n, 2), as `axes.imshow` counts them; NaN for a point behind
-            the camera.
-        """
-        single = depth_of(points) == 1
-        x, y, depth = self.camera.seen(as_any_points(points, "points"), self.size).T
-        depth = np.where(depth > 0.0, depth, np.nan)
-        found = np.stack([x / depth, y / depth], axis=1) - 0.5
-        return np.asarray(found[0] if single else found)
-
-    def save(self, path: str | os.PathLike[str]) -> None:
-        """Write it to a file, in the format of its name's end, such as .png or .jpg.
-
-        In a format that knows no opacity it stands on white.
-
-        Raises:
-            InputError: The name ends in nothing that Pillow can write.
-            OSError: There the file cannot be written.
-        """
-        with needed_by("a picture's file", "pictures"):
-            from PIL import Image
-
-        if not isinstance(path, (str, os.PathLike)) or not isinstance(os.fspath(path), str):
-            raise InputError(f"path is a file's name, such as 'robot.png'; got {path!r}")
-        kind = Image.registered_extensions().get(Path(path).suffix.lower(), "")
-        image = Image.fromarray(self.pixels)
-        if kind not in _WITH_OPACITY:
-            image = Image.alpha_composite(Image.new("RGBA", image.size, "white"), image).convert("RGB")
-        if not _is_written(image, kind):
-            raise InputError(
-                f"a picture's file ends in .png, .jpg or another format that Pillow writes; got {os.fspath(path)!r}"
-            )
-        image.save(path)
-
-    def png(self, colors: int | None = None) -> bytes:
-        """It as the bytes of a PNG file; with at most so many `colors`, 2 to 256, it takes half the space."""
-        with needed_by("a picture's file", "pictures"):
-            from PIL import Image
-
-        opaque = bool((self.pixels[..., 3] == 255).all())
-        image = Image.fromarray(self.pixels[..., :3] if opaque else self.pixels)
-        if colors is not None:
-            if type(colors) is not int or not 2 <= colors <= 256:
-                raise InputError(f"a PNG has 2 to 256 colors, or all when None; got {colors!r}")
-            image = image.quantize(colors, Image.Quantize.MEDIANCUT if opaque else Image.Quantize.FASTOCTREE)
-        file = io.BytesIO()
-        image.save(file, "png", optimize=True)
-        return file.getvalue()
-
-    def _repr_png_(self) -> bytes:
-        """What a notebook shows."""
-        return self.png()
-
-    def __repr__(self) -> str:
-        return f"<Picture of {self.size[0]}×{self.size[1]} pixels>"
+_SOLID = (-1, 1.0)  # the layer of all that is opaque
 
 
 def draw(
@@ -144,94 +54,120 @@ def draw(
     ground: bool | float = True,
     background: str | None = "#ffffff",
 ) -> Picture:
-    """Draw a robot with its own shapes, at one configuration or at several in one picture.
+    """Draw a robot with its own shapes, at one or several configurations in one picture.
 
-    A robot without shapes is drawn as a skeleton. It takes a fraction of a second, and for a robot with many meshes a
-    second or two more the first time.
+    A robot without shapes is drawn as a skeleton. Drawing takes a fraction of a second; reading the meshes of a large
+    robot adds a second or two the first time.
 
     Args:
         robot: The robot.
-        q: A configuration (nq,), or several (n, nq); where the robot rests when None.
-        balls: Points (3,) or (k, 3) [m] at which a ball is drawn, such as targets.
-        ball_color: "#rrggbb", of all balls or of each.
+        q: One configuration (nq,) or several (n, nq); the robot's rest configuration when None.
+        balls: Points (3,) or (k, 3) [m] to mark with a ball, such as targets.
+        ball_color: "#rrggbb", for all balls or for each.
         ball_radius: [m]; in proportion to the robot when None.
-        opacity: In 0..1, of all configurations or of each (n,); those under 1 are ghosts.
-        color: Tints the robot, "#rrggbb", or each configuration.
-        offset: (3,) [m] by which each configuration stands beside the one before, or one for each (n, 3).
+        opacity: In 0..1, for all configurations or for each (n,); those below 1 look like ghosts.
+        color: "#rrggbb" that tints the robot, or one for each configuration.
+        offset: (3,) [m] from each configuration to the next, or one position for each (n, 3).
         view: "angle", "front", "side" or "top"; the azimuth and elevation [rad] of the camera as seen from the robot;
-            or another picture's `camera`.
-        size: Width and height [pixels], 16 to 4000 each and 10 million in all.
-        ground: Whether it stands on a ground, which lies under the lowest point of the robot, or at this height [m].
-        background: "#rrggbb", or None for a transparent one.
+            or the `camera` of another picture.
+        size: Width and height [pixels], each 16 to 4000, with at most 10 million pixels in all.
+        ground: Whether to draw a ground under the robot's lowest point, or the height of the ground [m].
+        background: "#rrggbb", or None for a transparent background.
 
     Raises:
-        UnknownNameError: No such view.
-        InputError: Something else that is not as above.
+        UnknownNameError: There is no such view.
+        InputError: Another argument has the wrong shape, type or range.
         MissingExtraError: The packages of pinik[pictures] are not installed.
 
     Warns:
-        UrdfWarning: Shapes that could not be read are left out.
+        UrdfWarning: Some shapes could not be read and are left out.
     """
     if not isinstance(robot, Robot):
-        raise InputError(f"a picture is drawn of a robot that pinik.load returned; got {robot!r}")
+        raise InputError(f"robot must be one that pinik.load returned; got {robot!r}")
     size = checked_size(size)
-    configurations = as_configurations(robot, q)
-    count = len(configurations)
-    opacities, offsets = as_opacities(opacity, count), as_offsets(offset, count)
-    tints = [None] * count if color is None else as_colors(color, count, "color", "configurations")
+    shown = _shown(robot, q, opacity, offset, color)
     paper = None if background is None else as_color(background, "background")
-    radius = _radius(robot, ball_radius)
-    points = as_any_points(balls, "balls")
-    tones = as_colors(ball_color, len(points), "ball_color", "balls")
-    layers: dict[tuple[int, float], list[Body]] = {}
-    for k, (one, share, tint) in enumerate(zip(configurations, opacities, tints, strict=True)):
-        for body in bodies_of(robot, one):
-            shown = _placed(body, offsets[k], share, tint)
-            if shown.opacity > 0.0:
-                layers.setdefault((-1 if shown.opacity >= 1.0 else k, shown.opacity), []).append(shown)
-    robots = [body.solid.vertices for layer in layers.values() for body in layer]
-    if points.size:
-        spheres = [Body(ball(at, radius), tone, gloss=0.6, glow=0.4) for at, tone in zip(points, tones, strict=True)]
-        layers.setdefault((-1, 1.0), []).extend(spheres)
+    spheres = _spheres(balls, ball_color, _radius(robot, ball_radius))
+    layers = _layers(robot, shown)
+    standing = _vertices(layers.values())
+    if spheres:
+        layers.setdefault(_SOLID, []).extend(spheres)
     if not layers:
-        raise InputError("there is nothing to draw: no configuration with an opacity over zero, and no ball")
-    everything = np.vstack([body.solid.vertices for layer in layers.values() for body in layer])
+        raise InputError("there is nothing to draw: every configuration has an opacity of 0, and there is no ball")
+    everything = _vertices(layers.values())
     camera = _camera(view, everything, size)
-    if isinstance(ground, (bool, np.bool_)):
-        floor = float(np.vstack(robots or [everything])[:, 2].min()) if ground else None
-    else:
-        floor = as_length(ground, "ground")
+    floor = _floor(ground, standing if len(standing) else everything)
     return Picture(render(list(layers.values()), camera, size, floor, paper), camera)
 
 
 def ball_radius(robot: Robot) -> float:
-    """Of the balls that are drawn beside a robot [m], as in the live view."""
+    """The radius [m] of the balls drawn beside a robot, the same as in the live view."""
     return 0.025 * robot_size(robot)
 
 
-def _is_written(image: Image, kind: str) -> bool:
-    """Whether Pillow writes this format, found out by a corner of the picture."""
-    try:
-        image.crop((0, 0, SMALLEST, SMALLEST)).save(io.BytesIO(), kind)
-    except (KeyError, OSError, ValueError):
-        return False
-    return True
+@dataclass(frozen=True, eq=False)
+class _Shown:
+    """One configuration (nq,), where it stands (3,) [m], and how it looks."""
+
+    q: Array
+    offset: Array
+    opacity: float
+    tint: Array | None
+
+
+def _shown(
+    robot: Robot, q: ArrayLike | None, opacity: ArrayLike, offset: ArrayLike, color: str | Sequence[str] | None
+) -> list[_Shown]:
+    configurations = as_configurations(robot, q)
+    count = len(configurations)
+    opacities, offsets = as_opacities(opacity, count), as_offsets(offset, count)
+    tints = [None] * count if color is None else as_colors(color, count, "color", "configurations")
+    return [_Shown(*one) for one in zip(configurations, offsets, opacities, tints, strict=True)]
+
+
+def _spheres(balls: ArrayLike, color: str | Sequence[str], radius: float) -> list[Body]:
+    points = as_any_points(balls, "balls")
+    colors = as_colors(color, len(points), "ball_color", "balls")
+    return [Body(ball(at, radius), tone, gloss=0.6, glow=0.4) for at, tone in zip(points, colors, strict=True)]
+
+
+def _layers(robot: Robot, shown: Sequence[_Shown]) -> dict[tuple[int, float], list[Body]]:
+    """The visible bodies: one layer for all opaque ones, and one for each opacity of each configuration."""
+    layers: dict[tuple[int, float], list[Body]] = {}
+    for k, one in enumerate(shown):
+        for body in bodies_of(robot, one.q):
+            placed = _placed(body, one)
+            if placed.opacity > 0.0:
+                layers.setdefault(_SOLID if placed.opacity >= 1.0 else (k, placed.opacity), []).append(placed)
+    return layers
+
+
+def _placed(body: Body, one: _Shown) -> Body:
+    color = body.color if one.tint is None else (1.0 - _TINT) * body.color + _TINT * one.tint
+    solid = body.solid.moved(np.eye(3), one.offset)
+    return replace(body, solid=solid, color=color, opacity=body.opacity * one.opacity)
+
+
+def _vertices(layers: Iterable[Sequence[Body]]) -> Array:
+    """Every vertex (n, 3) [m]."""
+    return np.vstack([np.zeros((0, 3)), *(body.solid.vertices for layer in layers for body in layer)])
 
 
 def _radius(robot: Robot, given: float | None) -> float:
     radius = ball_radius(robot) if given is None else as_length(given, "ball_radius")
     if not radius > 0.0:
-        raise InputError(f"ball_radius is greater than zero [m]; got {given!r}")
+        raise InputError(f"ball_radius must be greater than 0 m; got {given!r}")
     return radius
-
-
-def _placed(body: Body, offset: Array, opacity: float, tint: Array | None) -> Body:
-    color = body.color if tint is None else (1.0 - _TINT) * body.color + _TINT * tint
-    solid = body.solid.moved(np.eye(3), offset)
-    return replace(body, solid=solid, color=color, opacity=body.opacity * opacity)
 
 
 def _camera(view: str | tuple[float, float] | Camera, points: Array, size: tuple[int, int]) -> Camera:
     if isinstance(view, Camera):
         return view
     return look_from(view_direction(view), points, aspect=size[0] / size[1], lens=_LENS, filled=_FILLED)
+
+
+def _floor(ground: bool | float, standing: Array) -> float | None:
+    """The height of the ground [m], if there is one."""
+    if not isinstance(ground, (bool, np.bool_)):
+        return as_length(ground, "ground")
+    return float(standing[:, 2].min()) if ground else None

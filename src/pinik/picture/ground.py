@@ -1,4 +1,4 @@
-"""A ground that fades away, and the soft shadows on it."""
+"""A ground that fades out with distance, and the soft shadows on it."""
 
 from __future__ import annotations
 
@@ -15,25 +15,25 @@ __all__ = ["Ground"]
 Array = NDArray[np.float64]
 
 _FLOOR = np.array([0.90, 0.91, 0.925])  # sRGB
-_FADES = (0.7, 3.0)  # from where and to where the floor fades away, in radii of what stands on it
-_CAST, _NEAR = 0.26, 0.30  # how dark the shadows are
+_FADES = (0.7, 3.0)  # where the floor starts and ends to fade, in radii of what stands on it
+_CAST, _NEAR = 0.26, 0.30  # the darkness of the two shadows
 
 
 class Ground:
-    """A floor with the sun's shadow, the softer the higher what casts it, and a dark place under what is near.
+    """A floor with the sun's shadow, softer below higher objects, and a dark patch under objects close to it.
 
     Args:
-        height: Of the floor [m].
-        meshes: What stands on it.
-        sun: What shines.
-        points: Of a hull of everything (n, 3) [m].
+        height: The floor's height [m].
+        meshes: The meshes that stand on it.
+        sun: The light.
+        points: Points (n, 3) [m] whose hull holds everything.
     """
 
     color = _FLOOR
 
     def __init__(self, height: float, meshes: Sequence[Mesh], sun: Sun, points: Array) -> None:
         self._height, self._sun, self._radius = height, sun.camera, sun.radius
-        self._map_size = (sun.map_size[0] // 2, sun.map_size[1] // 2)  # enough, as they are blurred
+        self._map_size = (sun.map_size[0] // 2, sun.map_size[1] // 2)  # fine enough, as the maps are blurred
         self._middle = (points[:, :2].min(axis=0) + points[:, :2].max(axis=0)) / 2
         self._below = look_from(np.array([0.0, 0.0, -1.0]), points, aspect=1.0, lens=FAR, filled=0.6)
         levels = np.array([0.0, 0.25, 1.0]) * sun.radius
@@ -53,7 +53,7 @@ class Ground:
         self._cast, self._near = 1.0 - lit, 1.0 - far
 
     def _above(self, camera: Camera, depth: Array) -> Array:
-        """How high over the floor [m] what a map shows is; zero where it shows nothing."""
+        """The height above the floor [m] of what a map shows; zero where it shows nothing."""
         above = np.zeros_like(depth)
         rows, columns = np.nonzero(np.isfinite(depth))
         ways = camera.rays(columns + 0.5, rows + 0.5, self._map_size)[:, 2]
@@ -61,12 +61,12 @@ class Ground:
         return above
 
     def _pixels(self, camera: Camera, length: float, points: Array) -> float:
-        """How long a length [m] is on a map."""
+        """A length [m] in pixels of a map."""
         away = (points.mean(axis=0) - camera.position) @ camera.axes[2]
         return float(length * self._map_size[1] / (2.0 * FAR * away))
 
     def seen_by(self, camera: Camera, size: tuple[int, int], band: tuple[int, int]) -> tuple[Array, Array]:
-        """The floor's strength and its darkness by shadows, in 0..1, at each pixel (h, w) of some rows of a picture."""
+        """The floor's opacity and the shadows' darkness, in 0..1, at each pixel (h, w) of some rows of a picture."""
         rows, columns = np.mgrid[slice(*band), : size[0]]
         rays = camera.rays(columns + 0.5, rows + 0.5, size)
         hit = rays[..., 2] * np.sign(self._height - camera.position[2]) > 1e-9
@@ -82,7 +82,7 @@ class Ground:
 
 
 def _sampled(image: Array, camera: Camera, points: Array) -> Array:
-    """A map's values where a camera sees points (k, 3), between its pixels linearly; 0 outside."""
+    """A map's values where its camera sees points (k, 3), interpolated linearly; 0 outside the map."""
     height, width = image.shape
     x, y, depth = camera.seen(points, (width, height)).T
     x, y = x / depth - 0.5, y / depth - 0.5
@@ -98,7 +98,7 @@ def _sampled(image: Array, camera: Camera, points: Array) -> Array:
 
 
 def _blurred(image: Array, sigma: float) -> Array:
-    """Three box filters each way, which are nearly a Gaussian of this deviation [pixels]."""
+    """The image after three box filters along each axis, almost a Gaussian of this standard deviation [pixels]."""
     half = max(round(sigma - 0.5), 1)
     for _ in range(3):
         for _ in range(2):

@@ -1,4 +1,4 @@
-"""Bodies in the light of a sun, which casts shadows, and of a sky."""
+"""Light: a sun, which casts shadows, and a sky."""
 
 from __future__ import annotations
 
@@ -16,32 +16,32 @@ __all__ = ["FAR", "Mesh", "Sun", "to_linear", "to_srgb"]
 
 Array = NDArray[np.float64]
 
-_SHARPEST, _COARSEST = 1024, 256  # pixels of a shadow map's side
-FAR = 0.02  # lens of a camera that stands so far away that it sees almost in parallel
+_SHARPEST, _COARSEST = 1024, 256  # the greatest and least side of a shadow map [pixels]
+FAR = 0.02  # the lens of a camera so far away that its rays are almost parallel
 _SKY, _KEY, _FILL = 0.44, 0.70, 0.13
-_TAPS = 6  # looks into the shadow map for each sample; the four samples of a pixel take different ones
+_TAPS = 6  # lookups in the shadow map for each sample; a pixel's four samples use different ones
 
 
 def to_linear(color: Array) -> Array:
-    """sRGB in 0..1 as amounts of light."""
+    """sRGB in 0..1 as linear light."""
     return np.asarray(color) ** 2.2
 
 
 def to_srgb(light: Array) -> Array:
-    """Amounts of light as sRGB in 0..1; what is very bright is held back, so that white things keep their form."""
+    """Linear light as sRGB in 0..1; highlights are compressed, so that white surfaces keep their shading."""
     held = light / np.sqrt(1.0 + 0.35 * light**2)
     return np.asarray(np.clip(held, 0.0, 1.0) ** (1.0 / 2.2))
 
 
 @dataclass(frozen=True, eq=False)
 class Mesh:
-    """Bodies of one opacity as one mesh.
+    """Several bodies of the same opacity, merged into one mesh.
 
     Attributes:
         vertices: (v, 3) [m].
         normals: (v, 3).
         faces: (f, 3).
-        color: Of each face (f, 3), amounts of light.
+        color: Of each face (f, 3), as linear light.
         gloss: Of each face (f,).
         glow: Of each face (f,).
         opacity: In 0..1.
@@ -57,7 +57,7 @@ class Mesh:
 
     @classmethod
     def of(cls, bodies: Sequence[Body]) -> Mesh:
-        """At least one body; the first one's opacity counts."""
+        """Merge one or more bodies; the first gives the opacity."""
         solids = [body.solid for body in bodies]
         starts = np.cumsum([0, *(len(solid.vertices) for solid in solids[:-1])])
         counts = [len(solid.faces) for solid in solids]
@@ -72,7 +72,7 @@ class Mesh:
         )
 
     def drawn_by(self, camera: Camera, size: tuple[int, int], rows: tuple[int, int] | None = None) -> Raster:
-        """What a camera sees of it in a picture of that size, or in these rows of it: the first, and the one below."""
+        """What a camera sees of the mesh in a picture of this size, or in its rows from the first up to the second."""
         top, bottom = (0, size[1]) if rows is None else rows
         seen = camera.seen(self.vertices, size)
         seen[:, 1] -= top * seen[:, 2]
@@ -80,13 +80,13 @@ class Mesh:
 
 
 class Sun:
-    """A light far away, over the viewer's left shoulder.
+    """A distant light over the viewer's left shoulder.
 
     Args:
-        meshes: What may cast shadows.
-        camera: Who looks.
-        size: Width and height of what it draws [pixels]; of a small picture the shadows are coarser.
-        points: Of a hull of everything that is lit (n, 3) [m].
+        meshes: The meshes; the opaque one casts shadows.
+        camera: The picture's camera.
+        size: Width and height of the picture [pixels]; a small picture gets coarser shadows.
+        points: Points (n, 3) [m] whose hull holds everything that is lit.
     """
 
     def __init__(self, meshes: Sequence[Mesh], camera: Camera, size: tuple[int, int], points: Array) -> None:
@@ -108,11 +108,11 @@ class Sun:
             self._depth = self._solid.drawn_by(self.camera, self.map_size).depth
 
     def sees(self, mesh: Mesh) -> Array:
-        """How far from the sun a mesh is, at each pixel of its map; infinite where it is not."""
+        """The mesh's distance from the sun at each pixel of the shadow map; infinite where there is none."""
         return self._depth if mesh is self._solid else mesh.drawn_by(self.camera, self.map_size).depth
 
     def shines_on(self, points: Array, normals: Array, sample: NDArray[np.int64]) -> Array:
-        """How much of the sun reaches points (k, 3) on surfaces; `sample` (k,) in 0..3 says which of a pixel's four."""
+        """The share of sunlight that reaches surface points (k, 3); `sample` (k,) in 0..3 numbers a pixel's samples."""
         x, y, depth = self.camera.seen(points + 3.0 * self._pixel * normals, self.map_size).T
         x, y = x / depth, y / depth
         bias = 2.0 * self._pixel
@@ -134,7 +134,7 @@ class Sun:
         back: Array,
         sample: NDArray[np.int64],
     ) -> Array:
-        """Light (k, 3) that comes from points of a mesh's triangles; `back` (k, 3) are the ways to the camera."""
+        """The light (k, 3) from points on a mesh's triangles; `back` (k, 3) are unit vectors to the camera."""
         rim = 0.84 + 0.16 * np.einsum("kc,kc->k", normals, back).clip(0.0)  # so that white stands out against white
         key = np.maximum(normals @ self.direction, 0.0) * self.shines_on(points, normals, sample)
         fill = np.maximum(normals @ self._fill, 0.0)

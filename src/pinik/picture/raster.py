@@ -1,4 +1,4 @@
-"""Which triangle is the nearest at each pixel: a z-buffer over all triangles at once, without a loop over them."""
+"""A z-buffer: the nearest triangle at each pixel, for all triangles at once."""
 
 from __future__ import annotations
 
@@ -16,18 +16,18 @@ Array = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
 _AT_ONCE = 2_000_000  # fragments in memory
-_SLACK = 1e-7  # [pixels] so that nothing shows through between two triangles that share an edge
+_SLACK = 1e-7  # [pixels] closes the gaps between triangles that share an edge
 
 
 @dataclass(frozen=True)
 class Raster:
-    """What each pixel shows.
+    """The nearest triangle at each pixel.
 
     Attributes:
-        number: The nearest triangle's place in `drawn` (h, w), -1 where there is none.
-        depth: How far ahead it is (h, w), infinite where there is none.
-        drawn: Indices of the triangles that may be seen (d,).
-        planes: What `weights` needs of each of them (d, 3, 3).
+        number: The triangle's position in `drawn` (h, w), -1 where there is none.
+        depth: Its distance ahead (h, w), infinite where there is none.
+        drawn: Indices of the triangles inside the picture (d,).
+        planes: The plane equations of each of them, for `weights` (d, 3, 3).
     """
 
     number: Ints
@@ -37,15 +37,15 @@ class Raster:
 
     @property
     def covered(self) -> NDArray[np.bool_]:
-        """Where there is a triangle (h, w)."""
+        """Whether a pixel shows a triangle (h, w)."""
         return self.number >= 0
 
     def triangles(self, rows: Ints, columns: Ints) -> Ints:
-        """Index (k,) of the triangle at each of these pixels, which are covered."""
+        """The index (k,) of the triangle at each of these covered pixels."""
         return self.drawn[self.number[rows, columns]]
 
     def weights(self, rows: Ints, columns: Ints) -> Array:
-        """How much each corner (k, 3) of the triangle at these pixels counts there; they add up to one."""
+        """The barycentric weights (k, 3) of the triangle's corners at these covered pixels."""
         planes = self.planes[self.number[rows, columns]]
         shares = planes[:, :, 0] * (columns + 0.5)[:, None] + planes[:, :, 1] * (rows + 0.5)[:, None] + planes[:, :, 2]
         shares = np.maximum(shares, 0.0)
@@ -53,15 +53,15 @@ class Raster:
 
 
 def rasterize(corners: Array, size: tuple[int, int]) -> Raster:
-    """Draw triangles.
+    """Find the nearest triangle at each pixel.
 
     A pixel's ray d = (x, y, 1) meets the plane of a triangle with corners P = [p0 p1 p2] at P u = d: inside where all
     u ≥ 0, at the depth 1/Σu (Olano and Greer 1997). So u is linear in x and y, and on each row of pixels a triangle
     covers one interval.
 
     Args:
-        corners: Of the triangles (n, 3, 3): right, down, ahead, so that a corner is seen at the pixel
-            (right/ahead, down/ahead). One with a corner that is not ahead is left out.
+        corners: The triangles' corners (n, 3, 3) as (right, down, ahead); a corner appears at the pixel
+            (right/ahead, down/ahead). A triangle with a corner behind the camera is left out.
         size: Width and height [pixels].
     """
     width, height = size
@@ -84,7 +84,7 @@ def rasterize(corners: Array, size: tuple[int, int]) -> Raster:
 
 
 def _touching(corners: Array, width: int, height: int) -> Ints:
-    """Indices of the triangles whose box holds the middle of a pixel of the picture."""
+    """Indices of the triangles whose bounding box holds the centre of a pixel."""
     depth = corners[:, :, 2]
     with np.errstate(divide="ignore", invalid="ignore"):
         inside = _least(depth) > 0.0
@@ -96,7 +96,7 @@ def _touching(corners: Array, width: int, height: int) -> Ints:
 
 @dataclass(frozen=True)
 class _Spans:
-    """Intervals of pixels in a row, each of one triangle; 1/depth is `slope` x + `start` at column x."""
+    """Runs of pixels in one row, each covered by one triangle; at column x, 1/depth is `slope` x + `start`."""
 
     number: Ints
     row: Ints
@@ -107,7 +107,7 @@ class _Spans:
 
 
 def _spans(corners: Array, planes: Array, width: int, height: int) -> Iterator[_Spans]:
-    """The intervals that the triangles cover, some million pixels at a time."""
+    """The runs that the triangles cover, some million pixels at a time."""
     y = corners[:, :, 1] / corners[:, :, 2] - 0.5
     top = np.maximum(np.ceil(_least(y)), 0).astype(np.int64)
     bottom = np.minimum(np.floor(_most(y)), height - 1).astype(np.int64)
@@ -133,7 +133,7 @@ def _spans(corners: Array, planes: Array, width: int, height: int) -> Iterator[_
 
 
 def _fragments(spans: _Spans, width: int) -> tuple[Ints, Ints, NDArray[np.float32]]:
-    """Pixel, triangle's number and 1/depth of every pixel of the intervals."""
+    """The pixel, the triangle's number and 1/depth, for every pixel of the runs."""
     which = np.repeat(np.arange(len(spans.count)), spans.count)
     column = spans.first[which] + _counted(spans.count)
     inverse = spans.slope[which] * (column + 0.5) + spans.start[which]
@@ -141,20 +141,20 @@ def _fragments(spans: _Spans, width: int) -> tuple[Ints, Ints, NDArray[np.float3
 
 
 def _counted(counts: Ints) -> Ints:
-    """0, 1, … for each count, one after the other."""
+    """0, 1, … up to each count, joined into one array."""
     ends = np.cumsum(counts)
     return np.arange(ends[-1] if len(ends) else 0) - np.repeat(ends - counts, counts)
 
 
 def _parts(counts: Ints, most: int) -> Iterator[slice]:
-    """Slices of about `most` counted together, in order."""
+    """Consecutive slices whose counts add up to about `most` each."""
     if len(counts):
         group = np.cumsum(counts) // most
         edges = [0, *(np.flatnonzero(np.diff(group)) + 1), len(counts)]
         yield from (slice(a, b) for a, b in itertools.pairwise(edges))
 
 
-# Over three columns numpy's own reductions and its cross product take several times as long.
+# For three columns, numpy's own reductions and cross product take several times as long.
 
 
 def _least(values: NDArray[Any]) -> NDArray[Any]:

@@ -1,4 +1,4 @@
-"""Bodies, light and ground put together into pixels."""
+"""Bodies, light and ground, rendered into pixels."""
 
 from __future__ import annotations
 
@@ -18,8 +18,8 @@ __all__ = ["render"]
 
 Array = NDArray[np.float64]
 
-_SAMPLES = 2  # across a pixel, and as many down
-# What is in memory at once, so that pictures that are large or have many ghosts take no more:
+_SAMPLES = 2  # along each side of a pixel
+# Bounds on what is in memory at once, whatever the size of the picture and the number of ghosts:
 _AT_ONCE = 400_000  # pixels
 _MOST = 8_000_000  # samples of all layers together
 
@@ -27,17 +27,17 @@ _MOST = 8_000_000  # samples of all layers together
 def render(
     layers: Sequence[Sequence[Body]], camera: Camera, size: tuple[int, int], floor: float | None, paper: Array | None
 ) -> NDArray[np.uint8]:
-    """Draw.
+    """Render a picture.
 
     Args:
-        layers: Bodies, those of one layer of one opacity; of each layer only what is in front of its others is seen.
-        camera: From where.
+        layers: Bodies; those of one layer have the same opacity and hide each other.
+        camera: The camera.
         size: Width and height [pixels].
-        floor: Height of the ground [m]; none when None.
-        paper: The background's colour (3,), sRGB in 0..1; transparent when None.
+        floor: The height of the ground [m]; None for no ground.
+        paper: The background's colour (3,), sRGB in 0..1; None for a transparent one.
 
     Returns:
-        Red, green, blue, opacity (h, w, 4).
+        Red, green, blue and opacity (h, w, 4), 0..255.
     """
     meshes = [Mesh.of(layer) for layer in layers]
     points = np.vstack([_box(body.solid.vertices) for layer in layers for body in layer])
@@ -60,7 +60,7 @@ def render(
 def _covered(
     meshes: Sequence[Mesh], sun: Sun, camera: Camera, size: tuple[int, int], band: tuple[int, int]
 ) -> list[_Fragments] | None:
-    """What each layer shows in some rows: the first, and the one below the last; None where that is too much."""
+    """What each layer shows in the rows `band`, from the first up to the second; None if that takes too much memory."""
     fine = (size[0] * _SAMPLES, size[1] * _SAMPLES)
     drawn, total = [], 0
     for mesh in meshes:
@@ -79,14 +79,14 @@ def _band(
     band: tuple[int, int],
     paper: Array | None,
 ) -> NDArray[np.uint8]:
-    """Rows of the picture."""
+    """The pixels of some rows of the picture."""
     color, opacity = _together(drawn, (size[0] * _SAMPLES, (band[1] - band[0]) * _SAMPLES))
     behind, cover = np.zeros_like(color), np.zeros_like(opacity)
     if ground is not None:
         behind, cover = _floor(ground, camera, size, band, paper)
     if paper is not None:
         behind, cover = behind + (1.0 - cover)[..., None] * paper, np.ones_like(cover)
-    color = color + (1.0 - opacity)[..., None] * behind  # all of them multiplied by their opacity
+    color = color + (1.0 - opacity)[..., None] * behind  # these colours are premultiplied by opacity
     opacity = opacity + (1.0 - opacity) * cover
     plain = np.divide(color, opacity[..., None], out=np.zeros_like(color), where=opacity[..., None] > 0.0)
     return np.asarray(np.dstack([plain, opacity]).clip(0.0, 1.0) * 255.0 + 0.5).astype(np.uint8)
@@ -95,7 +95,7 @@ def _band(
 def _floor(
     ground: Ground, camera: Camera, size: tuple[int, int], band: tuple[int, int], paper: Array | None
 ) -> tuple[Array, Array]:
-    """The ground's colour, multiplied by its opacity, and that; without paper it is its shadows alone."""
+    """The ground's colour, premultiplied, and its opacity; on a transparent background only its shadows."""
     strength, dark = ground.seen_by(camera, size, band)
     if paper is None:
         return np.zeros((*dark.shape, 3)), dark
@@ -104,11 +104,11 @@ def _floor(
 
 @dataclass(frozen=True)
 class _Fragments:
-    """What layers show at the samples that they cover.
+    """What a layer shows at the samples that it covers.
 
     Attributes:
-        key: The sample's place in these rows, and below it the depth, so that sorted they are in the order in which a
-            look meets them (k,).
+        key: The sample's index in the upper bits and its depth in the lower ones (k,): sorted, the fragments of a
+            sample run from front to back.
         color: sRGB (k, 3).
         opacity: (k,).
     """
@@ -119,7 +119,7 @@ class _Fragments:
 
 
 def _together(drawn: Sequence[_Fragments], size: tuple[int, int]) -> tuple[Array, Array]:
-    """Colour (h, w, 3), multiplied by opacity, and opacity (h, w) of all layers, the nearer before the farther."""
+    """All layers blended from front to back: premultiplied colour (h, w, 3) and opacity (h, w)."""
     width, height = size
     key = np.concatenate([one.key for one in drawn])
     color = np.concatenate([one.color for one in drawn])
@@ -140,14 +140,14 @@ def _together(drawn: Sequence[_Fragments], size: tuple[int, int]) -> tuple[Array
 
 
 def _ranks(place: NDArray[np.int64]) -> NDArray[np.int64]:
-    """How many entries before each, in a sorted list, are the same."""
+    """For each entry of a sorted array, the number of equal entries before it."""
     counted = np.arange(len(place))
     begins = np.r_[True, place[1:] != place[:-1]][: len(place)]
     return np.asarray(counted - np.maximum.accumulate(np.where(begins, counted, 0)))
 
 
 def _shaded(mesh: Mesh, sun: Sun, camera: Camera, size: tuple[int, int], band: tuple[int, int]) -> _Fragments:
-    """One layer in these rows."""
+    """The fragments of one layer in some rows."""
     raster = mesh.drawn_by(camera, size, band)
     rows, columns = np.nonzero(raster.covered)
     triangles = raster.triangles(rows, columns)
@@ -157,7 +157,7 @@ def _shaded(mesh: Mesh, sun: Sun, camera: Camera, size: tuple[int, int], band: t
     points = np.einsum("kc,kcx->kx", weights, mesh.vertices[corners])
     back = camera.position - points
     back /= _lengths(back)
-    # Files have faces that look inwards: what is seen of a surface is its outside.
+    # Some files have faces that point inwards; whichever side is seen counts as the outside.
     a, b, c = (mesh.vertices[mesh.faces[raster.drawn, k]] for k in range(3))
     flat = np.cross(b - a, c - a)[raster.number[rows, columns]]
     inward = np.einsum("kc,kc->k", flat, normals) * np.einsum("kc,kc->k", flat, back) < 0.0
@@ -171,17 +171,17 @@ def _shaded(mesh: Mesh, sun: Sun, camera: Camera, size: tuple[int, int], band: t
 
 
 def _lengths(vectors: Array) -> Array:
-    """Of each (k, 1); several times as fast as numpy's."""
+    """The length of each vector (k, 1), several times as fast as numpy's norm."""
     return np.asarray(np.sqrt(np.einsum("kc,kc->k", vectors, vectors))[:, None])
 
 
 def _averaged(image: Array) -> Array:
-    """The mean over the samples of each pixel."""
+    """The mean of each pixel's samples."""
     samples = [image[i::_SAMPLES, j::_SAMPLES] for i in range(_SAMPLES) for j in range(_SAMPLES)]
     return np.asarray(sum(samples[1:], samples[0]) / len(samples))
 
 
 def _box(points: Array) -> Array:
-    """The corners (8, 3) of the box about points."""
+    """The corners (8, 3) of the points' bounding box."""
     low, high = points.min(axis=0), points.max(axis=0)
     return np.array([np.where(pick, high, low) for pick in np.ndindex(2, 2, 2)])

@@ -1,4 +1,4 @@
-"""Balls and rods: surfaces of revolution as triangles."""
+"""Balls and rods, as triangle meshes of surfaces of revolution."""
 
 from __future__ import annotations
 
@@ -20,8 +20,8 @@ class Solid:
 
     Attributes:
         vertices: (v, 3) [m].
-        normals: At the vertices (v, 3), of unit length.
-        faces: Indices of corners (f, 3).
+        normals: Unit normals at the vertices (v, 3).
+        faces: Indices of the corners (f, 3).
     """
 
     vertices: Array
@@ -29,7 +29,7 @@ class Solid:
     faces: NDArray[np.int64]
 
     def moved(self, rotation: Array, translation: Array) -> Solid:
-        """It, somewhere else."""
+        """This surface after a rotation (3, 3) and a translation (3,) [m]."""
         return Solid(self.vertices @ rotation.T + translation, self.normals @ rotation.T, self.faces)
 
 
@@ -41,7 +41,7 @@ def ball(center: Array, radius: float) -> Solid:
 
 
 def rod(start: Array, end: Array, thick: float, thin: float) -> Solid:
-    """From one point to another, of radius `thick` at the first and `thin` at the other [m]; open at its ends."""
+    """A rod between two points, open at its ends; its radius falls from `thick` to `thin` [m]."""
     along = end - start
     length = float(np.linalg.norm(along))
     profile = np.array([[thick, 0.0], [thin, length]])
@@ -50,7 +50,7 @@ def rod(start: Array, end: Array, thick: float, thin: float) -> Solid:
 
 
 def _revolved(profile: Array, normals: Array) -> Solid:
-    """A profile (k, 2) of radii and heights, turned about z; its normals (k, 2) likewise."""
+    """A profile (k, 2) of radii and heights, with its normals (k, 2), revolved about z."""
     angle = np.linspace(0.0, 2.0 * np.pi, _AROUND, endpoint=False)
     turn = np.stack([np.cos(angle), np.sin(angle)], axis=1)
 
@@ -69,7 +69,7 @@ def _revolved(profile: Array, normals: Array) -> Solid:
 
 
 def _from_z(direction: Array) -> Array:
-    """A rotation (3, 3) that turns z into a direction."""
+    """A rotation (3, 3) that turns z into a unit direction (3,)."""
     helper = np.eye(3)[np.argmin(np.abs(direction))]
     x = np.cross(helper, direction)
     x /= np.linalg.norm(x)

@@ -147,7 +147,7 @@ def test_a_view_or_a_size_that_is_none_is_said_in_words(two_link):
         with pytest.raises(pinik.UnknownNameError, match="no view 'back'"):
             view.picture("back")
         for size in (5, (5, 5), "ab", (0, 0)):
-            with pytest.raises(pinik.InputError, match="size is a width and a height"):
+            with pytest.raises(pinik.InputError, match="size must be a width and a height"):
                 view.picture(size=size)
     with pytest.raises(pinik.InputError, match="this live view is closed"):
         view.picture()

@@ -23,7 +23,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from ... import errors
 from ...picture.camera import Camera
-from ...picture.draw import Picture
+from ...picture.picture import Picture
 from ...robot import Robot
 from ..simulation.session import STEPS_PER_SECOND, Methods, Session
 from .later import later_in_threads

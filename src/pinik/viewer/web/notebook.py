@@ -17,7 +17,8 @@ from ...model.home import home_configuration
 from ...picture.arguments import checked_size, view_direction
 from ...picture.bodies import bodies_of
 from ...picture.camera import Camera, facing, look_from
-from ...picture.draw import BALL, Picture, ball_radius, draw
+from ...picture.draw import BALL, ball_radius, draw
+from ...picture.picture import Picture
 from ...robot import Robot
 
 __all__ = ["as_html", "draw_beside"]
