@@ -16,7 +16,7 @@ import pinocchio
 import pytest
 
 from pinik.viewer.web.live_view import LiveView
-from stand_ins import plain_placement
+from stand_ins import PATIENCE, plain_placement
 
 if TYPE_CHECKING:
     from playwright.sync_api import BrowserContext, Locator, Page
@@ -24,7 +24,6 @@ if TYPE_CHECKING:
 
 CHROMIUM = Path("/usr/bin/chromium")
 METHODS = ("ccd", "jt", "pinv", "dls")
-PATIENCE = 60.0  # seconds; nothing here takes as many, unless it is broken
 WIDE = {"width": 1280, "height": 720}
 HALF = {"width": 1110, "height": 480}
 SMALL = {"width": 1110, "height": 300}  # the same layout with a canvas that costs a processor little
@@ -166,6 +165,10 @@ class Desk:
 
     def value(self, testid: str) -> float:
         return float(self.part(testid).input_value())
+
+    def stop_clock(self) -> None:
+        """Stop the time by which the page judges how long ago something happened; timers and pictures go on."""
+        self.runs("{ const now = performance.now(); performance.now = () => now; }")
 
     @property
     def toasts(self) -> Locator:

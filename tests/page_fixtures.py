@@ -10,9 +10,10 @@ from typing import TYPE_CHECKING, Any
 import pytest
 
 import pinik
-from desk import CHROMIUM, DRAWN, METHODS, PATIENCE, SMALL, WIDE, Desk, Faults, need_browser
+from desk import CHROMIUM, DRAWN, METHODS, SMALL, WIDE, Desk, Faults, need_browser
 from pinik.viewer.web.live_view import LiveView
 from robots import load_quietly
+from stand_ins import PATIENCE
 
 if TYPE_CHECKING:
     from playwright.sync_api import Browser, BrowserContext, Page
@@ -29,6 +30,14 @@ FLAGS = [
 SLOW_SCREEN = """{
     const atOnce = window.requestAnimationFrame;
     window.requestAnimationFrame = (draw) => setTimeout(() => atOnce(draw), 100);
+}"""
+
+# A notice is closed by the test that reads it, however slow that test is; `longTimers` holds what would close it.
+NOTICES_STAY = """{
+    const after = window.setTimeout;
+    window.longTimers = [];
+    window.setTimeout = (act, delay, ...rest) =>
+        delay >= 8000 ? window.longTimers.push(act) : after(act, delay, ...rest);
 }"""
 
 Tabs = Callable[[bool], tuple["Page", Faults]]
@@ -72,6 +81,7 @@ def new_context(browser: Browser, *, bypass_csp: bool = True, **options: Any) ->
     """A browser's context; playwright evaluates its own scripts, which the page's content security policy forbids."""
     context = browser.new_context(bypass_csp=bypass_csp, **options)
     context.set_default_timeout(1000 * PATIENCE)
+    context.add_init_script(NOTICES_STAY)
     return context
 
 

@@ -19,6 +19,9 @@ from pinik.viewer.protocol.setup import write_setup
 from pinik.viewer.protocol.state import session_state
 from pinik.viewer.simulation.session import Session
 
+PATIENCE = 150.0
+"""How long a test waits for what must happen [s]: never this long in fact, and just less than pytest's own timeout."""
+
 # A well-formed message of every type that a session itself can answer, and what each field is.
 GOOD = {
     "view": ({"count": 2}, {"count": "index"}),

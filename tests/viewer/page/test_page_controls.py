@@ -225,6 +225,14 @@ def test_a_number_out_of_range_is_refused_in_words_and_changes_nothing(open_pane
         desk.expect(field).to_have_value(shown)
 
 
+def test_a_notice_goes_by_itself(open_panel):
+    desk = open_panel("two_link", methods=("dls",))
+    desk.type("speed", 1000)
+    desk.expect(desk.toasts).to_have_count(1)
+    desk.runs("longTimers.splice(0).forEach((act) => act())")
+    desk.expect(desk.toasts).to_have_count(0)
+
+
 def test_without_a_browser_the_tests_are_skipped_unless_one_is_required(monkeypatch, tmp_path):
     monkeypatch.delenv("PINIK_REQUIRE_BROWSER", raising=False)
     with pytest.raises(pytest.skip.Exception, match="chromium"):

@@ -78,13 +78,16 @@ def test_a_ball_is_where_the_page_says_and_every_instances_copy_can_be_dragged(o
 
 def test_a_drag_takes_the_ball_from_its_curve(open_desk):
     desk = open_desk(methods=("dls",), running=True, motion="curve", viewport=HALF)
-    desk.view.send("speed", value=0.1)
+    desk.until(lambda s: s["step"] > 20)
+    desk.view.send("run", on=False)  # the ball waits for the hand, on its curve
     desk.agree()
+    desk.settle()
     seen_from = camera(desk)
     drag(desk, desk.ball_on_screen(), (30, 0), release=False)
     desk.until(lambda s: s["motion"] == "hand")
     np.testing.assert_allclose(camera(desk), seen_from, atol=1e-9, err_msg="the camera turned")
     desk.page.mouse.up()
+    desk.view.send("run", on=True)
     desk.until(desk.is_followed)
 
 

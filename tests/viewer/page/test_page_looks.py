@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 import io
-import time
 
 import numpy as np
 import pytest
 from PIL import Image
 
 from desk import HALF, METHODS, PHONE, WIDE
+
+WAIT_FOR_PICTURES = """async (count) => {
+    for (let k = 0; k < count; k++) await new Promise(requestAnimationFrame);
+}"""
 
 
 def unlike_background(picture):
@@ -27,17 +30,15 @@ def whole(desk):
 
 def still_picture(desk):
     """The canvas after its last drawing: a picture that stays is drawn once more, as finely as possible."""
-    frames, since = -1, 0.0
+    pictures = []
 
     def look():
-        nonlocal frames, since
-        now = desk.runs("pinik.frames")
-        if now != frames:
-            frames, since = now, time.monotonic()
-        return time.monotonic() - since > 0.8  # twice what the page waits
+        frames, settled = desk.runs("[pinik.frames, pinik.settled]")
+        pictures[:] = [desk.picture()]
+        return settled and desk.runs("pinik.frames") == frames
 
     desk.wait(look)
-    return desk.picture()
+    return pictures[0]
 
 
 def test_a_robot_is_drawn_with_its_own_shapes_and_colours(open_desk):
@@ -56,12 +57,10 @@ def test_a_running_picture_moves_and_a_stopped_one_stands(open_desk):
     desk.agree()
     desk.settle()
 
-    def stands():
-        frames, picture = desk.runs("pinik.frames"), desk.picture()
-        desk.page.wait_for_timeout(700)
-        return desk.runs("pinik.frames") == frames and (desk.picture() == picture).all()
-
-    desk.wait(stands)
+    picture, frames = still_picture(desk), desk.runs("pinik.frames")
+    desk.page.evaluate(WAIT_FOR_PICTURES, 40)  # chances to draw
+    assert desk.runs("pinik.frames") == frames
+    assert (desk.picture() == picture).all()
 
 
 def test_more_instances_show_more_robots(open_desk):

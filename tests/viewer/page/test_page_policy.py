@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 import pinik
-from desk import METHODS, PATIENCE, SMALL, Faults, need_browser
+from desk import METHODS, SMALL, Faults, need_browser
 from page_fixtures import new_context
 
 NOTE_VIOLATIONS = """
@@ -43,10 +43,10 @@ def test_the_page_runs_under_its_policy_and_violates_nothing(strict_page):
     with pinik.live("two_link", METHODS, port=0, running=False, motion="hand") as view:
         faults.allow(f"127.0.0.1:{view.port}")
         page.goto(view.url)
-        expect(page.get_by_test_id("label-3")).to_contain_text("idle", timeout=1000 * PATIENCE)
+        expect(page.get_by_test_id("label-3")).to_contain_text("idle")
         page.get_by_test_id("step").click()
         for i in range(len(METHODS)):
-            expect(page.get_by_test_id(f"status-{i}")).to_contain_text("reached", timeout=1000 * PATIENCE)
+            expect(page.get_by_test_id(f"status-{i}")).to_contain_text("reached")
         assert view.state["step"] == 1
         assert page.evaluate("() => window.violations") == []
         assert faults.left == []

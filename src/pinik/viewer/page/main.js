@@ -179,6 +179,10 @@ window.pinik = {
     get still() {
         return page.show.still;
     },
+    /** Whether the picture stands and has been drawn as finely as possible. */
+    get settled() {
+        return page.show.stage.settled;
+    },
     /** Where ball k of the first instance is, in CSS pixels of the page. */
     targetOnScreen(k) {
         const { stage } = page.show;

@@ -51,6 +51,11 @@ export class Stage {
         this.viewer = viewer;
     }
 
+    /** Whether nothing has changed for a while and the picture has been drawn once more, as finely as possible. */
+    get settled() {
+        return this._settled && !this.viewer.needs_render;
+    }
+
     get canvas() {
         return this.viewer.renderer.domElement;
     }
