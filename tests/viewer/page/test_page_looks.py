@@ -189,7 +189,14 @@ def test_no_figure_of_the_statistics_is_cut_short(open_desk):
             const dot = cells[0].querySelector("*")?.cloneNode();
             cells.forEach((cell, k) => texts[k] && cell.replaceChildren(texts[k]));
             if (dot) cells[0].prepend(dot);
-            return cells.filter(cell => cell.scrollWidth > cell.clientWidth).map(cell => cell.textContent);
+            const isCut = (cell) => {
+                const { paddingLeft, paddingRight } = getComputedStyle(cell);
+                const all = document.createRange();
+                all.selectNodeContents(cell);
+                const room = cell.getBoundingClientRect().width - parseFloat(paddingLeft) - parseFloat(paddingRight);
+                return all.getBoundingClientRect().width > room;
+            };
+            return cells.filter(isCut).map((cell) => cell.textContent);
         }""",
         widest,
     )
