@@ -1,4 +1,4 @@
-"""The page's balls in the panel: which frame each leads, how, where it is, and how it is turned."""
+"""The balls in the page's panel: frame, mode, position and orientation."""
 
 from __future__ import annotations
 

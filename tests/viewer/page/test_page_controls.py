@@ -1,4 +1,4 @@
-"""The page's panel, control by control: what the server holds after a person's hand was on it."""
+"""The page's panel, control by control: the server's state after each use."""
 
 from __future__ import annotations
 

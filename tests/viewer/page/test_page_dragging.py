@@ -1,4 +1,4 @@
-"""Dragging in the 3-D view: the ball follows the hand, the robots follow the ball, and the camera keeps still."""
+"""Dragging in the 3-D view: the ball follows the pointer, the robots follow the ball, and the camera rests."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ def looks_along(desk):
 
 
 def drag(desk, start, way, *, steps=6, release=True):
-    """Press at a place [px], go a way [px] in steps; the tab is left time to draw each."""
+    """Press at a point [px], move by a way [px] in steps, and release."""
     mouse = desk.page.mouse
     mouse.move(*start)
     mouse.down()
@@ -36,7 +36,7 @@ def drag(desk, start, way, *, steps=6, release=True):
 
 
 def red_spots(picture):
-    """Middles (x, y) of what is red in a picture, from left to right."""
+    """The centres (x, y) of the red spots in a picture, from left to right."""
     is_red = (np.abs(picture - RED) < 60).all(axis=2) & (picture[..., 0] > 2 * picture[..., 1] + 20)
     columns = np.flatnonzero(is_red.sum(axis=0) > 2)
     groups = np.split(columns, np.flatnonzero(np.diff(columns) > 6) + 1)

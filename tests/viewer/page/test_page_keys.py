@@ -1,4 +1,4 @@
-"""The page by keyboard alone: every key that the help lists, and the way to every control by Tab."""
+"""The page used by keyboard alone: every key in the help, and every control by Tab."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ def desk(open_panel):
 
 
 def changes(desk, key, of):
-    """What `of` the server's state says before and after a key."""
+    """The value `of` the server's state before and after a key is pressed."""
     before = of(desk.agree())
     desk.page.keyboard.press(key)
     return before, of(desk.until(lambda s: not np.array_equal(of(s), before)))

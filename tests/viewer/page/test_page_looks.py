@@ -1,4 +1,4 @@
-"""How the page looks: pictures that are not empty and move, dark and light, wide and narrow; names for all inputs."""
+"""The page's looks: pictures are not empty and move; dark and light, wide and narrow; every input has a name."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ WAIT_FOR_PICTURES = """async (count) => {
 
 
 def unlike_background(picture):
-    """The part of a picture that differs from its own upper edge, column by column."""
+    """The fraction of a picture that differs from its own upper edge, column by column."""
     return (np.abs(picture - picture[:1]).max(axis=2) > 40).mean()
 
 
@@ -29,7 +29,7 @@ def whole(desk):
 
 
 def still_picture(desk):
-    """The canvas after its last drawing: a picture that stays is drawn once more, as finely as possible."""
+    """The canvas once it has stopped changing and has been drawn in full detail."""
     pictures = []
 
     def look():
@@ -179,7 +179,7 @@ def test_meshcats_one_command_that_evaluates_text_does_nothing_here(open_desk):
 
 
 def test_no_figure_of_the_statistics_is_cut_short(open_desk):
-    """The widest texts that a row may hold, put there by hand; iterations, in two sizes of letters, are the page's."""
+    """With the widest texts that a row can contain. The iterations, in two font sizes, are the page's own."""
     desk = open_desk("two_link", ("two_bone", "ccd", "jt", "dls"), viewport=WIDE)
     desk.expect("status-0").to_be_visible()
     widest = ["two_bone", "0.85 mm short", "0.671 ms", None, "98.3 %", "0.099 mm", "44.4°"]

@@ -1,4 +1,4 @@
-"""The page's parameters: each kind of widget changes its solver while it runs, and shows what the server holds."""
+"""The page's parameters: each kind of widget changes its solver while it runs, and shows the server's value."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The page under its own content security policy, which every other test of the page has to bypass."""
+"""The page under its own content security policy, which every other test of the page bypasses."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ EVALUATE_IN_PAGE = """(text) => new Promise((resolve) => {
 
 @pytest.fixture
 def strict_page(browser):
-    """A tab that keeps the policy, and what it complained about."""
+    """A tab that obeys the policy, and its faults."""
     context = new_context(browser, bypass_csp=False, viewport=SMALL)
     faults = Faults(context)
     page = context.new_page()

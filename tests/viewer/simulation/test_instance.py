@@ -205,7 +205,7 @@ def test_active_limits_are_those_that_could_move_a_target(lion):
 
 
 def test_unreachable_is_said_where_it_is_proved(arm):
-    """The chain's bones are 1.2 m long in all."""
+    """The chain's bones have a total length of 1.2 m."""
     one = instance(arm)
     for away in (1.25, 3.0):
         one.step([pinik.Target("tip", [0.0, away, 0.12])])
@@ -244,7 +244,7 @@ def test_a_missed_orientation_is_no_proof(panda):
 
 
 def test_time_that_runs_out_stops_a_step(arm):
-    """Every look at the clock costs a second: one at the beginning, one before each iteration, one at the end."""
+    """Every reading of the clock takes a second: one at the start, one before each iteration, one at the end."""
     Tenth.calls.clear()
     one = instance(arm, Tenth, clock=Clock(each=1.0))
     target = pinik.Target("tip", REACHABLE)

@@ -46,12 +46,12 @@ def can_be_bound(port):
 def wait_until(condition):
     deadline = time.monotonic() + PATIENCE
     while not condition():
-        assert time.monotonic() < deadline, "it does not happen"
+        assert time.monotonic() < deadline, "the condition never held"
         time.sleep(0.005)
 
 
 def open_files():
-    """How many, where the system tells."""
+    """The number of open files, or 0 if the system does not tell."""
     return len(os.listdir("/proc/self/fd")) if os.path.isdir("/proc/self/fd") else 0
 
 
@@ -102,7 +102,7 @@ def test_closing_does_not_wait_for_pages_that_are_open(two_link):
 
 
 def test_a_question_while_it_is_closed_is_answered_or_refused(two_link):
-    """Asked between the look whether it is closed and the end of its loop, it used to wait for ever."""
+    """Such a question comes after the check whether the view is closed, and before its loop ends."""
     view = pinik.live(two_link, port=0)
     view.close()
     view._closed.clear()

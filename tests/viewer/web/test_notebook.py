@@ -1,4 +1,4 @@
-"""A live view in a notebook: a frame while its own server answers, else a picture; in a real browser too."""
+"""A live view in a notebook: a frame while its own server answers, otherwise a picture."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ window.Image = function () {
 
 
 class Parts(HTMLParser):
-    """What is left of a notebook's output where scripts and frames are taken away, as published pages do."""
+    """A notebook's output without scripts and frames, as published pages show it."""
 
     def __init__(self, text):
         super().__init__()
@@ -61,7 +61,7 @@ def image_of(text):
 
 @contextlib.contextmanager
 def served(texts):
-    """The port of a server of this machine whose page shows the last of these texts."""
+    """Serve a page with the last of these texts on this machine; yields the port."""
 
     class Handler(http.server.BaseHTTPRequestHandler):
         def do_GET(self):
@@ -84,16 +84,16 @@ def served(texts):
 
 
 def wait_until(page, holds):
-    """Let the page live on until something is so."""
+    """Keep the page running until a condition holds."""
     deadline = time.monotonic() + PATIENCE
     while not holds():
-        assert time.monotonic() < deadline, "it does not happen"
+        assert time.monotonic() < deadline, "the condition never held"
         page.wait_for_timeout(20)
 
 
 @pytest.fixture
 def notebook(browser):
-    """Shows outputs as a notebook's page does: with their scripts, from a server of the same machine."""
+    """Shows outputs with their scripts, as a notebook does, from a server on the same machine."""
     context = new_context(browser)
     context.add_init_script(COUNT_IMAGES)
     page = context.new_page()
@@ -200,7 +200,7 @@ def test_a_notebook_of_this_machine_may_frame_it(two_link, notebook, host):
 
 
 def test_a_foreign_page_cannot_put_its_set_up_in_a_frame(two_link, notebook, tmp_path):
-    """Neither one under another name, which is all that a browser knows of a machine, nor one of a file."""
+    """Foreign pages are those under another host name, and those from files."""
     with pinik.live(two_link, ["dls"], port=0, running=False, motion="hand") as view:
         before = view.state["setup"]
         frame = f'<iframe src="{view.url}#{before.replace("methods=dls", "methods=ccd")}"></iframe>'

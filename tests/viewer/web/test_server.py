@@ -1,4 +1,4 @@
-"""The server over real sockets: every message, every malformed one, and who may not talk to it."""
+"""The server over real sockets: good and malformed messages, and who may connect."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ def view(arm):
 
 @pytest.fixture(autouse=True)
 def _begin(request):
-    """Every test finds the shared view as it was at first."""
+    """Reset the shared view after every test."""
     yield
     if "view" in request.fixturenames:
         view = request.getfixturevalue("view")
@@ -50,7 +50,7 @@ BEGIN = 'robot=arm&root=fixed&view=2&methods=dls,ccd&motion=random&run=on&balls=
 
 
 class Page:
-    """A websocket client that answers frames as a page does, and keeps what it was told."""
+    """A websocket client that acknowledges frames as a page does, and keeps all messages."""
 
     def __init__(self, connection):
         self.connection = connection
@@ -76,7 +76,7 @@ class Page:
         return message
 
     async def next(self, wanted, until=lambda message: True):
-        """The next message of a kind, for which `until` holds."""
+        """Return the next message of a kind for which `until` holds."""
         while True:
             message = await self.read()
             assert message is not None, "the server has closed the connection"
@@ -95,13 +95,13 @@ class Page:
         await self.end()
 
     async def end(self):
-        """Wait until the connection is closed, whoever closes it."""
+        """Wait until the connection is closed by either side."""
         while self.is_open:
             await self._read()
 
 
 def talk(view, conversation, pages=1, **headers):
-    """Run `conversation(page, …)` with so many pages open."""
+    """Run `conversation(page, …)` with this many pages open."""
 
     async def held():
         opened = [await Page.open(view, **headers) for _ in range(pages)]
@@ -208,7 +208,7 @@ MORE = {
 
 @pytest.mark.parametrize("message", list(DONE))
 def test_every_message_works_over_the_websocket(view, message):
-    """Two pages are told."""
+    """Two pages receive the new state."""
 
     async def conversation(page, other):
         await page.say(message, **MORE.get(message, GOOD.get(message, ({},))[0]))
@@ -334,7 +334,7 @@ def test_a_page_that_never_reads_stops_nobody_and_queues_nothing(arm):
         mute.sendall(handshake(view))
 
         def queued():
-            """Bytes that wait in the server for the page that never reads."""
+            """The number of bytes that wait in the server for the page that never reads."""
             return max(len(tab.ws_connection.stream._write_buffer) for tab in view._show._seats._seats)
 
         async def conversation(page):
