@@ -1,4 +1,4 @@
-"""A live view, a tab of chromium that shows it, and a watch on the tab's faults; `page_fixtures` makes them."""
+"""A live view, a chromium tab that shows it, and a record of the tab's faults; `page_fixtures` makes them."""
 
 from __future__ import annotations
 
@@ -17,6 +17,7 @@ import pytest
 
 from judge import plain_placement
 from pinik.viewer.web.live_view import LiveView
+from stand_ins import PATIENCE
 
 if TYPE_CHECKING:
     from playwright.sync_api import BrowserContext, Locator, Page
@@ -24,10 +25,9 @@ if TYPE_CHECKING:
 
 CHROMIUM = Path("/usr/bin/chromium")
 METHODS = ("ccd", "jt", "pinv", "dls")
-PATIENCE = 60.0  # seconds; nothing here takes as many, unless it is broken
 WIDE = {"width": 1280, "height": 720}
 HALF = {"width": 1110, "height": 480}
-SMALL = {"width": 1110, "height": 300}  # the same layout with a canvas that costs a processor little
+SMALL = {"width": 1110, "height": 300}  # the same layout with a canvas that is cheap to draw
 PHONE = {"width": 390, "height": 844}
 DRAWN = "window.pinik?.drawn === 'shapes' && pinik.still"
 BARE = "#labels, .views, .toasts, .loading { visibility: hidden }"  # for pictures of the canvas alone
@@ -36,7 +36,7 @@ State = dict[str, Any]
 
 
 def need_browser(chromium: Path = CHROMIUM) -> Any:
-    """playwright's module; where it or chromium is missing the test is skipped, or fails if one is required."""
+    """Return playwright's module. If it or chromium is missing, skip the test, or fail if a browser is required."""
     missing = "" if chromium.exists() else f"{chromium} is missing (apt install chromium)"
     try:
         from playwright import sync_api
@@ -50,7 +50,7 @@ def need_browser(chromium: Path = CHROMIUM) -> Any:
 
 
 class Faults:
-    """What no tab may do: complain on its console, fail to load a part, or ask another host for anything."""
+    """Records what no tab may do: log errors, fail to load something, or contact another host."""
 
     def __init__(self, context: BrowserContext) -> None:
         self.begin()
@@ -62,13 +62,13 @@ class Faults:
         context.on("page", lambda page: page.on("websocket", lambda socket: self._check_host(socket.url)))
 
     def begin(self) -> None:
-        """Forget what was."""
+        """Forget everything recorded."""
         self._hosts: set[str] = set()
         self._seen: list[str] = []
         self._excused: list[str] = []
 
     def allow(self, host: str) -> None:
-        """A server of this test's own."""
+        """Allow requests to a server of this test."""
         self._hosts.add(host)
 
     def _check_host(self, url: str) -> None:
@@ -77,7 +77,7 @@ class Faults:
             self._seen.append(f"asks another host: {url}")
 
     def excuse(self, pattern: str) -> None:
-        """Where a test cuts the line itself, the browser says so."""
+        """Ignore faults that match a pattern, such as those of a connection that the test itself cuts."""
         self._excused.append(pattern)
 
     @property
@@ -94,7 +94,7 @@ class Desk:
         self.page, self.faults = page, faults
 
     def visit(self, view: LiveView, setup: str = "", until: str = DRAWN) -> None:
-        """Go to a view's page; what an address asks for stands in `setup`."""
+        """Open a view's page; `setup` is what follows the # in its address."""
         self.view = view
         self.faults.allow(f"127.0.0.1:{view.port}")
         self.page.goto(view.url + (f"#{setup}" if setup else ""))
@@ -102,11 +102,11 @@ class Desk:
 
     @property
     def state(self) -> State:
-        """The server's truth."""
+        """The server's state."""
         return self.view.state
 
     def until(self, holds: Callable[[State], Any]) -> State:
-        """The server's state, as soon as it is so."""
+        """Wait until the server's state fulfils a condition, and return it."""
         found: list[State] = []
 
         def look() -> bool:
@@ -117,10 +117,10 @@ class Desk:
         return found[0]
 
     def wait(self, holds: Callable[[], Any]) -> None:
-        """Let the tab live on until something is so."""
+        """Keep the tab running until a condition holds."""
         end = time.monotonic() + PATIENCE
         while not holds():
-            assert time.monotonic() < end, "it never came to be so"
+            assert time.monotonic() < end, "the condition never held"
             self.page.wait_for_timeout(40)
 
     def runs(self, script: str) -> Any:
@@ -131,17 +131,17 @@ class Desk:
         self.page.wait_for_function(f"() => {script}")
 
     def agree(self) -> State:
-        """Wait until the tab has been told every setting that the server holds."""
+        """Wait until the tab knows all of the server's settings, and return the server's state."""
         self.wait(lambda: settings(self.runs("pinik.state")) == settings(self.state))
         return self.state
 
     def address(self) -> str:
-        """The set-up in the address bar, once it is the server's."""
+        """Wait until the address bar contains the server's set-up, and return it."""
         self.wait(lambda: self.page.url.partition("#")[2] == self.state["setup"])
         return self.state["setup"]
 
     def settle(self) -> None:
-        """Wait until the robot is drawn with its shapes and nothing but the robots moves the picture."""
+        """Wait until the robot is drawn with its shapes and the camera rests."""
         self.shows(DRAWN)
 
     def part(self, testid: str) -> Locator:
@@ -157,7 +157,7 @@ class Desk:
         self.part(testid).select_option(value)
 
     def type(self, testid: str, value: float | str) -> None:
-        """As a person would: into the input, and Enter."""
+        """Type into an input and press Enter."""
         self.part(testid).fill(str(value))
         self.part(testid).press("Enter")
 
@@ -166,6 +166,10 @@ class Desk:
 
     def value(self, testid: str) -> float:
         return float(self.part(testid).input_value())
+
+    def stop_clock(self) -> None:
+        """Freeze the clock by which the page judges how long ago something happened; timers and drawing go on."""
+        self.runs("{ const now = performance.now(); performance.now = () => now; }")
 
     @property
     def toasts(self) -> Locator:
@@ -176,7 +180,7 @@ class Desk:
         return point["x"], point["y"]
 
     def effectors(self, state: State, k: int = 0) -> list[pinocchio.SE3]:
-        """The frame of ball k in each instance: plain Pinocchio at the angles that the state tells."""
+        """The placement of ball k's frame in each instance, by plain Pinocchio at the state's angles."""
         robot = self.view.robot
         placements = []
         for instance in state["instances"]:
@@ -190,7 +194,7 @@ class Desk:
         return all(np.linalg.norm(at.translation - ball) < within for at in self.effectors(state, k))
 
     def picture(self) -> np.ndarray:
-        """The canvas (height, width, 3), without what floats above it."""
+        """The canvas (height, width, 3) without its overlays."""
         from PIL import Image
 
         taken = self.page.locator("#canvas").screenshot(style=BARE)
@@ -198,7 +202,7 @@ class Desk:
 
 
 def settings(state: State) -> State:
-    """What a person sets, without what moves by itself."""
+    """The settings in a state, without what changes by itself."""
     moving = ("step", "steps_per_second", "instances", "balls")
     balls = [[ball["frame"], ball["mode"], ball["oriented"], ball["rpy"]] for ball in state["balls"]]
     return {name: value for name, value in state.items() if name not in moving} | {"balls": balls}

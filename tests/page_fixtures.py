@@ -1,4 +1,4 @@
-"""Fixtures of the page's tests: Debian's chromium, and live views in this process with a tab each."""
+"""Fixtures of the page's tests: Debian's chromium, and live views in this process, each with a tab."""
 
 from __future__ import annotations
 
@@ -10,9 +10,10 @@ from typing import TYPE_CHECKING, Any
 import pytest
 
 import pinik
-from desk import CHROMIUM, DRAWN, METHODS, PATIENCE, SMALL, WIDE, Desk, Faults, need_browser
+from desk import CHROMIUM, DRAWN, METHODS, SMALL, WIDE, Desk, Faults, need_browser
 from pinik.viewer.web.live_view import LiveView
 from robots import load_quietly
+from stand_ins import PATIENCE
 
 if TYPE_CHECKING:
     from playwright.sync_api import Browser, BrowserContext, Page
@@ -31,13 +32,21 @@ SLOW_SCREEN = """{
     window.requestAnimationFrame = (draw) => setTimeout(() => atOnce(draw), 100);
 }"""
 
+# Notices stay until a test closes them, however slow it is. `longTimers` has the functions that would close them.
+NOTICES_STAY = """{
+    const after = window.setTimeout;
+    window.longTimers = [];
+    window.setTimeout = (act, delay, ...rest) =>
+        delay >= 8000 ? window.longTimers.push(act) : after(act, delay, ...rest);
+}"""
+
 Tabs = Callable[[bool], tuple["Page", Faults]]
 OpenDesk = Callable[..., Desk]
 
 
 @pytest.fixture(scope="module")
 def browser() -> Iterator[Browser]:
-    """One for a module and not for a session: while playwright runs, other tests cannot start an asyncio loop."""
+    """One per module rather than per session: while playwright runs, other tests cannot start an asyncio loop."""
     sync_api = need_browser()
     sync_api.expect.set_options(timeout=1000 * PATIENCE)
     with sync_api.sync_playwright() as playwright:
@@ -48,9 +57,9 @@ def browser() -> Iterator[Browser]:
 
 @pytest.fixture(scope="module")
 def tabs(browser: Browser) -> Iterator[Tabs]:
-    """Tabs that a module's tests use one after the other, each test with a server of its own: a new one costs a second.
+    """Tabs that a module's tests share, because opening one takes a second; every test has a server of its own.
 
-    One with a slow screen leaves a processor that has to draw everything time for other things.
+    A tab with a slow screen draws less often, which leaves processor time for other things.
     """
     opened: dict[bool, tuple[Page, Faults]] = {}
 
@@ -69,15 +78,16 @@ def tabs(browser: Browser) -> Iterator[Tabs]:
 
 
 def new_context(browser: Browser, *, bypass_csp: bool = True, **options: Any) -> BrowserContext:
-    """A browser's context; playwright evaluates its own scripts, which the page's content security policy forbids."""
+    """Open a browser context. It bypasses the page's policy, which forbids the scripts that playwright evaluates."""
     context = browser.new_context(bypass_csp=bypass_csp, **options)
     context.set_default_timeout(1000 * PATIENCE)
+    context.add_init_script(NOTICES_STAY)
     return context
 
 
 @pytest.fixture
 def open_desk(browser: Browser, tabs: Tabs) -> Iterator[OpenDesk]:
-    """Opens live views, each with a tab; at the end none of the tabs may have seen a fault."""
+    """Opens live views, each with a tab. The test fails if a tab has recorded a fault."""
     desks: list[tuple[Desk, bool]] = []
     views: list[LiveView] = []
 
@@ -95,7 +105,7 @@ def open_desk(browser: Browser, tabs: Tabs) -> Iterator[OpenDesk]:
         slow: bool = False,
         **context: Any,
     ) -> Desk:
-        """Stopped and by hand unless told otherwise; with options for a tab, in one of its own."""
+        """Open a view, by default stopped and by hand. With options for a browser context, its tab is not shared."""
         machine = robot if isinstance(robot, Path) else load_quietly(robot, root=root)
         live = pinik.live(machine, methods, running=running, motion=motion, view=view, port=0)
         views.append(live)
@@ -125,7 +135,7 @@ def open_desk(browser: Browser, tabs: Tabs) -> Iterator[OpenDesk]:
 
 
 def leave(page: Page) -> None:
-    """Nothing of what a test did to a tab is left to the next."""
+    """Undo what a test did to a shared tab."""
     for other in page.context.pages:
         if other is not page:
             other.close()
@@ -137,5 +147,5 @@ def leave(page: Page) -> None:
 
 @pytest.fixture
 def open_panel(open_desk: OpenDesk) -> OpenDesk:
-    """As `open_desk`, for tests that look at no picture: one that is small and drawn slowly will do."""
+    """Like `open_desk`, for tests that need no pictures: the canvas is small and rarely drawn."""
     return partial(open_desk, viewport=SMALL, slow=True, until="window.pinik?.ready")

@@ -1,4 +1,4 @@
-"""For the live view's tests: stand-ins for time, tabs and threads, good messages, and a reader of frames."""
+"""Stand-ins for time, tabs and threads, well-formed messages, and a reader of frames, for the live view's tests."""
 
 from __future__ import annotations
 
@@ -11,15 +11,16 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from judge import is_inside as is_inside
-from judge import plain_placement as plain_placement
 from pinik.viewer.protocol.packing import InstanceBlock, pack_frame
 from pinik.viewer.protocol.recording import Recording
 from pinik.viewer.protocol.setup import write_setup
 from pinik.viewer.protocol.state import session_state
 from pinik.viewer.simulation.session import Session
 
-# A well-formed message of every type that a session itself can answer, and what each field is.
+PATIENCE = 150.0
+"""How long a test waits before it gives up [s]; a little less than pytest's own timeout."""
+
+# A well-formed message of every type that a session handles, and the kind of each field.
 GOOD = {
     "view": ({"count": 2}, {"count": "index"}),
     "method": ({"instance": 0, "method": "dls"}, {"instance": "index", "method": "name"}),
@@ -48,7 +49,7 @@ GOOD = {
 
 
 class Clock:
-    """Seconds that pass when told to, and by `each` whenever somebody looks."""
+    """A clock that a test advances; each reading advances it by `each` [s] as well."""
 
     def __init__(self, each: float = 0.0) -> None:
         self.now = 0.0
@@ -60,7 +61,7 @@ class Clock:
 
 
 class Tab:
-    """A browser tab that notes what it is sent; `answers` whether it says that frames were drawn."""
+    """A browser tab that records what it is sent."""
 
     def __init__(self) -> None:
         self.sent: list[str | bytes] = []
@@ -73,7 +74,7 @@ class Tab:
         return [kind(message) for message in self.sent]
 
     def of(self, wanted: str) -> list[Any]:
-        """The messages of one kind, texts as what their JSON says."""
+        """The messages of one kind; texts are decoded."""
         found = [message for message in self.sent if kind(message) == wanted]
         return [json.loads(m, parse_constant=no_number) if isinstance(m, str) else m for m in found]
 
@@ -82,18 +83,18 @@ class Tab:
 
 
 def kind(message: str | bytes) -> str:
-    """ "frame", "shape" or a text's own type."""
+    """Return "frame", "shape", or the type of a text message."""
     if isinstance(message, bytes):
         return "frame" if message[:4] == b"PNKF" else "shape"
     return json.loads(message)["type"]
 
 
 def no_number(word: str) -> None:
-    raise AssertionError(f"{word} is no JSON")
+    raise AssertionError(f"{word} is not JSON")
 
 
 class Later:
-    """Work for other threads, which waits here until the test does it."""
+    """Work for other threads, which waits until the test does it."""
 
     def __init__(self) -> None:
         self.waiting: list[tuple[Callable[[], Any], Callable[[Any], None]]] = []
@@ -190,7 +191,7 @@ def recorded(frames: Iterable[bytes]) -> Recording:
 
 
 def snapshot(session: Session) -> str:
-    """Everything that a message could change, as one text."""
+    """Everything that a message can change, as one text."""
     shown = session_state(session)
     return json.dumps(
         [

@@ -16,6 +16,7 @@ import numpy as np
 import pytest
 
 import pinik
+from judge import plain_placement
 from pinik.cli import main
 from pinik.cli.reports.method_style import iteration_word, method_colors
 from pinik.studies.accuracy import accuracy, problems
@@ -29,7 +30,7 @@ from pinik.viewer.protocol.messages import apply
 from pinik.viewer.protocol.setup import apply_setup, read_setup, write_setup
 from pinik.viewer.protocol.state import hello_message, session_state
 from pinik.viewer.simulation.session import Session
-from stand_ins import Clock, plain_placement
+from stand_ins import Clock
 
 FOUR = ("ccd", "jt", "pinv", "dls")
 PLACE = (0.3, 0.1, 0.8)

@@ -1,4 +1,4 @@
-"""The viewer's tests keep finished shapes to themselves."""
+"""The viewer's tests use a shape cache of their own."""
 
 from __future__ import annotations
 

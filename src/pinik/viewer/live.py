@@ -1,4 +1,4 @@
-"""The live view: instances of a robot chase a ball side by side, in the browser."""
+"""`live`: instances of a robot chase a ball side by side, in the browser."""
 
 from __future__ import annotations
 
@@ -32,25 +32,26 @@ def live(
 ) -> LiveView:
     """Open a live view: a page on which instances of a robot chase the same balls, each with its own method.
 
-    Returns at once; a notebook shows the page as a frame, elsewhere `open()` shows it in the browser. Close it with
-    `close()`, or use it in a with statement.
+    The function returns at once. A notebook displays the page in a frame; elsewhere, `open()` opens it in the browser.
+    Close the view with `close()`, or use it in a with statement.
 
     Args:
-        robot: What `pinik.load` takes, or a robot that it returned.
-        methods: One to four solvers, by name ("ccd,dls" are two), class or instance: one for each instance of the
-            robot.
-        view: How many instances are seen: 1, 2 or 4; enough for the methods when None.
-        root: As for `pinik.load`; a robot that is loaded already keeps its own.
+        robot: A robot, or anything that `pinik.load` accepts.
+        methods: One to four solvers, each a name, class or instance; "ccd,dls" means two. Each runs in an instance of
+            the robot.
+        view: The number of visible instances: 1, 2 or 4; by default, enough for the methods.
+        root: As for `pinik.load`; ignored if `robot` is loaded already.
         package_dirs: As for `pinik.load`.
         motion: How the balls move at first: "hand", "curve" or "random".
-        running: Whether it steps at once.
-        port: Where to listen; the first free port from 7007 when None, any free one when 0.
-        host: The address to listen on. With another than this machine's own loopback, everybody who reaches that
-            address can watch and change the view.
+        running: Whether the simulation starts at once.
+        port: The port to listen on: the first free one from 7007 if None, any free one if 0.
+        host: The address to listen on. On any address but the loopback, everybody who can reach it can watch and change
+            the view.
 
     Raises:
-        RobotLoadError, UnknownNameError: As `pinik.load`; or no such method.
-        InputError: More than four methods, another view, or a port that cannot be had.
+        RobotLoadError: The robot cannot be loaded.
+        UnknownNameError: There is no robot, method or motion of that name.
+        InputError: There are more than four methods, `view` is wrong, or the port or address is not available.
         MissingExtraError: The packages of pinik[live] are not installed.
     """
     with needed_by("the live view", "live"):

@@ -1,4 +1,4 @@
-"""The page's balls in the panel: which frame each leads, how, where it is, and how it is turned."""
+"""The balls in the page's panel: frame, mode, position and orientation."""
 
 from __future__ import annotations
 
@@ -68,6 +68,7 @@ def test_a_typed_place_is_reached_by_all_four(open_panel):
 
 def test_a_place_typed_without_a_pause_arrives_as_a_whole(open_panel):
     desk = open_panel(methods=("dls",), running=True)
+    desk.stop_clock()
     desk.part("target-x").fill("0.45")
     for coordinate in ("0.2", "0.75"):
         desk.page.keyboard.press("Tab")

@@ -1,4 +1,4 @@
-"""The closed form on the page: in the menu where it fits, and in words why not where it does not."""
+"""The closed form on the page: the menu offers it if it fits the robot; otherwise a message says why not."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The page's panel, control by control: what the server holds after a person's hand was on it."""
+"""The page's panel, control by control: the server's state after each use."""
 
 from __future__ import annotations
 
@@ -223,6 +223,14 @@ def test_a_number_out_of_range_is_refused_in_words_and_changes_nothing(open_pane
         desk.expect(desk.toasts).to_have_count(0)
         assert desk.state == before
         desk.expect(field).to_have_value(shown)
+
+
+def test_a_notice_goes_by_itself(open_panel):
+    desk = open_panel("two_link", methods=("dls",))
+    desk.type("speed", 1000)
+    desk.expect(desk.toasts).to_have_count(1)
+    desk.runs("longTimers.splice(0).forEach((act) => act())")
+    desk.expect(desk.toasts).to_have_count(0)
 
 
 def test_without_a_browser_the_tests_are_skipped_unless_one_is_required(monkeypatch, tmp_path):

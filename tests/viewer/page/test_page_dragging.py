@@ -1,4 +1,4 @@
-"""Dragging in the 3-D view: the ball follows the hand, the robots follow the ball, and the camera keeps still."""
+"""Dragging in the 3-D view: the ball follows the pointer, the robots follow the ball, and the camera rests."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ def looks_along(desk):
 
 
 def drag(desk, start, way, *, steps=6, release=True):
-    """Press at a place [px], go a way [px] in steps; the tab is left time to draw each."""
+    """Press at a point [px], move by a way [px] in steps, and release."""
     mouse = desk.page.mouse
     mouse.move(*start)
     mouse.down()
@@ -36,7 +36,7 @@ def drag(desk, start, way, *, steps=6, release=True):
 
 
 def red_spots(picture):
-    """Middles (x, y) of what is red in a picture, from left to right."""
+    """The centres (x, y) of the red spots in a picture, from left to right."""
     is_red = (np.abs(picture - RED) < 60).all(axis=2) & (picture[..., 0] > 2 * picture[..., 1] + 20)
     columns = np.flatnonzero(is_red.sum(axis=0) > 2)
     groups = np.split(columns, np.flatnonzero(np.diff(columns) > 6) + 1)
@@ -78,13 +78,16 @@ def test_a_ball_is_where_the_page_says_and_every_instances_copy_can_be_dragged(o
 
 def test_a_drag_takes_the_ball_from_its_curve(open_desk):
     desk = open_desk(methods=("dls",), running=True, motion="curve", viewport=HALF)
-    desk.view.send("speed", value=0.1)
+    desk.until(lambda s: s["step"] > 20)
+    desk.view.send("run", on=False)  # the ball waits for the hand, on its curve
     desk.agree()
+    desk.settle()
     seen_from = camera(desk)
     drag(desk, desk.ball_on_screen(), (30, 0), release=False)
     desk.until(lambda s: s["motion"] == "hand")
     np.testing.assert_allclose(camera(desk), seen_from, atol=1e-9, err_msg="the camera turned")
     desk.page.mouse.up()
+    desk.view.send("run", on=True)
     desk.until(desk.is_followed)
 
 

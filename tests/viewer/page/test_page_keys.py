@@ -1,4 +1,4 @@
-"""The page by keyboard alone: every key that the help lists, and the way to every control by Tab."""
+"""The page used by keyboard alone: every key in the help, and every control by Tab."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ def desk(open_panel):
 
 
 def changes(desk, key, of):
-    """What `of` the server's state says before and after a key."""
+    """The value `of` the server's state before and after a key is pressed."""
     before = of(desk.agree())
     desk.page.keyboard.press(key)
     return before, of(desk.until(lambda s: not np.array_equal(of(s), before)))
@@ -49,6 +49,7 @@ def test_letters_and_figures_change_the_settings(desk):
 def test_arrows_and_page_keys_move_the_selected_ball(desk):
     desk.click("camera-front")  # where right is y and away is −x
     desk.settle()
+    desk.stop_clock()
     moves = {"ArrowRight": (0, 1, 0), "ArrowLeft": (0, -1, 0), "ArrowUp": (-1, 0, 0), "ArrowDown": (1, 0, 0)}
     moves |= {"PageUp": (0, 0, 1), "PageDown": (0, 0, -1)}
     steps = []
@@ -62,6 +63,7 @@ def test_arrows_and_page_keys_move_the_selected_ball(desk):
 
 
 def test_keys_held_down_lose_no_step(desk):
+    desk.stop_clock()
     before, after = changes(desk, "PageUp", place)
     for _ in range(9):
         desk.page.keyboard.press("PageUp")

@@ -1,9 +1,8 @@
-"""How the page looks: pictures that are not empty and move, dark and light, wide and narrow; names for all inputs."""
+"""The page's looks: pictures are not empty and move; dark and light, wide and narrow; every input has a name."""
 
 from __future__ import annotations
 
 import io
-import time
 
 import numpy as np
 import pytest
@@ -11,9 +10,13 @@ from PIL import Image
 
 from desk import HALF, METHODS, PHONE, WIDE
 
+WAIT_FOR_PICTURES = """async (count) => {
+    for (let k = 0; k < count; k++) await new Promise(requestAnimationFrame);
+}"""
+
 
 def unlike_background(picture):
-    """The part of a picture that differs from its own upper edge, column by column."""
+    """The fraction of a picture that differs from its own upper edge, column by column."""
     return (np.abs(picture - picture[:1]).max(axis=2) > 40).mean()
 
 
@@ -26,18 +29,16 @@ def whole(desk):
 
 
 def still_picture(desk):
-    """The canvas after its last drawing: a picture that stays is drawn once more, as finely as possible."""
-    frames, since = -1, 0.0
+    """The canvas once it has stopped changing and has been drawn in full detail."""
+    pictures = []
 
     def look():
-        nonlocal frames, since
-        now = desk.runs("pinik.frames")
-        if now != frames:
-            frames, since = now, time.monotonic()
-        return time.monotonic() - since > 0.8  # twice what the page waits
+        frames, settled = desk.runs("[pinik.frames, pinik.settled]")
+        pictures[:] = [desk.picture()]
+        return settled and desk.runs("pinik.frames") == frames
 
     desk.wait(look)
-    return desk.picture()
+    return pictures[0]
 
 
 def test_a_robot_is_drawn_with_its_own_shapes_and_colours(open_desk):
@@ -56,12 +57,10 @@ def test_a_running_picture_moves_and_a_stopped_one_stands(open_desk):
     desk.agree()
     desk.settle()
 
-    def stands():
-        frames, picture = desk.runs("pinik.frames"), desk.picture()
-        desk.page.wait_for_timeout(700)
-        return desk.runs("pinik.frames") == frames and (desk.picture() == picture).all()
-
-    desk.wait(stands)
+    picture, frames = still_picture(desk), desk.runs("pinik.frames")
+    desk.page.evaluate(WAIT_FOR_PICTURES, 40)  # chances to draw
+    assert desk.runs("pinik.frames") == frames
+    assert (desk.picture() == picture).all()
 
 
 def test_more_instances_show_more_robots(open_desk):
@@ -180,7 +179,7 @@ def test_meshcats_one_command_that_evaluates_text_does_nothing_here(open_desk):
 
 
 def test_no_figure_of_the_statistics_is_cut_short(open_desk):
-    """The widest texts that a row may hold, put there by hand; iterations, in two sizes of letters, are the page's."""
+    """With the widest texts that a row can contain. The iterations, in two font sizes, are the page's own."""
     desk = open_desk("two_link", ("two_bone", "ccd", "jt", "dls"), viewport=WIDE)
     desk.expect("status-0").to_be_visible()
     widest = ["two_bone", "0.85 mm short", "0.671 ms", None, "98.3 %", "0.099 mm", "44.4°"]
@@ -190,7 +189,14 @@ def test_no_figure_of_the_statistics_is_cut_short(open_desk):
             const dot = cells[0].querySelector("*")?.cloneNode();
             cells.forEach((cell, k) => texts[k] && cell.replaceChildren(texts[k]));
             if (dot) cells[0].prepend(dot);
-            return cells.filter(cell => cell.scrollWidth > cell.clientWidth).map(cell => cell.textContent);
+            const isCut = (cell) => {
+                const { paddingLeft, paddingRight } = getComputedStyle(cell);
+                const all = document.createRange();
+                all.selectNodeContents(cell);
+                const room = cell.getBoundingClientRect().width - parseFloat(paddingLeft) - parseFloat(paddingRight);
+                return all.getBoundingClientRect().width > room;
+            };
+            return cells.filter(isCut).map((cell) => cell.textContent);
         }""",
         widest,
     )

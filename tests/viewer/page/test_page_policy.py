@@ -1,11 +1,11 @@
-"""The page under its own content security policy, which every other test of the page has to bypass."""
+"""The page under its own content security policy, which every other test of the page bypasses."""
 
 from __future__ import annotations
 
 import pytest
 
 import pinik
-from desk import METHODS, PATIENCE, SMALL, Faults, need_browser
+from desk import METHODS, SMALL, Faults, need_browser
 from page_fixtures import new_context
 
 NOTE_VIOLATIONS = """
@@ -28,7 +28,7 @@ EVALUATE_IN_PAGE = """(text) => new Promise((resolve) => {
 
 @pytest.fixture
 def strict_page(browser):
-    """A tab that keeps the policy, and what it complained about."""
+    """A tab that obeys the policy, and its faults."""
     context = new_context(browser, bypass_csp=False, viewport=SMALL)
     faults = Faults(context)
     page = context.new_page()
@@ -43,10 +43,10 @@ def test_the_page_runs_under_its_policy_and_violates_nothing(strict_page):
     with pinik.live("two_link", METHODS, port=0, running=False, motion="hand") as view:
         faults.allow(f"127.0.0.1:{view.port}")
         page.goto(view.url)
-        expect(page.get_by_test_id("label-3")).to_contain_text("idle", timeout=1000 * PATIENCE)
+        expect(page.get_by_test_id("label-3")).to_contain_text("idle")
         page.get_by_test_id("step").click()
         for i in range(len(METHODS)):
-            expect(page.get_by_test_id(f"status-{i}")).to_contain_text("reached", timeout=1000 * PATIENCE)
+            expect(page.get_by_test_id(f"status-{i}")).to_contain_text("reached")
         assert view.state["step"] == 1
         assert page.evaluate("() => window.violations") == []
         assert faults.left == []

@@ -1,4 +1,4 @@
-"""The page's figures: they fill, change, and agree with the server's; why a target is missed; what can be saved."""
+"""The page's figures agree with the server's; messages say why a target is missed; results can be saved."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ UNITS = {"ms": 1e-3, "%": 0.01, "m": 1.0, "cm": 0.01, "mm": 0.001, "°": np.pi /
 
 
 def figures(desk, i):
-    """What a row of the table says, in SI: name → (value, half of its last digit)."""
+    """The figures in a row of the table, in SI units: name → (value, half of its last digit)."""
     said = {}
     for column in COLUMNS:
         text = desk.text(f"{column}-{i}").split("/")[0].strip()
@@ -52,10 +52,10 @@ def test_table_state_and_csv_agree(open_panel):
     desk = open_panel(methods=METHODS, motion="curve", running=True)
     desk.until(lambda s: all(i["statistics"]["steps"] > 30 for i in s["instances"]))
     desk.click("start")
-    desk.until(lambda s: not s["running"])
-    desk.click("step")
+    stopped = desk.until(lambda s: not s["running"])["step"]
     desk.shows("!pinik.state.running")
-    desk.shows(f"pinik.state.step === {desk.state['step']}")
+    desk.click("step")
+    desk.shows(f"pinik.state.step === {stopped + 1}")
     state = json.loads(fetch(desk, "api/state"))
     with desk.page.expect_download() as download:
         desk.click("csv")

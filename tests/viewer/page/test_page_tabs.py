@@ -1,4 +1,4 @@
-"""One session, many tabs: a reload, a second tab, a server that went and came back, and a link that says it all."""
+"""One session in several tabs: reloads, a second tab, a server that restarts, and links."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from desk import DRAWN, METHODS, SMALL, need_browser, settings
 
 
 def changed(desk):
-    """Something set that is nobody's default."""
+    """Change several settings from their defaults."""
     desk.choose("motion", "random")
     desk.type("speed", 2)
     desk.choose("method-0", "pinv")

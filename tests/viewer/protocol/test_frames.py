@@ -9,11 +9,12 @@ import pinocchio
 import pytest
 
 from by_hand import axis, limit, origin
+from judge import plain_placement
 from pinik.viewer.protocol.frames import FrameMaker
 from pinik.viewer.simulation.instance import STATUSES
 from pinik.viewer.simulation.session import Session
 from robots import load_quietly
-from stand_ins import Clock, plain_placement, read_frame
+from stand_ins import Clock, read_frame
 from urdf_texts import joint, link
 from urdf_texts import robot as robot_text
 

@@ -13,9 +13,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import pinik
+from judge import plain_placement
 from pinik.viewer.protocol.messages import FARTHEST, RANGES, apply, parse, read_json
 from pinik.viewer.simulation.session import Session
-from stand_ins import GOOD, Clock, plain_placement, snapshot
+from stand_ins import GOOD, Clock, snapshot
 
 PROTOCOL = Path(__file__).parents[3] / "docs" / "live-protocol.md"
 
@@ -50,7 +51,7 @@ WRONG = {
 
 @pytest.fixture(scope="module")
 def begun(arm):
-    """A session that has made a few steps; no test here leaves it changed."""
+    """A session after a few steps. No test in this module changes it."""
     return fresh(arm)
 
 
@@ -131,7 +132,7 @@ def test_what_is_no_message_is_refused(text):
 
 @pytest.mark.parametrize("brackets", ["[]", '{"a":}'])
 def test_no_nesting_is_too_deep_to_be_refused_in_words(begun, brackets):
-    """Where the parser itself gives up differs from where showing the value would."""
+    """The parser and the message that quotes the value give up at different depths."""
     opening, closing = brackets[:-1], brackets[-1]
     middle = "" if brackets == "[]" else "1"
     for depth in (9, 100, *range(900, 1100, 7), *range(980, 1000), 5000):
@@ -301,7 +302,7 @@ PLAUSIBLE = st.sampled_from([*WORDS, *NUMBERS, [0.1, 0.2, 0.3], [100, 100, 100],
 
 @st.composite
 def near_messages(draw):
-    """A message whose type and fields exist, with fields lost, added or replaced by anything."""
+    """A message with an existing type, some of whose fields are missing, added or replaced."""
     kind = draw(st.sampled_from(sorted(GOOD)))
     message = {"type": kind, **GOOD[kind][0]}
     for _ in range(draw(st.integers(0, 3))):

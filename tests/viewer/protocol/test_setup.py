@@ -142,7 +142,7 @@ def test_a_set_up_says_what_differs_from_the_beginning_in_plain_words(arm):
 
 
 def test_a_set_up_fits_into_an_address():
-    """Whatever a robot and its frames are called."""
+    """For any names of a robot and its frames."""
     turn = joint("j", "a=b", "c&amp;d")
     robot = load_quietly(machine(link("a=b"), link("c&amp;d"), turn).replace('name="r"', 'name="&amp; ü #?%"'))
     setup = write_setup(Session(robot, clock=Clock()))

@@ -29,7 +29,7 @@ def documented(kind):
 
 
 def keys(value):
-    """The names in a message, all the way down; of lists, those of the first element."""
+    """All names in a message; for a list, those in its first element."""
     if isinstance(value, dict):
         return {name: keys(inner) for name, inner in value.items()}
     if isinstance(value, list) and value and isinstance(value[0], dict):

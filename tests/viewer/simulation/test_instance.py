@@ -10,11 +10,12 @@ import pinocchio
 import pytest
 
 import pinik
+from judge import is_inside, plain_placement
 from pinik.model.home import home_configuration
 from pinik.solvers.registry import make_solver
 from pinik.viewer.simulation.instance import STATUSES, Chase, Instance
 from robots import load_quietly
-from stand_ins import Clock, is_inside, plain_placement
+from stand_ins import Clock
 
 FAR = [9.0, 0.0, 0.0]
 REACHABLE = [0.3, 0.1, 0.8]
@@ -205,7 +206,7 @@ def test_active_limits_are_those_that_could_move_a_target(lion):
 
 
 def test_unreachable_is_said_where_it_is_proved(arm):
-    """The chain's bones are 1.2 m long in all."""
+    """The chain's bones have a total length of 1.2 m."""
     one = instance(arm)
     for away in (1.25, 3.0):
         one.step([pinik.Target("tip", [0.0, away, 0.12])])
@@ -244,7 +245,7 @@ def test_a_missed_orientation_is_no_proof(panda):
 
 
 def test_time_that_runs_out_stops_a_step(arm):
-    """Every look at the clock costs a second: one at the beginning, one before each iteration, one at the end."""
+    """Every reading of the clock takes a second: one at the start, one before each iteration, one at the end."""
     Tenth.calls.clear()
     one = instance(arm, Tenth, clock=Clock(each=1.0))
     target = pinik.Target("tip", REACHABLE)

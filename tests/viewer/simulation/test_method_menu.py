@@ -8,12 +8,13 @@ import numpy as np
 import pytest
 
 import pinik
+from judge import plain_placement
 from pinik.viewer.protocol.messages import apply
 from pinik.viewer.protocol.setup import apply_setup, read_setup, write_setup
 from pinik.viewer.protocol.state import session_state
 from pinik.viewer.simulation.session import Session
 from robots import load_quietly
-from stand_ins import Clock, plain_placement, snapshot
+from stand_ins import Clock, snapshot
 
 EVERY_ROBOTS = ["ccd", "jt", "pinv", "dls"]
 ALONE = "is not moved by two parallel hinges alone"

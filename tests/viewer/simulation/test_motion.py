@@ -8,11 +8,11 @@ import numpy as np
 import pytest
 
 import pinik
+from judge import is_inside, plain_placement
 from pinik.model.home import home_configuration, lowest_point
 from pinik.viewer.simulation.balls import Ball
 from pinik.viewer.simulation.motion import Motion
 from robots import load_quietly
-from stand_ins import is_inside, plain_placement
 
 SECOND = 60  # steps
 

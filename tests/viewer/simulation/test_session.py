@@ -11,10 +11,11 @@ import pytest
 
 import pinik
 from by_hand import rotation_from_rpy
+from judge import is_inside, plain_placement
 from pinik.viewer.protocol.setup import apply_setup, read_setup, write_setup
 from pinik.viewer.simulation.session import MOST_BALLS, STEPS_PER_SECOND, Session
 from robots import load_quietly
-from stand_ins import Clock, is_inside, plain_placement, snapshot
+from stand_ins import Clock, snapshot
 
 ELSEWHERE = [0.3, 0.1, 0.8]
 PAWS = ["left_fore_paw", "right_fore_paw", "left_hind_paw", "right_hind_paw"]
@@ -22,7 +23,7 @@ PAWS = ["left_fore_paw", "right_fore_paw", "left_hind_paw", "right_hind_paw"]
 
 @dataclass(frozen=True, kw_only=True)
 class Broken(pinik.JacobianSolver):
-    """Fails at once."""
+    """Raises at its first step."""
 
     name = "broken"
 
@@ -523,7 +524,7 @@ def test_a_solver_that_raises_leaves_the_others_alone(arm):
 
 
 def test_solvers_get_seven_tenths_of_a_step_between_them(arm):
-    """Each look at the clock costs 1 ms: of 11.7 ms each of four may take 2.9, so two iterations."""
+    """Each reading of the clock takes 1 ms. Four solvers share 11.7 ms, so each has time for two iterations."""
     shown = session(arm, ["jt"] * 4, Clock(each=0.001))
     shown.move_ball(0, [0.5, 0.4, 0.4])
     shown.step()

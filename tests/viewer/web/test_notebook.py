@@ -1,4 +1,4 @@
-"""A live view in a notebook: a frame while its own server answers, else a picture; in a real browser too."""
+"""A live view in a notebook: a frame while its own server answers, otherwise a picture."""
 
 from __future__ import annotations
 
@@ -8,6 +8,7 @@ import http.server
 import io
 import re
 import threading
+import time
 from html.parser import HTMLParser
 
 import numpy as np
@@ -15,15 +16,26 @@ import pytest
 from PIL import Image
 
 import pinik
-from desk import PATIENCE
 from page_fixtures import new_context
 from robots import load_quietly
+from stand_ins import PATIENCE
 
 LARGEST = 150_000  # bytes
+# Counts the images of scripts that have come or failed, once the script's own handlers have run.
+COUNT_IMAGES = """
+window.settledImages = 0;
+const Plain = window.Image;
+window.Image = function () {
+    const image = new Plain();
+    const settled = () => setTimeout(() => { window.settledImages += 1; });
+    for (const kind of ["load", "error"]) image.addEventListener(kind, settled);
+    return image;
+};
+"""
 
 
 class Parts(HTMLParser):
-    """What is left of a notebook's output where scripts and frames are taken away, as published pages do."""
+    """A notebook's output without scripts and frames, as published pages show it."""
 
     def __init__(self, text):
         super().__init__()
@@ -49,7 +61,7 @@ def image_of(text):
 
 @contextlib.contextmanager
 def served(texts):
-    """The port of a server of this machine whose page shows the last of these texts."""
+    """Serve a page with the last of these texts on this machine; yields the port."""
 
     class Handler(http.server.BaseHTTPRequestHandler):
         def do_GET(self):
@@ -71,10 +83,19 @@ def served(texts):
         thread.join()
 
 
+def wait_until(page, holds):
+    """Keep the page running until a condition holds."""
+    deadline = time.monotonic() + PATIENCE
+    while not holds():
+        assert time.monotonic() < deadline, "the condition never held"
+        page.wait_for_timeout(20)
+
+
 @pytest.fixture
 def notebook(browser):
-    """Shows outputs as a notebook's page does: with their scripts, from a server of the same machine."""
+    """Shows outputs with their scripts, as a notebook does, from a server on the same machine."""
     context = new_context(browser)
+    context.add_init_script(COUNT_IMAGES)
     page = context.new_page()
     texts = [""]
     with served(texts) as port:
@@ -147,7 +168,7 @@ def test_a_view_or_a_size_that_is_none_is_said_in_words(two_link):
         with pytest.raises(pinik.UnknownNameError, match="no view 'back'"):
             view.picture("back")
         for size in (5, (5, 5), "ab", (0, 0)):
-            with pytest.raises(pinik.InputError, match="size must be a width and a height"):
+            with pytest.raises(pinik.InputError, match=r"size .*a width and a height"):
                 view.picture(size=size)
     with pytest.raises(pinik.InputError, match="this live view is closed"):
         view.picture()
@@ -165,7 +186,7 @@ def test_shown_twice_it_has_two_places(two_link):
 def test_while_its_server_answers_it_is_the_page_in_a_frame(two_link, notebook):
     with pinik.live(two_link, ["dls"], port=0) as view:
         page = notebook(view._repr_html_() + view._repr_html_())
-        page.wait_for_function("document.querySelectorAll('iframe').length == 2", timeout=1000 * PATIENCE)
+        page.wait_for_function("document.querySelectorAll('iframe').length == 2")
         assert page.locator("img").count() == 0
         assert page.locator("iframe").first.get_attribute("src") == view.url
         page.frame_locator("iframe").first.get_by_test_id("robot").wait_for()
@@ -179,7 +200,7 @@ def test_a_notebook_of_this_machine_may_frame_it(two_link, notebook, host):
 
 
 def test_a_foreign_page_cannot_put_its_set_up_in_a_frame(two_link, notebook, tmp_path):
-    """Neither one under another name, which is all that a browser knows of a machine, nor one of a file."""
+    """Foreign pages are those under another host name, and those from files."""
     with pinik.live(two_link, ["dls"], port=0, running=False, motion="hand") as view:
         before = view.state["setup"]
         frame = f'<iframe src="{view.url}#{before.replace("methods=dls", "methods=ccd")}"></iframe>'
@@ -188,18 +209,14 @@ def test_a_foreign_page_cannot_put_its_set_up_in_a_frame(two_link, notebook, tmp
         refused = []
         page.on("requestfailed", lambda request: refused.append((request.url.split("#")[0], request.failure)))
         notebook(frame, "foreign.localhost")
-        page.wait_for_timeout(300)
+        wait_until(page, lambda: refused)
         page.goto((tmp_path / "foreign.html").as_uri())
-        page.wait_for_timeout(300)
+        wait_until(page, lambda: len(refused) == 2)
         assert refused == [(view.url, "net::ERR_BLOCKED_BY_RESPONSE")] * 2
         assert view.state["setup"] == before
         notebook(frame)  # the same from this machine
         page.frame_locator("iframe").get_by_test_id("robot").wait_for()
-        for _ in range(int(20 * PATIENCE)):
-            if view.state["setup"] != before:
-                break
-            page.wait_for_timeout(50)
-        assert "methods=ccd" in view.state["setup"]
+        wait_until(page, lambda: "methods=ccd" in view.state["setup"])
 
 
 @pytest.mark.parametrize("where", ["another name", "a file"])
@@ -207,28 +224,26 @@ def test_where_it_may_not_frame_it_a_notebook_keeps_the_picture(two_link, notebo
     with pinik.live(two_link, ["dls"], port=0) as view:
         text = view._repr_html_()
         page = notebook("")
+        asked = []
+        page.on("request", lambda request: asked.append(request.url))
         if where == "a file":
             (tmp_path / "kept.html").write_text(text, "utf-8")
             page.goto((tmp_path / "kept.html").as_uri())
         else:
             notebook(text, "foreign.localhost")
-        page.wait_for_timeout(300)
+        # A page counts as loaded only when the images that its scripts asked for have come or failed.
+        assert not [url for url in asked if url.startswith(view.url)]
         assert page.locator("iframe").count() == 0
         assert page.locator("img").evaluate("image => image.naturalWidth") == 720
 
 
 def asked_and_answered(page, text, show):
-    """Show an output and wait until the question whether the server is there has been answered."""
-    answered = []
-    page.on("requestfinished", lambda request: "/api/alive/" in request.url and answered.append(request))
-    page.on("requestfailed", lambda request: "/api/alive/" in request.url and answered.append(request))
+    """Show an output, wait until its script knows whether the server is there, and return how often it asked."""
+    asked = []
+    page.on("request", lambda request: "/api/alive/" in request.url and asked.append(request))
     show(text)
-    for _ in range(int(20 * PATIENCE)):
-        if answered:
-            break
-        page.wait_for_timeout(50)
-    page.wait_for_timeout(50)
-    return len(answered)
+    page.wait_for_function("window.settledImages > 0")
+    return len(asked)
 
 
 @pytest.mark.parametrize("after", ["nothing", "another view"])
@@ -253,6 +268,5 @@ def test_a_published_notebook_asks_nothing_of_its_readers_machine(two_link, note
         text = view._repr_html_()
         page.route("https://notebooks.example/**", lambda route: route.fulfill(body=text, content_type="text/html"))
         page.goto("https://notebooks.example/one")
-        page.wait_for_timeout(300)
         assert [url for url in asked if not url.startswith("data:")] == ["https://notebooks.example/one"]
         assert page.locator("img").evaluate("image => image.naturalWidth") == 720

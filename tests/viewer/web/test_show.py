@@ -1,4 +1,4 @@
-"""One session and the tabs that watch it: who is told what, in which order, and how much at most."""
+"""One session and the tabs that watch it: what each is sent, in which order, and how much at most."""
 
 from __future__ import annotations
 
@@ -9,14 +9,15 @@ import pytest
 
 import pinik
 from by_hand import two_hinges
+from judge import plain_placement
 from pinik.viewer.simulation.session import Session
 from pinik.viewer.web.show import Show
 from robots import load_quietly
-from stand_ins import Clock, Later, Tab, plain_placement, read_frame, snapshot
+from stand_ins import Clock, Later, Tab, read_frame, snapshot
 
 
 class Stage:
-    """A show with a clock and workers of the test's own."""
+    """A show whose clock and workers the test controls."""
 
     def __init__(self, machine, methods=("dls", "ccd"), *, running=True, motion="random"):
         self.clock, self.later = Clock(), Later()

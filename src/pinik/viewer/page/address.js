@@ -1,19 +1,19 @@
-/** The address bar: carries the set-up, so that a link reopens it. */
+/** The address bar: contains the set-up, so that a link restores it. */
 
-const PAUSE = 250; // [ms] between two changes: browsers refuse too many
+const PAUSE = 250; // [ms] between two changes, because browsers refuse frequent ones
 
 export class Address {
-    /** @param open called with a set-up that the address asks for */
+    /** @param open called with the set-up that the address asks for */
     constructor(open) {
         this._open = open;
         const [navigation] = performance.getEntriesByType("navigation");
-        // After a reload the session knows better than the address what the visitor had last.
+        // After a reload the session is more recent than the address.
         this._asked = navigation?.type === "reload" ? "" : location.hash.slice(1);
-        // The event's own address: the page may have written a newer one meanwhile.
+        // Read the event's own address, because the page may have written a newer one since.
         addEventListener("hashchange", (event) => this._open(new URL(event.newURL).hash.slice(1)));
     }
 
-    /** Say how things are; the first time, ask for what a link asked for. */
+    /** Show the session's set-up; the first time, ask for the set-up that a link contained. */
     show(setup) {
         const asked = this._asked;
         this._asked = "";

@@ -1,13 +1,13 @@
-/** One copy of a ball: a glossy sphere that is chased, or a pin where a frame is held. */
+/** One copy of a ball: a glossy sphere, or a pin if the ball is pinned. */
 
 import { THREE } from "pinik/three.js";
 
 const SPHERE = new THREE.SphereGeometry(1, 40, 28);
-const NEEDLE = new THREE.ConeGeometry(0.22, 2, 20).rotateX(-Math.PI / 2).translate(0, 0, 1); // its tip at the origin
+const NEEDLE = new THREE.ConeGeometry(0.22, 2, 20).rotateX(-Math.PI / 2).translate(0, 0, 1); // tip at the origin
 const HEAD = new THREE.SphereGeometry(0.8, 32, 20).translate(0, 0, 2.3);
 const AXIS = new THREE.CylinderGeometry(0.13, 0.13, 3, 12).translate(0, 1.5, 0);
 const ARROW = new THREE.ConeGeometry(0.34, 0.8, 16).translate(0, 3.2, 0);
-// The arms are drawn along y; these turns about z and x [rad] make x and z of two of them.
+// The arms are drawn along y; these rotations about z and x [rad] turn two of them to x and z.
 const AXES = [
     { color: "#e5484d", z: -Math.PI / 2, x: 0 },
     { color: "#3d9a50", z: 0, x: 0 },
@@ -31,7 +31,7 @@ export class Ball {
         this.group.add(this._sphere, this._pin, this._triad, this._halo);
     }
 
-    /** @param ball of the state; `selected` and `near` (under the pointer) as well */
+    /** @param ball from the state; `selected` and `near` (under the pointer) change its look */
     show({ mode, oriented }, selected, near) {
         this.group.visible = mode !== "off";
         this._sphere.visible = mode === "on";

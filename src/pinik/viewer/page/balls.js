@@ -1,8 +1,8 @@
-/** Where the balls are: where the session has them, or where the visitor's hand holds them meanwhile. */
+/** The balls' positions: those of the session, or those of a drag until the session follows. */
 
 import { THREE } from "pinik/three.js";
 
-const HOLD = 250; // [ms] after the hand let go in which the session catches up
+const HOLD = 250; // [ms] after a drag during which the session catches up
 
 export class Balls {
     constructor() {
@@ -14,7 +14,7 @@ export class Balls {
         return this._places.length;
     }
 
-    /** Take them from a frame, but for those in a hand. */
+    /** Take the positions from a frame, except those of balls being dragged. */
     take(frame) {
         while (this._places.length < frame.balls) {
             this._places.push({ position: new THREE.Vector3(), quaternion: new THREE.Quaternion() });
@@ -39,7 +39,7 @@ export class Balls {
         return false;
     }
 
-    /** Put one somewhere; frames do not move it until it was let go of. */
+    /** Put a ball somewhere; frames do not move it until it is released. */
     hold(k, position) {
         this._held.set(k, Infinity);
         this._places[k]?.position.copy(position);

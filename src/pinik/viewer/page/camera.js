@@ -1,4 +1,4 @@
-/** The camera: presets, a view of everything, and smooth ways between them. */
+/** The camera: presets, framing, and smooth transitions. */
 
 import { axesOf } from "pinik/framing.js";
 import { arrange } from "pinik/layout.js";
@@ -33,7 +33,7 @@ export class Camera extends EventTarget {
     get _lens() {
         const { width, height, viewer } = this._stage;
         const half = Math.tan((viewer.camera.fov * Math.PI) / 360);
-        const scale = (2 * half) / height; // tangent a pixel
+        const scale = (2 * half) / height; // tangent per pixel
         const part = (size, margin) => Math.max(size / 2 - Math.min(margin, size / 5), 10) * scale;
         return {
             left: part(width, MARGIN.left),
@@ -43,7 +43,7 @@ export class Camera extends EventTarget {
         };
     }
 
-    /** Arrange `count` instances of points (of one instance, Vector3s) and look at them all. */
+    /** Arrange `count` instances and look at them all; `points` (Vector3s) are those of one instance. */
     frame(points, count, preset = this.preset, smoothly = true) {
         if (!points.length || !this._stage.width) return;
         this.preset = preset;
@@ -68,7 +68,7 @@ export class Camera extends EventTarget {
         return this._glide !== null;
     }
 
-    /** Where the camera is, in the scene's axes. */
+    /** The camera's pose in the scene's axes. */
     _now() {
         const { camera, controls } = this._stage.viewer;
         const back = zUp(camera.position).sub(zUp(controls.target));
@@ -108,7 +108,7 @@ export class Camera extends EventTarget {
         this._stage.touch();
     }
 
-    /** The world's axes nearest to the picture's right and away from the viewer, as unit vectors, z up. */
+    /** The horizontal world axes nearest to "right" and "away" in the picture, as unit vectors, z up. */
     get levelAxes() {
         const { azimuth } = this._now();
         const snapped = Math.round(azimuth / (Math.PI / 2)) * (Math.PI / 2);
@@ -120,7 +120,7 @@ export class Camera extends EventTarget {
     }
 }
 
-/** The camera lives in a world with y up, the robots in one with z up. */
+/** The camera's world has y up, the robots' world has z up. */
 function zUp({ x, y, z }) {
     return new THREE.Vector3(x, -z, y);
 }

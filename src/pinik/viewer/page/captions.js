@@ -1,10 +1,10 @@
-/** What the labels below the robots say, and where they hang. */
+/** The texts and positions of the labels below the robots. */
 
 import { Labels } from "pinik/labels.js";
 import { verdict } from "pinik/words.js";
 
-const WORDS = 120; // [ms] between two changes of what they say
-const BELOW = 8; // [px] under the lowest point of the base
+const WORDS = 120; // [ms] between two changes of the texts
+const BELOW = 8; // [px] below the lowest point of the base
 
 export class Captions {
     constructor(element, stage) {
@@ -18,7 +18,7 @@ export class Captions {
         this._statuses = hello.statuses;
     }
 
-    /** Tell where each instance stands, but not more often than one can read. */
+    /** Show each instance's result, but not more often than one can read. */
     say(now, frame, { instances, tolerance }) {
         if (now - this._said < WORDS) return;
         this._said = now;
@@ -36,7 +36,7 @@ export class Captions {
         this.place();
     }
 
-    /** @param bases for each instance the points that its robot stands on, in the scene; Vector3s */
+    /** @param bases for each instance, the points that its robot stands on, in the scene; Vector3s */
     hang(bases) {
         this._bases = bases;
     }

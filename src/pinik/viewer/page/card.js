@@ -1,4 +1,4 @@
-/** One instance in the panel: its method, its parameters, and what it says. */
+/** One instance in the panel: its method, parameters and message. */
 
 import { make, say } from "pinik/elements.js";
 import { offer, write } from "pinik/hands.js";
@@ -13,7 +13,7 @@ export class Card {
         this._title = make("span", { className: "method-name" });
         this._changed = make("span", {
             className: "changed",
-            title: "Some parameters are not at their defaults",
+            title: "Some parameters differ from their defaults",
             hidden: true,
         });
         this._parameters = make("div", { className: "parameters" });
@@ -63,7 +63,7 @@ export class Card {
         this._instance = instance;
         say(this._title, instance.title);
         this._title.title = this._help.get(instance.method) ?? "";
-        const names = new Set([...state.methods, instance.method]); // what it runs, also where it is not offered
+        const names = new Set([...state.methods, instance.method]); // its own method, even if it is not on offer
         offer(
             this._method,
             [...names].map((name) => [name, name]),

@@ -23,7 +23,7 @@ export class Cards {
         for (const card of this._cards) card.setState(state);
     }
 
-    /** Open the parameters of the next instance and close the others; after the last one, all are closed. */
+    /** Open the next instance's parameters and close the others; after the last instance, close all. */
     openNext() {
         const open = this._cards.findIndex((card) => card.open);
         this._cards.forEach((card, i) => {

@@ -1,12 +1,12 @@
-/** A small live chart: lines of all instances over the last seconds, on a canvas as sharp as the screen. */
+/** A small live chart: one line per instance over the last seconds. */
 
-const LEFT = 34; // [px] for the axis' figures
+const LEFT = 34; // [px] for the labels of the axis
 const RIGHT = 6;
 const TOP = 6;
 const BOTTOM = 16;
 
 export class Chart {
-    /** @param options value(sample) in the chart's unit, logarithmic, least (the smallest top of the axis) */
+    /** @param options value(sample) in the chart's unit, logarithmic, least (the axis ends at this value or above) */
     constructor(canvas, theme, { value, logarithmic, least }) {
         Object.assign(this, {
             _canvas: canvas,
@@ -18,7 +18,7 @@ export class Chart {
         this._range = null;
     }
 
-    /** @param mark a value to draw a dashed line at, or null */
+    /** @param mark the value of a dashed line, or null */
     draw(history, mark) {
         const pen = this._begin();
         if (!pen) return;
@@ -117,7 +117,7 @@ function figure(tick) {
     return tick.toExponential(0).replace("e-", "e−");
 }
 
-/** Whole decades, from two below the mark to what holds every value. */
+/** Whole decades, from two below the mark to one that contains every value. */
 function logarithmicScale(values, mark) {
     const decade = (value, round) => round(Math.log10(value));
     const low = decade(mark, Math.floor) - 2;
@@ -127,7 +127,7 @@ function logarithmicScale(values, mark) {
     return { ticks, part: (value) => Math.max(0, (Math.log10(Math.max(value, 1e-12)) - low) / (high - low)) };
 }
 
-/** From nothing to a round number above all but the rarest values, so that one hiccup does not flatten the rest. */
+/** From zero to a round number above 98 % of the values, so that one outlier does not flatten the rest. */
 function linearScale(values, least) {
     const sorted = [...values].sort((a, b) => a - b);
     const usual = sorted[Math.floor(0.98 * (sorted.length - 1))] ?? 0;

@@ -1,8 +1,8 @@
-/** The websocket to the server: comes back by itself, and sends no more than the newest of what changes quickly. */
+/** The websocket to the server: reconnects by itself, and sends only the newest of frequent messages. */
 
 const FIRST_DELAY = 300; // [ms]
 const LONGEST_DELAY = 4000;
-const SPACING = 16; // [ms] between two of what only the newest counts
+const SPACING = 16; // [ms] between two messages of which only the newest matters
 
 export class Connection {
     /** @param handlers onText(message), onBinary(ArrayBuffer), onOpen(), onClose() */
@@ -37,12 +37,12 @@ export class Connection {
         this._socket = socket;
     }
 
-    /** Send now; what cannot be sent is dropped, since the server says anew how things are when it is back. */
+    /** Send now, or drop the message while offline: after reconnecting, the server sends its state anyway. */
     send(message) {
         if (this.open) this._socket.send(JSON.stringify(message));
     }
 
-    /** Send the first at once and, of those that follow within a 60th of a second, the last. */
+    /** Send the first message at once, and then only the last one of each 60th of a second. */
     sendNewest(key, message) {
         if (this._waiting.has(key)) {
             this._waiting.set(key, message);
@@ -53,7 +53,7 @@ export class Connection {
         setTimeout(() => this.flush(key), SPACING);
     }
 
-    /** What waits goes out now. */
+    /** Send the waiting message now. */
     flush(key) {
         const last = this._waiting.get(key);
         this._waiting.delete(key);

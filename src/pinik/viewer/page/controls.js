@@ -7,7 +7,7 @@ import { plain, spaced } from "pinik/words.js";
 const DEGREE = Math.PI / 180;
 
 export class Controls {
-    /** @param connection where messages go */
+    /** @param connection sends the messages */
     constructor(connection) {
         this._connection = connection;
         const send = (type, fields) => connection.send({ type, ...fields });
@@ -68,7 +68,7 @@ export class Controls {
         this._send("run", { on: !this.state?.running });
     }
 
-    /** One step; a running session stops first. */
+    /** Make one step; a running session stops first. */
     step() {
         if (this.state?.running) this._send("run", { on: false });
         this._send("step");
@@ -112,7 +112,7 @@ export class Controls {
         }
     }
 
-    /** Change a part of a setting that is sent as a whole. */
+    /** Change part of a setting that is sent as a whole. */
     _sendPart(type, change) {
         this._send(type, this._asked.ask(type, { ...this._asked.now(type, this.state[type]), ...change }));
     }
@@ -120,7 +120,7 @@ export class Controls {
     setState(state) {
         this.state = state;
         const { hello } = this;
-        // A robot from a file of the visitor's own is in no catalogue.
+        // A robot from the user's own file is not in the catalogue.
         if (!hello.robots.includes(state.robot))
             offer(
                 byId("robot"),

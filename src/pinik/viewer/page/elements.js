@@ -1,4 +1,4 @@
-/** Making and finding elements in few words. */
+/** Short functions that make and find elements. */
 
 export const byId = (id) => document.getElementById(id);
 
@@ -13,7 +13,7 @@ export function make(tag, properties = {}, ...children) {
     return element;
 }
 
-/** Set a text only where it differs: what is selected or read aloud stays undisturbed. */
+/** Set a text only if it differs, so that selections and screen readers are not disturbed. */
 export function say(element, text) {
     if (element.textContent !== text) element.textContent = text;
 }

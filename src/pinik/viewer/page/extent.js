@@ -1,4 +1,4 @@
-/** How far the robots have been: of all points, those farthest out in a few directions. */
+/** The extent of all points that the robots have visited: the farthest one in each of a few directions. */
 
 const DIRECTIONS = [-1, 0, 1]
     .flatMap((x) => [-1, 0, 1].flatMap((y) => [-1, 0, 1].map((z) => [x, y, z])))
@@ -13,7 +13,7 @@ export class Extent {
         this._farthest = DIRECTIONS.map(() => ({ along: -Infinity, point: null }));
     }
 
-    /** @param points Vector3s; they are kept as they are */
+    /** @param points Vector3s, which are kept and not copied */
     add(points) {
         for (const point of points) {
             DIRECTIONS.forEach(([x, y, z], k) => {

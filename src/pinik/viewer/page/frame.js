@@ -1,17 +1,17 @@
-/** One frame of the session, as docs/live-protocol.md lays it out; views into its numbers, no copies. */
+/** One frame of the session (docs/live-protocol.md). Its parts are views into the numbers, not copies. */
 
 const MAGIC = [0x50, 0x4e, 0x4b, 0x46]; // "PNKF"
 const HEAD = 5;
 const PLACEMENT = 7;
 const FIGURES = 8;
 
-/** Whether binary data is a frame and not a command of meshcat. */
+/** Whether binary data is a frame rather than a meshcat command. */
 export function isFrame(bytes) {
     return MAGIC.every((byte, k) => bytes[k] === byte);
 }
 
 export class Frame {
-    /** @param {ArrayBuffer} buffer with or without the four bytes in front */
+    /** @param {ArrayBuffer} buffer with or without the four magic bytes */
     constructor(buffer) {
         const start = isFrame(new Uint8Array(buffer, 0, 4)) ? 4 : 0;
         const numbers = new Float32Array(buffer, start);
@@ -26,7 +26,7 @@ export class Frame {
         return this.numbers.subarray(start, start + size);
     }
 
-    /** x, y, z, qx, qy, qz, qw of a ball. */
+    /** A ball's x, y, z, qx, qy, qz, qw. */
     ball(k) {
         return this.numbers.subarray(HEAD + PLACEMENT * k, HEAD + PLACEMENT * (k + 1));
     }
@@ -49,22 +49,22 @@ export class Frame {
         };
     }
 
-    /** Seven numbers a joint, in the world. */
+    /** The joints' world placements, seven numbers each. */
     placements(instance) {
         return this._part(instance, FIGURES, PLACEMENT * this.joints);
     }
 
-    /** −1, 0, +1 a joint, or 2 where it has only one value. */
+    /** −1, 0 or +1 for each joint, or 2 for a joint with only one value. */
     sides(instance) {
         return this._part(instance, FIGURES + PLACEMENT * this.joints, this.joints);
     }
 
-    /** Where the frames are that chase the balls, three numbers a ball. */
+    /** The origins of the frames that chase the balls, three numbers each. */
     points(instance) {
         return this._part(instance, FIGURES + (PLACEMENT + 1) * this.joints, 3 * this.balls);
     }
 
-    /** Whether both show the same picture, whatever their step and figures. */
+    /** Whether both frames give the same picture, regardless of step and figures. */
     looksLike(other) {
         if (!other || other.numbers.length !== this.numbers.length || other.generation !== this.generation)
             return false;

@@ -1,8 +1,8 @@
-/** Where a camera must stand so that points fill the picture: plain geometry, in the scene's own axes (z up). */
+/** Where a camera must stand so that points fill the picture, in the scene's axes (z up). */
 
 import { THREE } from "pinik/three.js";
 
-/** Unit vectors right, up and ahead of a camera that looks down from an azimuth and an elevation [rad]. */
+/** The unit vectors right, up and ahead of a camera at an azimuth and elevation [rad]. */
 export function axesOf({ azimuth, elevation }) {
     const back = new THREE.Vector3(
         Math.cos(elevation) * Math.cos(azimuth),
@@ -14,12 +14,12 @@ export function axesOf({ azimuth, elevation }) {
 }
 
 /**
- * The nearest place from which all points are in the picture.
+ * The nearest camera position from which all points are in the picture.
  *
  * @param points Vector3s
  * @param view azimuth and elevation [rad]
- * @param lens tangents of the half angles that may be filled: left, right, top, bottom
- * @returns position, target (as deep as the middle of the points), distance between them
+ * @param lens tangents of the half angles that the points may fill: left, right, top, bottom
+ * @returns position, target (at the middle depth of the points), and the distance between them
  */
 export function fit(points, view, lens) {
     const { right, up, ahead } = axesOf(view);

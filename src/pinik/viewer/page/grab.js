@@ -1,8 +1,8 @@
-/** Dragging a ball with the mouse or a finger: in the picture's plane, with Shift level with the ground. */
+/** Dragging a ball with the mouse or a finger, in the plane of the screen, or horizontally with Shift. */
 
 import { THREE } from "pinik/three.js";
 
-const REACH = { mouse: 18, pen: 22, touch: 34 }; // [px] around a ball's middle, on top of its radius
+const REACH = { mouse: 18, pen: 22, touch: 34 }; // [px] beyond a ball's radius
 
 export class Grab {
     /**
@@ -17,7 +17,7 @@ export class Grab {
         const capture = { capture: true };
         element.addEventListener("pointerdown", (event) => this._down(event), capture);
         element.addEventListener("pointermove", (event) => this._move(event), capture);
-        // Comes at once, where pointermove waits for the next picture; not every browser has it.
+        // This event comes at once, whereas pointermove waits for the next picture. Not every browser has it.
         element.addEventListener("pointerrawupdate", (event) => this._held && this._move(event), capture);
         for (const name of ["pointerup", "pointercancel", "lostpointercapture"]) {
             element.addEventListener(name, (event) => this._up(event), capture);
@@ -29,7 +29,7 @@ export class Grab {
         return this._held !== null;
     }
 
-    /** The nearest ball's copy within reach of a pointer: {k, instance}, or null. */
+    /** The nearest copy of a ball within reach of a pointer: {k, instance}, or null. */
     _find(event) {
         const { x, y } = this._local(event);
         let found = null;
@@ -54,8 +54,8 @@ export class Grab {
         event.preventDefault();
         const start = this._show.ballInWorld(found.k, found.instance);
         this._held = { ...found, pointer: event.pointerId, start, shift: null, position: start.clone() };
-        this._dragged(event); // from here on the pointer and the ball keep their distance
-        // meshcat's camera must not turn while a ball is in the hand.
+        this._dragged(event); // from here on, pointer and ball keep their distance
+        // meshcat's camera must not turn while a ball is being dragged.
         this._show.stage.viewer.controls.enabled = false;
         this._show.stage.element.setPointerCapture(event.pointerId);
         this._show.stage.element.classList.add("grabbing");
@@ -70,7 +70,7 @@ export class Grab {
         if (event.pointerId !== this._held.pointer) return;
         event.stopPropagation();
         const where = `${event.clientX} ${event.clientY} ${event.shiftKey}`;
-        if (where === this._held.where) return; // the same move, told twice
+        if (where === this._held.where) return; // the same move, reported twice
         this._held.where = where;
         const position = this._dragged(event);
         if (!position) return;
@@ -80,7 +80,7 @@ export class Grab {
         this._handlers.onMove(this._held.k, inRobot.toArray());
     }
 
-    /** Where the pointer's ray meets the plane that the ball is dragged in; the scene's axes, z up. */
+    /** Where the pointer's ray meets the plane in which the ball is dragged; in the scene's axes, z up. */
     _dragged(event) {
         const held = this._held;
         const { camera, scene } = this._show.stage.viewer;
@@ -88,7 +88,7 @@ export class Grab {
         const pointer = new THREE.Vector2((2 * x) / width - 1, 1 - (2 * y) / height);
         const inverse = scene.matrixWorld.clone().invert();
         if (held.shift !== event.shiftKey) {
-            // The plane goes through the ball and the ray keeps its distance to it, so that nothing jumps.
+            // The plane passes through the ball, and the ray keeps its distance from it, so nothing jumps.
             held.shift = event.shiftKey;
             const at = this._show.stage.project(held.position);
             held.slip = new THREE.Vector2((2 * at.x) / width - 1, 1 - (2 * at.y) / height).sub(pointer);

@@ -1,4 +1,4 @@
-/** The ground: a disc in the theme's colour that fades away, a grid on it, and the robots' shadows. */
+/** The ground: a fading disc in the theme's colour with a grid and the robots' shadows. */
 
 import { THREE } from "pinik/three.js";
 
@@ -68,21 +68,21 @@ export class Ground {
         this._shadow.material = fine ? this._shadows.fine : this._shadows.coarse;
     }
 
-    /** Lie at a height [m], about a place, under something of a size [m]. */
+    /** Lie at a height [m], around a point, under a scene of this size [m]. */
     lay(height, x, y, size, robotSize) {
         const radius = 6 * size;
         this.group.position.set(x, y, height);
         this._floor.scale.set(radius, radius, 1);
-        // No shadow falls farther than this; elsewhere nothing need be looked up.
+        // No shadow falls farther than this, so the shader need not look for one elsewhere.
         this._shadow.scale.set(1.6 * size, 1.6 * size, 1);
         const uniforms = this._material.uniforms;
-        uniforms.center.value.set(x, -y); // the shader's place is in the y-up world
+        uniforms.center.value.set(x, -y); // the shader works in the world with y up
         uniforms.radius.value = radius;
         uniforms.cell.value = niceCell(robotSize / 5);
     }
 }
 
-/** 1, 2 or 5 times a power of ten, near a length. */
+/** The largest of 1, 2 and 5 times a power of ten that does not exceed a length. */
 function niceCell(wanted) {
     const power = 10 ** Math.floor(Math.log10(wanted));
     const [factor] = [5, 2, 1].filter((k) => k * power <= wanted);

@@ -1,17 +1,17 @@
-/** Inputs that show the session's state, except while the visitor's hands are on them. */
+/** Inputs that show the session's state, except while the user edits them. */
 
-const SETTLE = 700; // [ms] after a change in which the session may still tell how it was before
+const SETTLE = 700; // [ms] after a change during which the session may still report the old value
 
-const MEMORY = 1500; // [ms] in which what was asked for is taken for granted
+const MEMORY = 1500; // [ms] during which a requested value is assumed to hold
 
 const busyUntil = new WeakMap();
 
 const isTyped = (element) => element.matches("input[type=number], input[type=text]");
 
 /**
- * Notice which inputs are being edited; once for a page.
+ * Notice which inputs are being edited. Call this once per page.
  *
- * @param refresh called when hands are off again, to show how things are: what was refused, the session does not tell
+ * @param refresh called after an edit to show the session's value, because the session does not report a refusal
  */
 export function watchHands(refresh) {
     const later = ({ target }) => {
@@ -35,7 +35,7 @@ function isBusy(element) {
     return performance.now() < (busyUntil.get(element) ?? 0);
 }
 
-/** Write a value into an input, unless it is being edited. */
+/** Write a value into an input unless it is being edited. */
 export function write(element, value) {
     if (isBusy(element)) return;
     if (element.type === "checkbox") {
@@ -45,13 +45,13 @@ export function write(element, value) {
     }
 }
 
-/** What was asked for lately: the next change goes on from there, also before the session has told of the last one. */
+/** Recently requested values, on which the next change builds even before the session has confirmed them. */
 export class Asked {
     constructor() {
         this._values = new Map();
     }
 
-    /** The value last asked for, or after a while what the session told. */
+    /** The value last requested or, after a while, the session's value. */
     now(key, told) {
         const asked = this._values.get(key);
         return asked && performance.now() < asked.until ? asked.value : told;
@@ -63,13 +63,13 @@ export class Asked {
     }
 }
 
-/** The number that was typed into an input, or null where it is none. */
+/** The number typed into an input, or null if it is not a number. */
 export function typed(element) {
     const value = element.value.trim() === "" ? NaN : Number(element.value);
     return Number.isFinite(value) ? value : null;
 }
 
-/** The choices of a <select>: [[value, title], …]; left alone while they stay the same. */
+/** Set the choices of a <select>, [[value, title], …], unless they are the same as before. */
 export function offer(select, choices) {
     const said = JSON.stringify(choices);
     if (select.dataset.choices === said) return;
@@ -79,7 +79,7 @@ export function offer(select, choices) {
     if (choices.some(([name]) => name === value)) select.value = value;
 }
 
-/** A slider from 0 to 1000 that stands for low to high, logarithmically where that is wanted. */
+/** Convert between low…high and a slider's 0…1000, linearly or logarithmically. */
 export function scale(low, high, logarithmic) {
     const to = logarithmic ? Math.log : (x) => x;
     const from = logarithmic ? Math.exp : (x) => x;

@@ -1,4 +1,4 @@
-/** What each instance did over the last ten seconds, step by step, for the charts. */
+/** Error and time of every step in the last ten seconds, for the charts. */
 
 const SECONDS = 10;
 
@@ -12,7 +12,7 @@ export class History {
         this.series = [];
     }
 
-    /** @param time [s] of the session, by its step */
+    /** @param time [s] of the frame's step in the session */
     add(frame, time) {
         if (this.series.length !== frame.instances || time < this.now || frame.generation !== this._generation) {
             this.series = Array.from({ length: frame.instances }, () => []);

@@ -1,4 +1,4 @@
-/** One of the robots side by side, with its copies of the balls and curves and its effectors' trails. */
+/** One of the robots side by side, with its own copies of the balls and curves and its effectors' trails. */
 
 import { Ball } from "pinik/ball.js";
 import { askedJoints } from "pinik/limit_marks.js";
@@ -20,7 +20,7 @@ export class Instance {
         scene.add(this.group);
     }
 
-    /** Another robot, or its shapes at last. */
+    /** Show another robot, or the same one once its shapes have arrived. */
     setRobot(robot, parts, fine) {
         this.robot?.dispose();
         this.robot = new Robot(robot, parts, this._theme.color(`instance-${this._index}`));
@@ -29,7 +29,7 @@ export class Instance {
         this.group.add(this.robot.group);
     }
 
-    /** As many balls as the state has, shown as it says. */
+    /** Show the balls of a state. */
     setState(state, radius, selected, near) {
         const { balls } = state;
         this._asked = askedJoints(this._message, state);
@@ -78,7 +78,7 @@ export class Instance {
         }
     }
 
-    /** @param places for each ball {position: Vector3, quaternion: Quaternion} */
+    /** @param places {position: Vector3, quaternion: Quaternion} of each ball */
     update(frame, places) {
         this.robot.update(frame, this._index, this._asked);
         const points = frame.points(this._index);
@@ -98,7 +98,7 @@ export class Instance {
         });
     }
 
-    /** Where its effectors have been, without moving it. */
+    /** Extend the trails by a frame without moving the robot. */
     addToTrails(frame) {
         const points = frame.points(this._index);
         this._sets.forEach(({ trail }, k) => trail.add(frame.step, ...points.subarray(3 * k, 3 * k + 3)));

@@ -1,4 +1,4 @@
-/** A parameter that gives numbers to some joints: a list of these, and a menu of the others. */
+/** A parameter that maps joints to numbers: a list of those joints, and a menu of the others. */
 
 import { icon, make } from "pinik/elements.js";
 import { Asked, offer, typed, write } from "pinik/hands.js";
@@ -14,7 +14,7 @@ export class JointValues {
         this._value = {};
         this._rows = new Map();
         this.list = make("ul", { className: "joint-values" });
-        this.adder = make("select", { dataset: { testid }, aria: { label: `${name}: give a joint a value` } });
+        this.adder = make("select", { dataset: { testid }, aria: { label: `${name}: add a joint` } });
         this.adder.addEventListener("change", () => {
             const joint = this.adder.value;
             const number = this._range.high === null ? 0 : this._range.high / 2;
@@ -54,7 +54,7 @@ export class JointValues {
         });
         const remove = make(
             "button",
-            { type: "button", className: "quiet", title: `${joint} as the others`, aria: { label: `Remove ${joint}` } },
+            { type: "button", className: "quiet", title: `Remove ${joint}`, aria: { label: `Remove ${joint}` } },
             icon("close"),
         );
         remove.addEventListener("click", () => this._change(({ [joint]: _, ...others }) => others));

@@ -1,9 +1,9 @@
-/** Keys for everything, and the list of them. */
+/** Keyboard shortcuts, and the list of them. */
 
 import { byId, make } from "pinik/elements.js";
 
 export class Keys {
-    /** @param bindings [{keys, title, act(event)}]; `shown` where the list should say it differently */
+    /** @param bindings [{keys, title, act(event)}], with `shown` if the list should name the keys differently */
     constructor(bindings) {
         this._acts = new Map(bindings.flatMap(({ keys, act }) => keys.map((key) => [key, act])));
         byId("keys").append(
@@ -24,7 +24,7 @@ export class Keys {
     }
 }
 
-/** Whether a key belongs to the element that has the focus. */
+/** Whether the focused element needs this key itself. */
 function isUsedBy(element, key) {
     if (element.matches("select, input[type=number], input[type=text], textarea")) return true;
     if (element.matches("input[type=range]")) return key.startsWith("Arrow") || key.startsWith("Page");

@@ -1,9 +1,9 @@
-/** What hovers below each robot: its method and where it stands, never on top of each other. */
+/** The labels below the robots: method and result. They never overlap. */
 
 import { make, say } from "pinik/elements.js";
 
 const GAP = 6; // [px]
-const NARROW = 165; // [px] with less room than this, the method's short name has to do
+const NARROW = 165; // [px] a label with less room than this shows the method's short name
 
 export class Labels {
     constructor(element) {
@@ -11,7 +11,7 @@ export class Labels {
         this._chips = [];
     }
 
-    /** @param texts for each instance {title, method, words, good} */
+    /** @param texts {title, method, words, good} of each instance */
     set(texts) {
         while (this._chips.length < texts.length) this._chips.push(this._make(this._chips.length));
         while (this._chips.length > texts.length) this._chips.pop().chip.remove();
@@ -31,7 +31,7 @@ export class Labels {
         return { chip, name, state };
     }
 
-    /** @param anchors for each instance {x, y, behind} [px]: the middle of the chip's upper edge */
+    /** @param anchors {x, y, behind} [px] of each instance: the middle of the label's upper edge */
     place(anchors, width, height) {
         const room = Math.max(84, Math.min(230, narrowest(anchors) - GAP, width - 2 * GAP));
         this._narrow = room < NARROW;
@@ -60,7 +60,7 @@ function overlap(a, b) {
     return a.x < b.x + b.w + GAP && b.x < a.x + a.w + GAP && a.y < b.y + b.h + GAP && b.y < a.y + a.h + GAP;
 }
 
-/** The smallest distance between neighbours in one row. */
+/** The smallest distance between neighbours in the first row. */
 function narrowest(anchors) {
     const row = anchors.filter((anchor) => Math.abs(anchor.y - anchors[0].y) < 60).map((anchor) => anchor.x);
     row.sort((a, b) => a - b);

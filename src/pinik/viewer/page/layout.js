@@ -1,14 +1,14 @@
-/** Where the instances stand: in a row, or in two where that shows them much larger. */
+/** Where the instances stand: in one row, or in two rows if that shows them much larger. */
 
 import { axesOf, fit } from "pinik/framing.js";
 import { THREE } from "pinik/three.js";
 
-const GAP = 0.06; // between neighbours, of their width
-const WORTH = 1.5; // how much nearer the camera must come for two rows: one is easier to compare
-const STEEP = 0.5; // [rad] from how high two rows are seen at least
-const STEP_BACK = 0.85; // between two rows, of what keeps one clear of the other
+const GAP = 0.06; // between neighbours, as a fraction of their width
+const WORTH = 1.5; // how much nearer two rows must bring the camera, because one row is easier to compare
+const STEEP = 0.5; // [rad] the least elevation of the camera for two rows
+const STEP_BACK = 0.85; // between two rows, as a fraction of what would separate them completely
 
-/** Arrange `count` copies of points (Vector3s) seen in a view: {offsets, view, camera}, camera as `fit` returns it. */
+/** Arrange `count` copies of points (Vector3s) in a view. Returns {offsets, view, camera}, with camera from `fit`. */
 export function arrange(points, count, view, lens) {
     const row = candidate(points, count, count, view, lens);
     if (count === 1) return row;
@@ -26,7 +26,7 @@ function grid(points, count, columns, view) {
     const { right, up, ahead } = axesOf(view);
     const level = new THREE.Vector3(-Math.cos(view.azimuth), -Math.sin(view.azimuth), 0);
     const column = (1 + GAP) * extent(points, right);
-    // Seen from above, a row further back is as much higher as the ground rises in the picture.
+    // Seen from above, a row farther back appears higher, because the ground rises in the picture.
     const rise = Math.max(level.dot(up), 0.2);
     const row = Math.max(STEP_BACK * (extent(points, up) / rise), 0.8 * extent(points, level));
     const rows = Math.ceil(count / columns);

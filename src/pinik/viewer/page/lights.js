@@ -4,7 +4,7 @@ import { lightQuickMaterials } from "pinik/quick_material.js";
 import { THREE } from "pinik/three.js";
 
 export class Lights {
-    /** @param software whether a processor draws */
+    /** @param software whether WebGL runs on the processor */
     constructor(software) {
         this.group = new THREE.Group();
         this._sky = new THREE.HemisphereLight(0xffffff, 0x8d8a86, 0.5);
@@ -24,7 +24,7 @@ export class Lights {
         this._lightQuickMaterials();
     }
 
-    /** Light a sphere about a centre (z up), seen from an azimuth [rad], over the viewer's left shoulder. */
+    /** Light a sphere (z up), seen from an azimuth [rad], from over the viewer's left shoulder. */
     aim(center, radius, azimuth) {
         const along = (angle, height) =>
             new THREE.Vector3(Math.cos(angle), Math.sin(angle), height).setLength(3 * radius);
@@ -51,7 +51,7 @@ export class Lights {
     }
 
     _lightQuickMaterials() {
-        // Their world has y up.
+        // The lights' world has y up.
         const wayTo = ({ position, target }) => {
             const { x, y, z } = position.clone().sub(target.position).normalize();
             return new THREE.Vector3(x, z, -y);

@@ -1,15 +1,15 @@
-/** What shows that a joint sits at its limit: an amber ring at the joint, and amber on what it carries. */
+/** The marks of a joint at its limit: an amber ring, and an amber tint on the parts that it moves. */
 
 import { THREE } from "pinik/three.js";
 
 const AMBER = new THREE.Color(0xffb000).convertSRGBToLinear();
 const GLOW = 0.22;
-const SIZE = 0.07; // of the robot's size
+const SIZE = 0.07; // as a fraction of the robot's size
 
 export class LimitMarks {
     /**
      * @param robot the `robot` message
-     * @param carried for each joint the materials of the parts that it moves first
+     * @param carried for each joint, the materials of the parts that it moves first
      */
     constructor(robot, carried) {
         this.group = new THREE.Group();
@@ -19,9 +19,9 @@ export class LimitMarks {
     }
 
     /**
-     * @param sides for each joint, as a frame has them
+     * @param sides for each joint, as in a frame
      * @param asked indices of the joints whose limits matter
-     * @param joints Object3Ds placed where the joints are
+     * @param joints Object3Ds at the joints
      */
     update(sides, asked, joints) {
         const tinted = new Set();
@@ -71,7 +71,7 @@ function ringMaterial() {
     return shared;
 }
 
-/** The joints that move a ball's frame, whose limits may be why it is missed; all where a frame is no link's. */
+/** The joints that move a ball's frame: their limits may be why it misses. All joints if a frame is not a link. */
 export function askedJoints(robot, { balls, limits }) {
     const asked = new Set();
     for (const { frame, mode } of limits ? balls : []) {

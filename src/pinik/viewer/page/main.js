@@ -1,4 +1,4 @@
-/** The live page: connects the session's messages with the picture, the panel and the visitor's hands. */
+/** The live page: connects the session's messages with the picture, the panel and the user's input. */
 
 import { Address } from "pinik/address.js";
 import { Cards } from "pinik/cards.js";
@@ -51,7 +51,7 @@ class Page {
         document.addEventListener("visibilitychange", () => this._answer());
     }
 
-    /** What to do with each of the session's messages. */
+    /** The handlers of the session's messages. */
     _on = {
         hello: (hello) => {
             this.hello = hello;
@@ -92,7 +92,7 @@ class Page {
         }
         const frame = this.show.setFrame(buffer);
         this.history.add(frame, frame.step / this.hello.steps_per_second);
-        // A hidden page draws nothing, but still follows.
+        // A hidden page draws nothing but still answers.
         this._unanswered.push(frame.step);
         if (document.hidden) this._answer();
     }
@@ -148,7 +148,7 @@ class Page {
         byId("help").addEventListener("click", ({ target }) => target === byId("help") && byId("help").close());
         byId("theme").addEventListener("click", () => this.theme.turn());
         const tell = () => {
-            byId("theme").title = `Theme: ${this.theme.choice === "system" ? "as the system" : this.theme.choice} (t)`;
+            byId("theme").title = `Theme: ${this.theme.choice} (t)`;
         };
         this.theme.addEventListener("change", tell);
         tell();
@@ -157,7 +157,7 @@ class Page {
 
 const page = new Page();
 
-/** For tests and the curious. */
+/** For tests, and for the browser's console. */
 window.pinik = {
     get state() {
         return page.state;
@@ -168,7 +168,7 @@ window.pinik = {
     get frames() {
         return page.show.stage.frames;
     },
-    /** What of the present robot has been drawn: "", "skeleton" or "shapes". */
+    /** What has been drawn of the current robot: "", "skeleton" or "shapes". */
     get drawn() {
         return page.show.drawn;
     },
@@ -179,7 +179,11 @@ window.pinik = {
     get still() {
         return page.show.still;
     },
-    /** Where ball k of the first instance is, in CSS pixels of the page. */
+    /** Whether the picture has stopped changing and has been drawn in full detail. */
+    get settled() {
+        return page.show.stage.settled;
+    },
+    /** The position of ball k in the first instance, in CSS pixels of the page. */
     targetOnScreen(k) {
         const { stage } = page.show;
         const box = stage.element.getBoundingClientRect();

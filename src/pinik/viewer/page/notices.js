@@ -1,4 +1,4 @@
-/** What the visitor should know and need not answer: errors, a lost connection, a robot on its way, warnings. */
+/** Notices that need no answer: errors, a lost connection, a robot being loaded, warnings. */
 
 import { byId, icon, make, say } from "pinik/elements.js";
 

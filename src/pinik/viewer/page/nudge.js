@@ -1,8 +1,8 @@
-/** Moving the selected ball by keys: up and down, and along the level axis of the world nearest to an arrow. */
+/** Moving the selected ball by keys: up and down, and along the horizontal world axis nearest to the arrow. */
 
-const STEP = 0.015; // of the robot's size
+const STEP = 0.015; // as a fraction of the robot's size
 const FINE = 0.1;
-const CATCH_UP = 600; // [ms] after the last key in which the session's own position is not yet asked
+const CATCH_UP = 600; // [ms] after the last key during which the session's position is ignored
 
 export class Nudge {
     /** @param show the scene; `send(k, position)` tells the session */
@@ -27,7 +27,7 @@ export class Nudge {
         }[key];
         const step = STEP * this._show.robot.size * (fine ? FINE : 1) * sign;
         const now = performance.now();
-        // Keys come faster than the session answers: go on from where the last one put it.
+        // Keys come faster than the session answers, so continue from where the last one put the ball.
         const follows = this._at && this._at.k === k && now - this._at.time < CATCH_UP;
         const from = follows ? this._at.position : place.position.toArray();
         const position = from.map((value, i) => value + step * axis[i]);

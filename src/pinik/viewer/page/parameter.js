@@ -1,11 +1,11 @@
-/** One parameter of a solver: the inputs that its description asks for. */
+/** The inputs for one parameter of a solver, made from its description. */
 
 import { make } from "pinik/elements.js";
 import { offer, scale, typed, write } from "pinik/hands.js";
 import { JointValues } from "pinik/joint_values.js";
 import { plain, spaced } from "pinik/words.js";
 
-/** The widget that suits a description: {element, show(description, state)}; `commit(value)` is called on a change. */
+/** Make the widget for a description: {element, show(description, state)}. It calls `commit(value)` on a change. */
 export function parameterWidget(description, testid, commit) {
     const kinds = { number: numberWidget, truth: truthWidget, choice: choiceWidget, joints: jointsWidget };
     return kinds[description.kind](description, testid, commit);
@@ -44,7 +44,7 @@ function numberWidget(description, testid, commit) {
             min: 0,
             max: 1000,
             step: 1,
-            aria: { label: `${spaced(description.name)}, slider` },
+            aria: { label: `${spaced(description.name)} (slider)` },
         });
     range?.addEventListener("input", () => {
         const value = description.whole
@@ -70,7 +70,7 @@ function numberWidget(description, testid, commit) {
     return { element: row(description, input, ...extras), show };
 }
 
-/** A number to begin with where there was none: the default, else the middle of the slider. */
+/** The first number after null: the default, or else the middle of the slider. */
 function likely({ default: value, slider, logarithmic, low }) {
     return value ?? (slider ? scale(slider[0], slider[1], logarithmic).value(500) : (low ?? 1));
 }

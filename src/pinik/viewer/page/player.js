@@ -1,11 +1,11 @@
-/** A saved animation: plays the frames that the page carries in itself. */
+/** The player of a saved animation, whose frames are in the page itself. */
 
 import { byId } from "pinik/elements.js";
 import { addPresets } from "pinik/presets.js";
 import { Show } from "pinik/show.js";
 import { Theme } from "pinik/theme.js";
 
-const TAIL = 90; // frames before one that its effectors' trails show
+const TAIL = 90; // number of earlier frames that a trail shows
 
 class Player {
     constructor(recording) {
@@ -47,7 +47,7 @@ class Player {
             .setAttribute("href", on ? "#icon-pause" : "#icon-play");
     }
 
-    /** Go to a frame, by way of those before it, whose trails belong to the picture. */
+    /** Go to a frame, and rebuild the trails from the frames before it. */
     _seek(at) {
         this._at = at;
         this._show.clearTrails();
@@ -61,6 +61,7 @@ class Player {
 
     _tick(now) {
         if (this._playing) {
+            // Frame times may go back, and the first tick has none before it.
             const passed = Math.max(0, now - (this._before ?? now));
             this._at += (passed / 1000) * this._rate * Number(byId("rate").value);
             if (this._at >= this._count) {

@@ -1,4 +1,4 @@
-/** The buttons of the camera's presets. */
+/** The buttons of the camera presets. */
 
 import { PRESETS } from "pinik/camera.js";
 import { make } from "pinik/elements.js";

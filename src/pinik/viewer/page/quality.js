@@ -1,13 +1,13 @@
-/** How finely to draw, so that the picture stays fluid also where a processor has to draw it. */
+/** The level of detail, chosen so that the picture stays fluid even without a graphics card. */
 
-const SLOW = 55; // [ms] between two pictures: coarser
-const FAST = 19; // [ms]: finer again
-const PAUSE = 400; // [ms] longer than this is no drawing speed, but a pause
-const PATIENCE = 10; // pictures before a verdict
-const LONG_PATIENCE = 240; // pictures before another try at finer
+const SLOW = 55; // [ms] between two pictures: draw less detail
+const FAST = 19; // [ms]: draw more detail again
+const PAUSE = 400; // [ms] a longer interval is a pause, not a slow picture
+const PATIENCE = 10; // pictures before a decision
+const LONG_PATIENCE = 240; // pictures before another try at more detail
 
 export class Quality {
-    /** @param software whether a processor draws, to which each sample of a pixel costs as much as a pixel */
+    /** @param software whether WebGL runs on the processor, where antialiasing is as costly as more pixels */
     constructor(software) {
         const sharp = Math.min(devicePixelRatio, 2);
         this._levels = [
@@ -16,7 +16,7 @@ export class Quality {
             { ratio: Math.min(sharp, 1), fine: false, shadowEvery: 3 },
             { ratio: 0.75, fine: false, shadowEvery: 6 },
         ];
-        /** How a picture is drawn that stays for a while. */
+        /** The level for a picture that does not change. */
         this.still = { ratio: software ? Math.max(sharp, 1.5) : sharp, fine: true };
         this._level = software ? 2 : 0;
         this._tries = 2;
@@ -32,7 +32,7 @@ export class Quality {
         this._count = 0;
     }
 
-    /** Take note of the time [ms] between two pictures drawn one after the other. */
+    /** Note the time [ms] between two successive pictures. */
     note(interval) {
         if (interval > PAUSE) return;
         this._mean = this._mean === null ? interval : 0.85 * this._mean + 0.15 * interval;

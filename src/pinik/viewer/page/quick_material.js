@@ -1,4 +1,4 @@
-/** A robot's skin where a processor draws: the same lights, added up once a corner instead of once a pixel. */
+/** The material of robots drawn by the processor: the same lights, computed per vertex instead of per pixel. */
 
 import { THREE } from "pinik/three.js";
 
@@ -9,7 +9,7 @@ varying vec3 skin;
 void main() {
     vec4 place = modelMatrix * vec4(position, 1.0);
     vec3 n = normalize(mat3(modelMatrix) * normal);
-    // Many files have faces that look inwards.
+    // Many files have faces that point inwards.
     if (dot(n, cameraPosition - place.xyz) < 0.0) n = -n;
     vec3 facing = vec3(0.78 + 0.22 * n.y, max(dot(n, keyWay), 0.0), max(dot(n, fillWay), 0.0));
     float light = dot(strengths, facing);
@@ -22,21 +22,21 @@ uniform float opacity;
 varying vec3 skin;
 void main() { gl_FragColor = vec4(skin, opacity); }`;
 
-/** What all of them share; set by the lights. In the world with y up. */
+/** Shared by all of these materials and set by the lights, in the world with y up. */
 const lights = {
     keyWay: { value: new THREE.Vector3(0, 1, 0) },
     fillWay: { value: new THREE.Vector3(0, 1, 0) },
     strengths: { value: new THREE.Vector3(0.5, 0.6, 0.2) },
 };
 
-/** @param strengths sky, key, fill; the ways are unit vectors to the lights */
+/** @param strengths of sky, key and fill light; the ways are unit vectors to the lights */
 export function lightQuickMaterials(strengths, keyWay, fillWay) {
     lights.strengths.value.set(...strengths);
     lights.keyWay.value.copy(keyWay);
     lights.fillWay.value.copy(fillWay);
 }
 
-/** One that looks like a MeshStandardMaterial from afar. */
+/** A material that resembles a MeshStandardMaterial. */
 export function quickMaterial({ color, opacity, transparent }) {
     const material = new THREE.ShaderMaterial({
         vertexShader: VERTEX,

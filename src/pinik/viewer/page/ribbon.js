@@ -1,4 +1,4 @@
-/** A line of a width in pixels that the graphics card turns to the viewer; it may thin out towards its beginning. */
+/** A line with a width in pixels that always faces the viewer. It can taper towards its beginning. */
 
 import { THREE } from "pinik/three.js";
 
@@ -58,7 +58,7 @@ export class Ribbon {
         this.mesh.frustumCulled = false;
         this.mesh.renderOrder = 2;
         this.mesh.visible = false;
-        // What a pixel is, is known only when the picture is drawn.
+        // The size of a pixel is known only when the picture is drawn.
         this.mesh.onBeforeRender = (renderer) => {
             renderer.getSize(material.uniforms.resolution.value);
         };

@@ -1,4 +1,4 @@
-/** One instance of the robot in the scene: its shapes or its skeleton, moved joint by joint. */
+/** One instance of the robot in the scene: its shapes or its skeleton. */
 
 import { LimitMarks } from "pinik/limit_marks.js";
 import { quickMaterial } from "pinik/quick_material.js";
@@ -8,7 +8,7 @@ import { THREE } from "pinik/three.js";
 export class Robot {
     /**
      * @param robot the `robot` message
-     * @param parts what `Shapes.parts` gave, or null while there are none
+     * @param parts the result of `Shapes.parts`, or null before the shapes arrive
      * @param color CSS colour of the instance
      */
     constructor(robot, parts, color) {
@@ -37,7 +37,7 @@ export class Robot {
         if (this._skeleton) this.group.add(this._skeleton.group);
     }
 
-    /** Stand as instance `i` of a frame does; `asked` are the joints whose limits matter. */
+    /** Take the pose of instance `i` of a frame; `asked` are the joints whose limits matter. */
     update(frame, i, asked) {
         const placements = frame.placements(i);
         this._joints.forEach((joint, j) => place(joint, placements, 7 * j));
@@ -45,7 +45,7 @@ export class Robot {
         this._marks.update(frame.sides(i), asked, this._joints);
     }
 
-    /** Draw finely, with shadows on itself, or quickly. */
+    /** Draw in detail, with shadows on itself, or quickly. */
     refine(isFine) {
         for (const { mesh, fine, coarse } of this._parts) {
             mesh.material = isFine ? fine : coarse;
@@ -53,7 +53,7 @@ export class Robot {
         }
     }
 
-    /** The corners of the boxes around its parts, in its own world: Vector3s. */
+    /** The corners of the boxes around the robot's parts, in its own world: Vector3s. */
     corners() {
         const inverse = new THREE.Matrix4();
         this.group.updateWorldMatrix(true, true);
@@ -74,7 +74,7 @@ export class Robot {
                 }
             }
         }
-        return points.length ? points : [new THREE.Vector3()]; // neither joints nor shapes: where it is drawn
+        return points.length ? points : [new THREE.Vector3()]; // a robot without joints and shapes
     }
 
     dispose() {
@@ -92,7 +92,7 @@ function place(object, numbers, k) {
     object.quaternion.set(numbers[k + 3], numbers[k + 4], numbers[k + 5], numbers[k + 6]);
 }
 
-/** For each joint the materials of its links, or where these have no shape, of the joints it carries. */
+/** For each joint, the materials of its links or, if they have no shapes, of the joints that it carries. */
 function carriedBy(robot, materials) {
     const own = robot.joints.map((_, j) => robot.links.flatMap((link, k) => (link.joint === j ? materials[k] : [])));
     const carried = [...own];

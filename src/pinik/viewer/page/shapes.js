@@ -1,27 +1,27 @@
-/** The robot's shapes: hidden prototypes that meshcat's commands make, whose geometry every instance shares. */
+/** The robot's shapes: hidden prototypes made by meshcat's commands. All instances share their geometry. */
 
 import { THREE } from "pinik/three.js";
 
 const ROOT = ["pinik", "shapes"];
-const WHITEST = 0.8; // linear; a whiter robot would lose its form in the light
+const WHITEST = 0.8; // linear; a whiter robot would look flat in the light
 
 export class Shapes {
     constructor(viewer) {
         this._viewer = viewer;
     }
 
-    /** Forget those of the last robot. */
+    /** Remove the shapes of the last robot. */
     clear() {
         this._viewer.delete_path(ROOT);
     }
 
-    /** One of meshcat's commands: Uint8Array. */
+    /** Execute one of meshcat's commands, a Uint8Array. */
     command(bytes) {
         this._viewer.handle_command_bytearray(bytes);
         this._viewer.set_property(ROOT, "visible", false);
     }
 
-    /** The parts of a `shapes` message: [{link, geometry, material}], a material for an instance to copy. */
+    /** The parts of a `shapes` message: [{link, geometry, material}]. Every instance copies the material. */
     parts(message) {
         return message.parts.flatMap(({ link, path }) => {
             const found = [];
@@ -33,7 +33,7 @@ export class Shapes {
     }
 }
 
-/** A robot's own colours are meant as a screen shows them; three.js adds up light. */
+/** Convert a material's colour from sRGB, as robot files have it, to linear light, as three.js needs it. */
 function suited(material) {
     const one = (Array.isArray(material) ? material[0] : material).clone();
     one.color = new THREE.Color().copy(one.color).convertSRGBToLinear();

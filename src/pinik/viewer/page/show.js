@@ -1,4 +1,4 @@
-/** Everything in the 3-D picture, as the session's messages say it; the live page and a saved one share it. */
+/** Everything in the 3-D picture, controlled by the session's messages. The live page and saved animations share it. */
 
 import { Balls } from "pinik/balls.js";
 import { Camera } from "pinik/camera.js";
@@ -10,8 +10,8 @@ import { Sight } from "pinik/sight.js";
 import { Stage } from "pinik/stage.js";
 import { THREE } from "pinik/three.js";
 
-const BALL = 0.025; // its radius, of the robot's size
-const BASE = 0.12; // of the robot's size: what is lower than this over the ground, it stands on
+const BALL = 0.025; // radius, as a fraction of the robot's size
+const BASE = 0.12; // as a fraction of the robot's size: the robot stands on what is lower than this above the ground
 
 export class Show {
     constructor({ canvas, labels }, theme) {
@@ -73,7 +73,7 @@ export class Show {
             this._sight.ask();
             this._sight.forget();
         }
-        // A stopped session sends no second frame: one that came before its state is taken now, one of before is not.
+        // A stopped session sends no second frame, so the latest one must do, unless it is older than the change.
         this._next = null;
         if (this._latest) this.setFrame(this._latest);
         this.stage.touch();
@@ -87,7 +87,7 @@ export class Show {
         this.stage.touch();
     }
 
-    /** The newest frame; drawn with the next picture. */
+    /** Take the newest frame; the next picture shows it. */
     setFrame(buffer) {
         const frame = new Frame(buffer);
         this._latest = buffer;
@@ -95,7 +95,7 @@ export class Show {
         return frame;
     }
 
-    /** Whether it shows the robot and the balls that the page was told of last. */
+    /** Whether a frame shows the current robot and balls. */
     _fits(frame) {
         return frame.generation === this.robot?.generation && frame.balls === this.state?.balls.length;
     }
@@ -110,7 +110,7 @@ export class Show {
             if (moves || frame.instances !== this.instances.length) this._draw(frame);
         }
         if (this._frame) this._captions.say(now, this._frame, this.state);
-        // Between a change and the first frame that has it, there is nothing to look at.
+        // Between a change and the first frame that shows it, the camera stays.
         const { _frame: frame, state } = this;
         if (frame && frame.instances === state.view && frame.balls === state.balls.length) this._sight.follow(now);
     }
@@ -128,7 +128,7 @@ export class Show {
         this.stage.touch();
     }
 
-    /** The ground is where the lowest point of the robot is at first. */
+    /** Put the ground at the lowest point of the robot's first pose. */
     _findGround() {
         const corners = this.instances[0].robot.corners();
         this.ground = Math.min(...corners.map((corner) => corner.z));
@@ -151,12 +151,12 @@ export class Show {
         );
     }
 
-    /** Where instance `i` stands: a Vector3. */
+    /** The position of instance `i`: a Vector3. */
     offset(i) {
         return this.camera.offsets[i] ?? new THREE.Vector3();
     }
 
-    /** Look at everything; the camera goes there smoothly unless told otherwise. */
+    /** Look at everything, smoothly or at once. */
     frameAll(smoothly = true, preset = this.camera.preset) {
         if (this.instances.length) this._sight.all(smoothly, preset);
     }
@@ -165,12 +165,12 @@ export class Show {
         return BALL * this.robot.size;
     }
 
-    /** Something is in the visitor's hand: the camera stays. */
+    /** Whether something is being dragged; the camera stays then. */
     get busy() {
         return Boolean(this.held);
     }
 
-    /** Nothing but the robots moves the picture. */
+    /** Whether the camera has come to rest. */
     get still() {
         return Boolean(this._framed) && !this._sight.pending && !this.camera.gliding;
     }
@@ -207,7 +207,7 @@ export class Show {
         this.balls.letGo(k);
     }
 
-    /** A frame that is not shown itself, but has been on the way. */
+    /** Extend the trails by a frame that is not shown itself. */
     addToTrails(buffer) {
         const frame = new Frame(buffer);
         for (const instance of this.instances) instance.addToTrails(frame);
@@ -217,12 +217,12 @@ export class Show {
         for (const instance of this.instances) instance.clearTrails();
     }
 
-    /** A ball's copy in the scene, z up. */
+    /** The position of a ball's copy in the scene, z up. */
     ballInWorld(k, instance) {
         return this.balls.places[k].position.clone().add(this.offset(instance));
     }
 
-    /** Every copy of every ball that is shown: {k, instance, at, radius}, in pixels of the canvas. */
+    /** Every visible copy of every ball: {k, instance, at, radius}, in pixels of the canvas. */
     ballsOnScreen() {
         if (!this.state || !this.robot) return [];
         const { camera, controls } = this.stage.viewer;

@@ -1,13 +1,13 @@
-/** What belongs in the picture, and looking at all of it whenever something has left it. */
+/** Keeps everything that matters in the picture. */
 
 import { Extent } from "pinik/extent.js";
 import { THREE } from "pinik/three.js";
 
-const LOOK = 300; // [ms] between two looks at whether something left the picture
-const EDGE = 4; // [px] it may come this near to the edge
+const LOOK = 300; // [ms] between two checks for something that left the picture
+const EDGE = 4; // [px] from the edge that something may come
 
 export class Sight {
-    /** @param show what is looked at */
+    /** @param show the scene */
     constructor(show) {
         this._show = show;
         this._extent = new Extent();
@@ -15,12 +15,12 @@ export class Sight {
         this._pending = false;
     }
 
-    /** Another robot, or other ways to go: what was needed so far counts no more. */
+    /** Forget what had to be seen so far, because the robot or its motion has changed. */
     forget() {
         this._extent.clear();
     }
 
-    /** Look at everything, as soon as nothing is in the visitor's hand. */
+    /** Look at everything as soon as nothing is being dragged. */
     ask() {
         this._pending = true;
     }
@@ -29,7 +29,7 @@ export class Sight {
         return this._pending;
     }
 
-    /** Look at everything; the camera goes there smoothly unless told otherwise. */
+    /** Look at everything, smoothly or at once. */
     all(smoothly, preset) {
         const { camera, stage, instances, ground, robot } = this._show;
         this._pending = false;
@@ -38,7 +38,7 @@ export class Sight {
         stage.ground.lay(ground, center.x, center.y, radius, robot.size);
     }
 
-    /** Follow what left the picture, unless the visitor turned the camera or has a ball in the hand. */
+    /** Look at everything again if something left the picture, unless the user turned the camera or drags a ball. */
     follow(now) {
         const { camera, busy } = this._show;
         if (busy) return;
@@ -62,7 +62,7 @@ export class Sight {
         );
     }
 
-    /** What of each instance should be seen, as points of its own world. */
+    /** The points of an instance that should be seen, in its own world. */
     _points() {
         const { instances, balls, state, ballRadius } = this._show;
         this._extent.add(instances.flatMap((instance) => instance.robot.corners()));

@@ -1,4 +1,4 @@
-/** A robot without shapes, or before they come: spheres at its joints, rods between them. */
+/** A robot whose shapes are missing or not there yet: spheres at its joints, and rods between them. */
 
 import { THREE } from "pinik/three.js";
 
@@ -14,7 +14,7 @@ export class Skeleton {
         this._bone = new THREE.MeshLambertMaterial({ color: 0x8d98a5 });
         this._joint = new THREE.MeshLambertMaterial({ color });
         this._spheres = robot.joints.map((_, j) => this._add(SPHERE, j ? this._joint : this._bone));
-        // A link that begins away from its joint, such as a tool's tip, is the end of one more rod.
+        // A link that begins away from its joint, such as a tool tip, gets a rod of its own.
         const ends = robot.links.map((link) => ({ joint: link.joint, at: new THREE.Vector3(...link.placement) }));
         this._rods = [
             ...robot.joints.map((joint, j) => ({ from: joint.parent, to: j })).slice(1),
@@ -29,7 +29,7 @@ export class Skeleton {
         return mesh;
     }
 
-    /** @param joints Object3Ds placed where the joints are */
+    /** @param joints Object3Ds at the joints */
     update(joints) {
         this._spheres.forEach((sphere, j) => {
             sphere.position.copy(joints[j].position);

@@ -1,13 +1,13 @@
-/** The canvas: meshcat's viewer with light, ground and drawing loop of pinik's own. */
+/** The canvas: meshcat's viewer with pinik's own lights, ground and drawing loop. */
 
 import { Ground } from "pinik/ground.js";
 import { Lights } from "pinik/lights.js";
 import { Quality } from "pinik/quality.js";
 import { THREE, Viewer } from "pinik/three.js";
 
-const FIELD_OF_VIEW = 20; // [deg], narrow: little distortion, instances of equal size
-const SETTLE = 400; // [ms] without a change after which a still picture is drawn as finely as possible
-const IDLE = 20; // chances to draw that pass meanwhile: a slow picture is not yet a still one
+const FIELD_OF_VIEW = 20; // [deg], narrow, so that instances side by side have the same size
+const SETTLE = 400; // [ms] without a change after which the picture is drawn in full detail
+const IDLE = 20; // animation frames that must pass too, so that a slow picture does not count as a still one
 
 export class Stage {
     constructor(element, theme) {
@@ -42,13 +42,18 @@ export class Stage {
         viewer.gui.domElement.remove();
         for (const name of ["Lights", "Grid", "Axes"]) viewer.delete_path([name]);
         viewer.set_property(["Background"], "visible", false);
-        // meshcat sizes itself by the window; here the layout decides.
+        // meshcat would take its size from the window; here the layout decides.
         viewer.set_3d_pane_size = () => this._resize();
-        // The one command of meshcat's that evaluates text; nothing here needs it.
+        // The only command of meshcat that evaluates text as code; nothing here needs it.
         viewer.set_control = () => {};
         viewer.camera.fov = FIELD_OF_VIEW;
         viewer.controls.zoomSpeed = 0.8;
         this.viewer = viewer;
+    }
+
+    /** Whether the picture has stopped changing and has been drawn in full detail. */
+    get settled() {
+        return this._settled && !this.viewer.needs_render;
     }
 
     get canvas() {
@@ -63,17 +68,17 @@ export class Stage {
         return this.element.clientHeight;
     }
 
-    /** What the robots' world is drawn in; z is up. */
+    /** The scene of the robots' world; z is up. */
     get scene() {
         return this.viewer.scene;
     }
 
-    /** Call a function before each picture that the screen could show; it gets the time [ms]. */
+    /** Call a function with the time [ms] at every animation frame. */
     onTick(ticker) {
         this._tickers.push(ticker);
     }
 
-    /** Something changed: draw again. */
+    /** Draw again, because something changed. */
     touch() {
         this.viewer.set_dirty();
     }
@@ -123,7 +128,7 @@ export class Stage {
             this.ground.refine(fine);
             this.onRefine?.(fine);
         }
-        // Materials of the two kinds are never drawn in the other's turn, so that each keeps its own kind of shadow.
+        // Each kind of material is drawn at one level of detail only, so each keeps its own kind of shadow.
         renderer.shadowMap.type = fine ? THREE.PCFSoftShadowMap : THREE.BasicShadowMap;
         renderer.shadowMap.needsUpdate = shadows;
         const distance = camera.position.distanceTo(controls.target);
@@ -134,7 +139,7 @@ export class Stage {
         this.onDrawn?.();
     }
 
-    /** Where a point of the scene (z up) is on the canvas [CSS px]; `behind` where the camera does not look. */
+    /** The position of a point of the scene (z up) on the canvas [CSS px]; `behind` if it is behind the camera. */
     project(point) {
         const { camera, scene } = this.viewer;
         camera.updateWorldMatrix(true, false);
@@ -143,7 +148,7 @@ export class Stage {
     }
 }
 
-/** Whether WebGL is drawn by the processor. */
+/** Whether WebGL runs on the processor. */
 function isSoftware() {
     const gl = document.createElement("canvas").getContext("webgl");
     const about = gl?.getExtension("WEBGL_debug_renderer_info");

@@ -1,4 +1,4 @@
-/** The comparison: a row an instance, its means over the last thousand steps. */
+/** The statistics: one row per instance, with means over the last thousand steps. */
 
 import { make, say } from "pinik/elements.js";
 import { count, degrees, length, milliseconds, percent, verdict } from "pinik/words.js";
@@ -44,7 +44,7 @@ export class Table {
         row.row.title = `Means over ${mean.steps} steps`;
         say(row.time, milliseconds(mean.mean_time));
         say(row.iterations, count(mean.mean_iterations));
-        // Only a method that goes joint by joint has more joint updates than iterations.
+        // Only CCD, which moves one joint at a time, counts joint updates.
         const sweeps = mean.mean_joint_updates > 0;
         row.iterations.title = sweeps ? `sweeps, with ${count(mean.mean_joint_updates)} joint updates` : "iterations";
         if (sweeps) row.iterations.append(make("small", {}, ` / ${count(mean.mean_joint_updates)}`));

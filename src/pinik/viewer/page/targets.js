@@ -1,4 +1,4 @@
-/** The balls in the panel: which frame each leads, how, and where it is in numbers. */
+/** The balls in the panel: frame, mode, position and orientation. */
 
 import { byId, icon, make, say } from "pinik/elements.js";
 import { Asked, offer, typed, write } from "pinik/hands.js";
@@ -6,7 +6,7 @@ import { plain } from "pinik/words.js";
 
 const DEGREE = Math.PI / 180;
 const MODES = [
-    ["on", "leads"],
+    ["on", "on"],
     ["pinned", "pinned"],
     ["off", "off"],
 ];
@@ -14,7 +14,7 @@ const POSITION = ["target-x", "target-y", "target-z"];
 const TURN = ["roll", "pitch", "yaw"];
 
 export class Targets {
-    /** @param onSelect called with the ball that becomes the selected one */
+    /** @param onSelect called with the index of the ball that is selected */
     constructor(connection, onSelect) {
         this._connection = connection;
         this._onSelect = onSelect;
@@ -48,7 +48,7 @@ export class Targets {
         if (this.selected >= state.balls.length) this.select(Math.max(0, state.balls.length - 1));
         const taken = new Set(state.balls.map(({ frame }) => frame));
         offer(byId("add-effector"), [
-            ["", "Add a frame …"],
+            ["", "Add a ball …"],
             ...this._frames.filter((frame) => !taken.has(frame)).map((frame) => [frame, frame]),
         ]);
         while (this._rows.length > state.balls.length) this._rows.pop().row.remove();
@@ -82,13 +82,13 @@ export class Targets {
     _showRow({ row, pick, mode, remove }, ball, k) {
         say(pick.lastChild, ball.frame);
         pick.ariaPressed = String(k === this.selected);
-        mode.ariaLabel = `What the ball of ${ball.frame} does`;
+        mode.ariaLabel = `Mode of the ball of ${ball.frame}`;
         remove.ariaLabel = remove.title = `Remove the ball of ${ball.frame}`;
         row.dataset.mode = ball.mode;
         write(mode, ball.mode);
     }
 
-    /** A ball was moved by hand; its numbers follow without waiting for the session. */
+    /** Show a ball's position after a drag without waiting for the session. */
     moved(k, position) {
         this._asked.ask(`position ${k}`, position);
         this._showPosition(k, position);
@@ -139,7 +139,7 @@ export class Targets {
         if (value !== null && this.ball) this._orient({ axis, angle: value * DEGREE });
     }
 
-    /** Ask for an orientation, or not; or turn it about one axis. */
+    /** Switch the orientation on or off, or change one of its angles. */
     _orient({ on, axis, angle }) {
         const key = `orientation ${this.selected}`;
         const before = this._asked.now(key, { on: this.ball.oriented, rpy: this.ball.rpy });

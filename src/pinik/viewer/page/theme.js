@@ -1,4 +1,4 @@
-/** Light or dark: the system's, or the one that the visitor chose. The colours themselves are in style.css. */
+/** The theme: light, dark, or that of the system. The colours are in style.css. */
 
 const ORDER = ["system", "light", "dark"];
 const KEY = "pinik-theme";
@@ -16,13 +16,13 @@ export class Theme extends EventTarget {
         return this.choice === "dark" || (this.choice === "system" && this._system.matches);
     }
 
-    /** The next of system, light and dark. */
+    /** Switch to the next of system, light and dark. */
     turn() {
         this.choice = ORDER[(ORDER.indexOf(this.choice) + 1) % ORDER.length];
         try {
             localStorage.setItem(KEY, this.choice);
         } catch {
-            // Without storage the choice holds until the page is left.
+            // Without storage, the choice lasts until the page is closed.
         }
         this._apply();
     }
@@ -33,7 +33,7 @@ export class Theme extends EventTarget {
         this.dispatchEvent(new Event("change"));
     }
 
-    /** A colour of style.css by its variable's name, as CSS says it. */
+    /** The value of a colour variable in style.css. */
     color(name) {
         return this._styles.getPropertyValue(`--${name}`).trim();
     }

@@ -1,3 +1,3 @@
-/** meshcat's viewer and the three.js inside it; its classic script has run before any module. */
+/** meshcat's viewer and its three.js. Its classic script runs before any module. */
 
 export const { THREE, Viewer } = globalThis.MeshCat;

@@ -1,8 +1,8 @@
-/** The way that an effector came lately: like a comet's tail, gone when it has stood still for a while. */
+/** The recent path of an effector. Like a comet's tail, it fades while the effector stands still. */
 
 import { Ribbon } from "pinik/ribbon.js";
 
-const STEPS = 90; // of the session, 60 a second
+const STEPS = 90; // of the session, 60 per second
 const POINTS = 90;
 
 export class Trail {
@@ -19,7 +19,7 @@ export class Trail {
         this._ribbon.color = css;
     }
 
-    /** Whether time alone changes it. */
+    /** Whether the trail changes even if the effector does not move. */
     get fading() {
         return this._points.length > 0;
     }

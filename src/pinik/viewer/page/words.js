@@ -1,4 +1,4 @@
-/** Numbers with their units, and where an instance stands, in a few words. */
+/** Numbers with units, and an instance's result in a few words. */
 
 const NOTHING = "–";
 
@@ -7,7 +7,7 @@ function significant(value, digits = 3) {
     return value.toFixed(Math.min(decimals, 3));
 }
 
-/** A length [m] in the unit that people would say it in. */
+/** A length [m] in a suitable unit. */
 export function length(metres) {
     if (metres === null || !Number.isFinite(metres)) return NOTHING;
     const size = Math.abs(metres);
@@ -40,7 +40,7 @@ export function percent(part) {
     return `${(part * 100).toFixed(part < 0.9995 ? 1 : 0)} %`;
 }
 
-/** A number for an input: no more digits than it has. */
+/** A number for an input, without trailing zeros. */
 export function plain(value, decimals) {
     return String(Number(decimals === undefined ? value.toPrecision(6) : value.toFixed(decimals)));
 }
@@ -50,7 +50,7 @@ export function spaced(name) {
     return name.replaceAll("_", " ");
 }
 
-/** Where an instance stands: "reached", "4.1 cm short", …; errors in m and rad, not finite where not asked for. */
+/** An instance's result, such as "4.1 cm short"; errors in m and rad, not finite if not asked for. */
 export function verdict(status, positionError, orientationError, tolerance) {
     if (status === "FAILED") return "solver failed";
     if (status === "REFUSED") return "cannot do this";
@@ -59,6 +59,6 @@ export function verdict(status, positionError, orientationError, tolerance) {
     const away = Number.isFinite(positionError) && positionError > tolerance.position;
     const turned = Number.isFinite(orientationError) && orientationError > tolerance.orientation;
     if (away) return `${length(positionError)} short`;
-    if (turned) return `${degrees(orientationError)} turned away`;
+    if (turned) return `${degrees(orientationError)} off`;
     return "reached";
 }

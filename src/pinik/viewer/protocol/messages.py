@@ -11,7 +11,7 @@ from ...checks import as_finite_number, as_vector
 from ...errors import InputError, UnknownNameError
 from ..simulation.session import Session
 
-__all__ = ["FARTHEST", "RANGES", "apply", "parse", "read_json"]
+__all__ = ["FARTHEST", "RANGES", "any_text", "apply", "checked", "parse", "read_json", "text", "whole_number"]
 
 RANGES: dict[str, tuple[float, float]] = {
     "speed": (0.1, 100.0),
@@ -94,6 +94,13 @@ def checked(kind: str, message: Mapping[str, Any], fields: Mapping[str, Check]) 
         wanted = ", ".join(fields) or "no fields"
         raise InputError(f"message {kind!r} takes {wanted}; got {', '.join(given) or 'none'}")
     return {name: check(f"{kind}: {name}", given[name]) for name, check in fields.items()}
+
+
+def any_text(what: str, value: Any) -> str:
+    """Check that a value is a text."""
+    if not isinstance(value, str):
+        raise InputError(f"{what} must be a text; got {str(value)[:60]!r}")
+    return value
 
 
 def text(what: str, value: Any) -> str:

@@ -1,4 +1,4 @@
-"""The balls: where the effectors should be, and whether they are asked."""
+"""The balls that the effectors chase."""
 
 from __future__ import annotations
 
@@ -20,15 +20,15 @@ MODES: tuple[Mode, ...] = ("on", "pinned", "off")
 
 
 class Ball:
-    """One ball, and the frame that chases it.
+    """A ball and the frame that chases it.
 
     Attributes:
         frame: The frame's name.
-        mode: "on": the frame chases the ball; "pinned": likewise, but no motion moves the ball; "off".
-        home: Where the ball begins (3,) [m].
-        position: Where it is (3,) [m].
+        mode: "on": the frame chases the ball; "pinned": it does too, but no motion moves the ball; "off": it does not.
+        home: The ball's first position (3,) [m].
+        position: Its current position (3,) [m].
         rpy: The orientation that the frame should have, fixed-axis roll, pitch, yaw (3,) [rad].
-        oriented: Whether that is asked for.
+        oriented: Whether that orientation is asked for.
     """
 
     def __init__(self, frame: str, home: pinocchio.SE3, mode: Mode) -> None:
@@ -41,24 +41,24 @@ class Ball:
         self.go_home()
 
     def go_home(self) -> None:
-        """Back to where it began, its orientation too."""
+        """Restore the first position and orientation."""
         self.rpy: Array = np.array(self._home_rpy)
         self.put(self.home)
 
     def put(self, position: ArrayLike) -> None:
-        """Put it at a point (3,) [m].
+        """Move the ball to a point (3,) [m].
 
         Raises:
-            InputError: That is no point.
+            InputError: The position is not three finite numbers.
         """
         self.position = as_point(position, f"the position of ball {self.frame!r}")
         self._target = None
 
     def orient(self, on: bool, rpy: ArrayLike) -> None:
-        """Ask for an orientation (fixed-axis roll, pitch, yaw (3,) [rad]), or for none any more.
+        """Ask for an orientation, fixed-axis roll, pitch, yaw (3,) [rad], or stop asking for one.
 
         Raises:
-            InputError: These are no three numbers.
+            InputError: The angles are not three finite numbers.
         """
         self.rpy = as_vector(rpy, 3, f"the orientation of ball {self.frame!r}", "roll, pitch, yaw in radians")
         self.oriented = on
@@ -66,13 +66,13 @@ class Ball:
 
     @property
     def target(self) -> Target:
-        """What the frame is asked for: the same object as long as nothing changed."""
+        """The frame's target; the same object until something changes."""
         if self._target is None:
             self._target = Target(self.frame, self.position, rpy=self.rpy if self.oriented else None)
         return self._target
 
     @property
     def placement(self) -> Array:
-        """Position and quaternion xyzw (7,)."""
+        """The position and the quaternion xyzw (7,)."""
         quaternion = pinocchio.Quaternion(pinocchio.rpy.rpyToMatrix(self.rpy)).coeffs()
         return np.concatenate([self.position, quaternion])

@@ -1,4 +1,4 @@
-"""How the balls move by themselves: along a curve or at random; by hand they stay where they were put."""
+"""How the balls move when nobody drags them: along a curve or at random."""
 
 from __future__ import annotations
 
@@ -19,17 +19,17 @@ Array = NDArray[np.float64]
 MOTIONS = {"hand": "By hand", "curve": "Along a curve", "random": "At random"}
 """Name → title."""
 
-_PERIOD = 8.0  # [s] once round a curve at speed 1
-_PAUSE = 1.5  # [s] between two random places at speed 1
+_PERIOD = 8.0  # [s] for one lap of a curve at speed 1
+_PAUSE = 1.5  # [s] between two random positions at speed 1
 
 
 class Motion:
-    """Moves the balls whose mode is "on", step after step; the same seed gives the same places.
+    """Moves the balls whose mode is "on", step after step. The same seed gives the same random positions.
 
     Attributes:
         kind: "hand", "curve" or "random".
         curve: A name in `CURVES`.
-        speed: Factor on time.
+        speed: Factor by which the motion is faster.
     """
 
     def __init__(self, robot: Robot, seed: int = 0) -> None:
@@ -43,13 +43,13 @@ class Motion:
         self.restart()
 
     def restart(self) -> None:
-        """Back to the beginning of the curve and of the random places."""
+        """Start the curve and the random positions from the beginning."""
         self._phase = 0.0
         self._since = np.inf
         self._rng = np.random.default_rng(self._seed)
 
     def advance(self, balls: Sequence[Ball], seconds: float) -> None:
-        """Move the balls on by a step of `seconds`."""
+        """Move the balls by one step of `seconds`."""
         moving = [ball for ball in balls if ball.mode == "on"]
         if self.kind == "hand" or not moving:
             return
@@ -66,13 +66,13 @@ class Motion:
                 ball.put(self._robot.placement(ball.frame, q).translation)
 
     def path(self, ball: Ball) -> Array:
-        """The points (n, 3) [m] of the curve that a ball follows, closed; none where it follows none."""
+        """Return the points (n, 3) [m] of the closed curve that a ball follows; no points if it follows none."""
         if self.kind != "curve" or ball.mode != "on":
             return np.zeros((0, 3))
         return self._track(ball).path
 
     def _track(self, ball: Ball) -> Track:
-        """A ball's curve: about its home."""
+        """Return a ball's curve around its home."""
         key = (ball.frame, self.curve)
         if key not in self._laid:
             self._laid[key] = lay_track(self._robot, ball.frame, self.curve, ball.home)

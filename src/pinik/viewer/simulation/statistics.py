@@ -1,4 +1,4 @@
-"""What an instance did over its last thousand steps."""
+"""Statistics of an instance over its last thousand steps."""
 
 from __future__ import annotations
 
@@ -11,18 +11,18 @@ from ...motion.figures import StepFigures
 __all__ = ["WINDOW", "Statistics", "StepFigures", "Summary"]
 
 WINDOW = 1000
-"""Steps that count, the thesis's own number."""
+"""The number of steps that the statistics cover, as in the thesis."""
 
 
 class Summary(NamedTuple):
-    """Means over the window; None where there is nothing to tell.
+    """Means over the window; None if there are no steps.
 
     Attributes:
-        steps: How many steps they cover.
-        mean_time: Seconds a step.
-        mean_iterations, mean_joint_updates: Of a step.
+        steps: The number of steps covered.
+        mean_time: Solver time per step [s].
+        mean_iterations, mean_joint_updates: Iterations and joint updates per step.
         efficiency: The share of steps that ended with every target reached, from 0 to 1.
-        mean_error: Metres.
+        mean_error: Position error at the end of a step [m].
         largest_jump: The largest change of one joint in one step [rad or m].
     """
 
@@ -42,15 +42,15 @@ class Statistics:
         self._steps: deque[StepFigures] = deque(maxlen=WINDOW)
 
     def add(self, figures: StepFigures) -> None:
-        """Count one more step; the oldest falls out when there are too many."""
+        """Add a step; the oldest one drops out if the window is full."""
         self._steps.append(figures)
 
     def clear(self) -> None:
-        """Forget everything."""
+        """Discard all steps."""
         self._steps.clear()
 
     def summary(self) -> Summary:
-        """The means as they stand."""
+        """Return the current means."""
         steps = self._steps
         if not steps:
             return Summary(0, None, None, None, None, None, None)

@@ -1,4 +1,4 @@
-"""The handle of a live view: a server in a thread of this process, for scripts, notebooks and the command line."""
+"""The handle of a live view: a server in a thread of this process."""
 
 from __future__ import annotations
 
@@ -38,15 +38,14 @@ T = TypeVar("T")
 
 
 class LiveView:
-    """A running live view. A context manager: leaving it frees the port.
+    """A running live view. As a context manager it frees the port on leaving.
 
-    In a notebook it shows itself as a frame, and as a picture where the server has gone. What the page can change,
-    `send` can: every row of the table in docs/live-protocol.md is a message, as in
-    `view.send("motion", motion="random")`.
+    A notebook displays the page in a frame, or a picture once the server is gone. `send` can change whatever the page
+    can: every row of the table in docs/live-protocol.md is a message, as in `view.send("motion", motion="random")`.
 
     Attributes:
-        url: Where the page is.
-        port: The port it listens on.
+        url: The page's address.
+        port: The port that the server listens on.
     """
 
     def __init__(
@@ -61,7 +60,7 @@ class LiveView:
         running: bool,
         version: str,
     ) -> None:
-        """Start the server; `pinik.live` explains the arguments."""
+        """Start the server; `pinik.live` documents the arguments."""
         session = Session(robot, methods, view=view)
         session.set_motion(motion)
         session.running = running
@@ -80,7 +79,7 @@ class LiveView:
     def _serve(
         self, session: Session, host: str, sockets: list[socket.socket], version: str, ready: Future[Any]
     ) -> None:
-        """The thread: everything that touches the session happens here, one thing after another."""
+        """Run the server. Only this thread ever touches the session."""
         asyncio.set_event_loop(asyncio.new_event_loop())
         loop = tornado.ioloop.IOLoop.current()
         try:
@@ -115,7 +114,7 @@ class LiveView:
         self.close()
 
     def _repr_html_(self) -> str:
-        """What a notebook shows: the page in a frame, or where there is no server the picture of this moment."""
+        """Return what a notebook displays: the page in a frame, or a picture of this moment if the server is gone."""
         if self._closed.is_set():
             return html.escape(repr(self))
         methods = [instance["method"] for instance in self.state["instances"]]
@@ -127,7 +126,7 @@ class LiveView:
     def picture(
         self, view: str | tuple[float, float] | Camera = "angle", size: tuple[int, int] = (720, 360)
     ) -> Picture:
-        """The instances that are seen, beside each other as they stand; `view` and `size` are as for `pinik.draw`."""
+        """Draw the visible instances side by side as they are now; `view` and `size` are as for `pinik.draw`."""
 
         def now() -> tuple[Robot, list[NDArray[Any]], list[tuple[NDArray[Any], bool]]]:
             session = self._show.session
@@ -137,7 +136,7 @@ class LiveView:
         return draw_beside(*self._do(now), view=view, size=size)
 
     def close(self) -> None:
-        """Stop the server and free the port; a second time does nothing."""
+        """Stop the server and free the port. Closing twice is harmless."""
         if self._closed.is_set():
             return
         self._closed.set()
@@ -146,51 +145,51 @@ class LiveView:
         self._workers.shutdown(wait=False, cancel_futures=True)
 
     def wait(self) -> None:
-        """Block until the view is closed, or until Ctrl-C."""
+        """Block until the view is closed or Ctrl-C is pressed."""
         self._thread.join()
 
     def open(self) -> bool:
-        """Show the page in the browser; False where there is none."""
+        """Open the page in the browser; return False if there is none."""
         return webbrowser.open(self.url)
 
     def send(self, type: str, **fields: Any) -> None:
-        """Ask what a page could ask, such as `send("method", instance=0, method="ccd")`.
+        """Send a message as a page would, such as `send("method", instance=0, method="ccd")`.
 
         Raises:
-            InputError, UnknownNameError: As a page would be told.
+            InputError, UnknownNameError: The message is wrong, or cannot be carried out.
         """
         message = json.loads(json.dumps({"type": type, **fields}, default=_plain))
         self._do(lambda: self._show.do(message))
 
     def move_ball(self, position: ArrayLike, index: int = 0) -> None:
-        """Put a ball at a point (3,) [m] of the robot's world; from then on balls move by hand."""
+        """Move a ball to a point (3,) [m] in the robot's world; this ends any motion of the balls."""
         self.send("ball", index=index, position=position)
 
     @property
     def robot(self) -> Robot:
-        """The robot that is shown."""
+        """The robot on show."""
         return self._show.session.robot
 
     @property
     def state(self) -> dict[str, Any]:
-        """What `GET /api/state` answers; docs/live-protocol.md explains the fields."""
+        """The current state, as `GET /api/state` returns it; docs/live-protocol.md explains the fields."""
         return self._do(self._show.state)
 
     @property
     def configurations(self) -> list[NDArray[Any]]:
-        """q (nq,) of each instance that is seen."""
+        """The configuration q (nq,) of each visible instance."""
         return self._do(lambda: [instance.q.copy() for instance in self._show.session.seen])
 
     def save_animation(self, path: str | os.PathLike[str]) -> None:
-        """Write the last 20 seconds as one HTML file, which plays without a server."""
+        """Write the last 20 seconds as one HTML file that plays without a server."""
         Path(path).write_text(self._do(self._show.animation), "utf-8")
 
     def _do(self, work: Callable[[], T]) -> T:
-        """Do it in the server's thread, between two steps, and wait for it."""
+        """Call `work` in the server's thread, between two steps, and return its result."""
         if self._closed.is_set():
             raise errors.InputError("this live view is closed; pinik.live(...) opens another")
-        if threading.current_thread() is self._thread:  # it would wait for itself
-            raise errors.InputError("a live view cannot be asked from inside a step, such as by a solver that it runs")
+        if threading.current_thread() is self._thread:  # waiting here would never end
+            raise errors.InputError("a live view cannot be used from within its own steps, for example by a solver")
         done: Future[T] = Future()
 
         def run() -> None:
@@ -201,13 +200,13 @@ class LiveView:
 
         self._loop.add_callback(run)
         while not concurrent.futures.wait([done], timeout=0.5).done:
-            if not self._thread.is_alive():  # it was closed just now, by another thread
+            if not self._thread.is_alive():  # another thread has just closed the view
                 raise errors.InputError("this live view is closed; pinik.live(...) opens another")
         return done.result()
 
 
 def _plain(value: Any) -> Any:
-    """Arrays and numpy's numbers as JSON has them."""
+    """Convert arrays and numpy numbers for JSON."""
     if hasattr(value, "tolist"):
         return value.tolist()
-    raise errors.InputError(f"a message holds plain numbers, texts and lists; got {value!r}")
+    raise errors.InputError(f"a message must consist of numbers, texts and lists; got {value!r}")

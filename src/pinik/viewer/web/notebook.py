@@ -1,4 +1,4 @@
-"""What a notebook shows of a live view: its page in a frame, and a picture where there is no server any more."""
+"""The live view in a notebook: the page in a frame, or a picture once the server has gone."""
 
 from __future__ import annotations
 
@@ -30,10 +30,10 @@ _SIZE = (720, 360)  # of the picture
 _PINNED = "#3c4654"
 _GAP = 0.06  # between neighbours, of their width
 _FILLED = 0.9  # of the picture
-_LENS = 0.23  # for a single one; many are seen from so far away that all are seen from the same side
+_LENS = 0.23  # for one instance; more are seen from farther away, so that all show the same side
 
-# Only a page that may frame the server's asks whether it is there: one from elsewhere, such as a published notebook,
-# must not knock at its reader's ports. An image is asked for, as the answer of another server would not be one.
+# Only a page that may embed the server's page looks for the server. A page from elsewhere, such as a published
+# notebook, must not probe its reader's ports. The script requests an image, which no other server would answer.
 _SCRIPT = """(() => {
     const place = document.getElementById(%(place)s);
     const local = ["localhost", "127.0.0.1"].includes(location.hostname);
@@ -57,12 +57,12 @@ def draw_beside(
     view: str | tuple[float, float] | Camera = "angle",
     size: tuple[int, int] = _SIZE,
 ) -> Picture:
-    """The instances beside each other from left to right, each with all the balls.
+    """Draw the instances side by side from left to right, each with all the balls.
 
     Args:
         robot: The robot.
         configurations: q (nq,) of each instance.
-        balls: Position (3,) [m] of each ball, and whether it is pinned.
+        balls: For each ball, its position (3,) [m] and whether it is pinned.
         view: As for `pinik.draw`.
         size: As for `pinik.draw`.
     """
@@ -71,7 +71,7 @@ def draw_beside(
     points = np.array([position for position, _ in balls]).reshape(-1, 3)
     radius = ball_radius(robot)
     with warnings.catch_warnings():
-        warnings.simplefilter("ignore", UrdfWarning)  # the page tells of them
+        warnings.simplefilter("ignore", UrdfWarning)  # the page shows these warnings
         one = [_vertices(robot, q) for q in configurations]
         reach = np.vstack([*one, points - radius, points + radius])
         offsets = np.arange(len(one))[:, None] * ((1.0 + _GAP) * np.ptp(reach @ right)) * right
@@ -96,15 +96,15 @@ def _vertices(robot: Robot, q: Array) -> Array:
 
 
 def as_html(url: str, mark: str, picture: Picture, caption: str) -> str:
-    """A picture, which becomes a frame where the view's own server answers.
+    """Return a picture that is replaced by a frame if the view's own server answers.
 
-    Viewers that run no scripts show the picture, and so does a notebook that is opened after the server has gone.
+    Viewers that run no scripts show the picture, and so does a notebook opened after the server has gone.
 
     Args:
         url: The page's address.
-        mark: What the server knows this view by.
-        picture: How it stands at this moment.
-        caption: A line below it.
+        mark: Identifies this view at the server.
+        picture: The view at this moment.
+        caption: A line below the picture.
     """
     place = f"pinik-live-{secrets.token_hex(8)}"
     words = {"place": place, "url": url, "mark": mark}

@@ -1,4 +1,4 @@
-"""Finished shapes, kept in the user's cache folder: a Panda's meshes take two seconds to convert, its file 20 ms."""
+"""Converted shapes in the user's cache folder: converting a Panda's takes two seconds, reading them back 20 ms."""
 
 from __future__ import annotations
 
@@ -18,19 +18,19 @@ from .scene import Shapes, make_shapes
 
 __all__ = ["LIMIT", "cache_folder", "shapes_of"]
 
-FORMAT = 1  # of the files here; raise it whenever they, or what is in them, change
+FORMAT = 1  # raise this whenever the format or the content of the files changes
 LIMIT = 500_000_000
-"""Bytes that all files together may take."""
+"""The most bytes that all files together may take."""
 
 _DIGEST_SIZE = 32
-# What decides about the shapes besides the robot.
+# The code that makes the shapes; changing it invalidates the cache.
 _MAKERS = [Path(__file__).with_name("scene.py"), Path(__file__).parents[2] / "shapes" / "meshes.py"]
 
 
 def shapes_of(robot: Robot) -> Shapes:
-    """A robot's shapes, from the cache if they are there, else made (seconds, for some robots) and kept.
+    """Return a robot's shapes from the cache, or make and cache them, which takes seconds for some robots.
 
-    Shapes are never worth an error: where they cannot be had there are none, and a warning.
+    This never raises. If the shapes cannot be made, the result has none, and a warning that says why.
     """
     try:
         path = cache_folder() / f"{_key(robot)}.shapes"
@@ -44,13 +44,13 @@ def shapes_of(robot: Robot) -> Shapes:
 
 
 def cache_folder() -> Path:
-    """Where the files are: `shapes` in the user's cache folder for pinik, or in PINIK_CACHE_DIR if that is set."""
+    """Return the folder of the files: `shapes` in pinik's cache folder, or in PINIK_CACHE_DIR if that is set."""
     chosen = os.environ.get("PINIK_CACHE_DIR") or platformdirs.user_cache_dir("pinik", appauthor=False)
     return Path(chosen) / "shapes"
 
 
 def _key(robot: Robot) -> str:
-    """A name that changes with all that the shapes depend on: the URDF, its mesh files, the code that reads them."""
+    """Return a file name that depends on the URDF, its mesh files and the code that reads them."""
     digest = hashlib.sha256()
     makers = [maker.read_bytes() for maker in _MAKERS]
     texts = [str(FORMAT), *_mesh_files(robot)]
@@ -60,7 +60,7 @@ def _key(robot: Robot) -> str:
 
 
 def _mesh_files(robot: Robot) -> Iterator[str]:
-    """Path, size and time of change of each mesh's file, and of the material files that an OBJ may name."""
+    """Yield path, size and modification time of each mesh file, and of the material files that an OBJ may use."""
     for address in robot.description.meshes:
         mesh = resolve(address, urdf_path=robot.description.path, package_dirs=robot.package_dirs)
         yield address
@@ -72,7 +72,7 @@ def _mesh_files(robot: Robot) -> Iterator[str]:
 
 
 def _read(path: Path) -> Shapes | None:
-    """The shapes in a file; None where there is none, or it is not whole. A file that is read counts as used."""
+    """Read the shapes from a file; None if it is missing or damaged. Reading counts as use."""
     try:
         content = path.read_bytes()
         body = memoryview(content)[_DIGEST_SIZE:]
@@ -87,8 +87,9 @@ def _read(path: Path) -> Shapes | None:
 
 
 def _write(path: Path, shapes: Shapes) -> None:
-    """Keep shapes in a file, whole or not at all, and make room; where that cannot be, the next start takes longer."""
-    with contextlib.suppress(OSError, ValueError):  # ValueError: a file's name in a warning may be no Unicode
+    """Write shapes to a file in one atomic step, and make room. If that fails, the next start just takes longer."""
+    # ValueError: a warning may quote a file name that is not valid Unicode.
+    with contextlib.suppress(OSError, ValueError):
         body = umsgpack.packb([shapes.parts, shapes.commands, shapes.warnings])
         path.parent.mkdir(parents=True, exist_ok=True)
         handle, unfinished = tempfile.mkstemp(suffix=".unfinished", dir=path.parent)
@@ -103,7 +104,7 @@ def _write(path: Path, shapes: Shapes) -> None:
 
 
 def _make_room(folder: Path) -> None:
-    """Remove the files used longest ago until the rest fits into `LIMIT`."""
+    """Remove the least recently used files until the rest fits into `LIMIT`."""
     kept = 0
     with os.scandir(folder) as entries:
         files = [(entry.stat(), entry.path) for entry in entries if entry.is_file()]

@@ -11,7 +11,7 @@ from typing import Any
 from ...errors import InputError, PinikError
 from ...robot import Robot
 from ..protocol.frames import FrameMaker
-from ..protocol.messages import apply, checked, parse, text, whole_number
+from ..protocol.messages import any_text, apply, checked, parse, text, whole_number
 from ..protocol.recording import Recording
 from ..protocol.robot_message import robot_message
 from ..protocol.robots import RobotMenu
@@ -167,7 +167,7 @@ class Show:
                 fields = checked("robot", message, {"name": text, "root": text})
                 self._load(fields["name"], fields["root"], {})
             case "setup":
-                self._set_up(read_setup(checked("setup", message, {"setup": _long_text})["setup"]))
+                self._set_up(read_setup(checked("setup", message, {"setup": any_text})["setup"]))
             case kind:
                 motion = self.session.motion.kind
                 self._change(lambda session: apply(session, message))
@@ -246,12 +246,5 @@ class Show:
 
 def _notice(words: str) -> str:
     """Return an `error` message, which pages show for a while."""
-    if len(words) > _LONGEST_ERROR:
-        words = f"{words[:_LONGEST_ERROR]} …"
+    words = words if len(words) <= _LONGEST_ERROR else f"{words[:_LONGEST_ERROR]} …"
     return json.dumps({"type": "error", "message": words})
-
-
-def _long_text(what: str, value: Any) -> str:
-    if not isinstance(value, str):
-        raise InputError(f"{what} must be a text; got {str(value)[:60]!r}")
-    return value
