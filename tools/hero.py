@@ -1,4 +1,4 @@
-"""Render docs/images/robots.png, in which the arm, the lion and the Panda each reach for a ball: `python tools/hero.py`"""
+"""Render docs/images/robots.png, the arm, the lion and the Panda reaching for balls: `python tools/hero.py`"""
 
 from __future__ import annotations
 

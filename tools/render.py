@@ -1,8 +1,8 @@
 """Render robots to a PNG: `python tools/render.py ROBOT [--pose NAME | --angles JSON] [--out FILE.png]`.
 
-pinik.shapes.meshes provides the shapes, Pinocchio the placements, and meshcat's three.js in Debian's chromium the picture.
-The script needs the dev extra, which `make lint` installs, and `apt install chromium`. tools/hero.py uses it to render
-docs/images/robots.png.
+pinik.shapes.meshes provides the shapes, Pinocchio the placements, and meshcat's three.js in Debian's chromium the
+picture. The script needs the dev extra, which `make lint` installs, and `apt install chromium`. tools/hero.py uses it
+to render docs/images/robots.png.
 """
 
 from __future__ import annotations

@@ -1,7 +1,7 @@
 """Run notebooks from top to bottom and save them with their outputs.
 
-The outputs stay as the cells made them, with times, ports, ids and this machine's last digits; metadata about the kernel
-and the time of day is removed.
+The outputs stay as the cells made them, with times, ports, ids and this machine's last digits; metadata about the
+kernel and the time of day is removed.
 
 python tools/run_notebooks.py             # all of notebooks/
 python tools/run_notebooks.py 05 06       # those whose names start with 05 or 06
