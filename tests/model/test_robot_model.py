@@ -254,7 +254,7 @@ class TestAngles:
 
     def test_a_follower_is_not_locked_and_the_error_names_its_leader(self, panda):
         with pytest.raises(
-            InputError, match=r"'panda_finger_joint2' mimics 'panda_finger_joint1'.*name 'panda_finger_joint1' instead"
+            InputError, match=r"'panda_finger_joint2' mimics 'panda_finger_joint1'.*set 'panda_finger_joint1' instead"
         ):
             panda.settable_joint("panda_finger_joint2")
 

@@ -171,7 +171,7 @@ class RobotModel:
         joint = self.joint(name)
         if joint.leader is not None:
             raise InputError(
-                f"joint {name!r} mimics {joint.leader!r} and does not move by itself; name {joint.leader!r} instead"
+                f"joint {name!r} mimics {joint.leader!r} and does not move by itself; set {joint.leader!r} instead"
             )
         return joint
 
