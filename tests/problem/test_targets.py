@@ -288,5 +288,5 @@ class TestTolerance:
         "bad", [1e-3, (1e-3,), (1, 2, 3), (0, 1e-3), (1e-3, -1), (math.nan, 1), (1, math.inf), "tight"]
     )
     def test_is_nothing_else(self, bad):
-        with pytest.raises(InputError, match="tolerance must be (2 finite|two positive) numbers"):
+        with pytest.raises(InputError, match=r"tolerance must be (2 finite|two positive) numbers"):
             Tolerance.of(bad)

@@ -46,7 +46,7 @@ def weight_at(robot, solver, kinematics, target, coordinate, q):
     origin = robot.data.oMi[coordinate.movers[0][0].id].translation
     c = np.linalg.norm(robot.placement(target.frame, q).translation - origin)
     d = np.linalg.norm(target.position - origin) if target.position is not None else c
-    return solver.position_weight / kinematics.problem.size_of_chain ** 2 * (1.0 + min(c, d) / max(c, d))
+    return solver.position_weight / kinematics.problem.size_of_chain**2 * (1.0 + min(c, d) / max(c, d))
 
 
 def single_updates(robot, target, solver, q, limits):

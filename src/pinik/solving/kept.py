@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 from collections import OrderedDict
 from collections.abc import Hashable, Sequence
 from typing import Generic, TypeVar
@@ -66,8 +67,9 @@ class Kept:
         return self._by_words.get(words)
 
     def remember(self, words: tuple[object, ...], prepared: Prepared) -> None:
-        """From now on these words mean this question."""
-        self._by_words.put(words, prepared)
+        """From now on these words mean this question; words that cannot be hashed are not remembered."""
+        with contextlib.suppress(TypeError):
+            self._by_words.put(words, prepared)
 
     def prepared(self, robot: RobotModel, targets: Sequence[Target], options: Options) -> Prepared:
         """The question with these targets and options, compiled now unless it was kept."""
