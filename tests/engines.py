@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 import pinik
 from pinik.solving.native.module import why_not
-from pinik.solving.run import TO_THE_END, run
+from pinik.solving.run import Pace, run
 
 Array = NDArray[np.float64]
 Step = Callable[..., Array]
@@ -39,9 +39,9 @@ def python_step(prepared: pinik.Prepared, *, bold: bool = False) -> Step:
 
     With `rng` the last bits of Jacobian and residual are other ones, by ten units: rounding in another order does that.
     """
-    asked = prepared.settings
-    asked.kinematics.retarget(prepared.targets)
-    exact = asked.kinematics.linearize
+    question, kinematics = prepared.question, prepared.attempts.kinematics
+    kinematics.retarget(prepared.targets)
+    exact = kinematics.linearize
 
     def step(q: Array, rng: np.random.Generator | None = None) -> Array:
         def rounded_otherwise(q: Array) -> pinik.Linearization:
@@ -49,10 +49,9 @@ def python_step(prepared: pinik.Prepared, *, bold: bool = False) -> Step:
             J, e = (a * (1.0 + 2e-15 * rng.uniform(-1.0, 1.0, a.shape)) for a in (at.J, at.e))
             return at._replace(J=J, e=e)
 
-        q = q.copy() if bold else np.array(asked.limits.clip(q))
-        asked.kinematics.linearize = exact if rng is None else rounded_otherwise
-        states = run(asked.solver, asked.kinematics, asked.limits, q, 1, asked.tolerance, TO_THE_END, bold=bold)
-        return [state.q for state in states][-1]
+        q = q.copy() if bold else np.array(question.limits.clip(q))
+        kinematics.linearize = exact if rng is None else rounded_otherwise
+        return [state.q for state in run(question, kinematics, q, Pace(1, bold=bold))][-1]
 
     return step
 

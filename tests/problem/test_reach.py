@@ -10,9 +10,10 @@ from hypothesis import strategies as st
 
 import pinik
 from by_hand import axis, chains, limit, mimic, origin, two_hinges
-from pinik import Kinematics, Target
+from pinik import Target
 from pinik.model.limits import Limits
-from pinik.problem.reach import Shortfall, shortfall
+from pinik.problem.problem import Problem
+from pinik.problem.reach import Shortfall, bounds_of, shortfall
 from robots import load_quietly
 from urdf_texts import joint, link, robot
 
@@ -20,7 +21,7 @@ L1, L2 = 0.5, 0.4
 
 
 def proof(robot: pinik.Robot, *targets: Target, limits: bool = True) -> Shortfall | None:
-    return shortfall(Kinematics(robot, targets), Limits.of(robot, limits))
+    return shortfall(targets, bounds_of(Problem(robot, targets), Limits.of(robot, limits)))
 
 
 def attained(robot: pinik.Robot, frame: str, q: np.ndarray, relative_to: str | None = None) -> Target:

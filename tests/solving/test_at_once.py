@@ -129,8 +129,8 @@ def test_more_than_a_block_of_them_are_all_answered(two_link):
     ids=lambda options: next(iter(options)),
 )
 def test_pieces_of_the_way_are_still_gone_one_by_one(two_link, options):
-    assert lands_at_once(pinik.prepare(two_link, Target("tip", [0.5, 0.1, 0.0]), "two_bone").settings)
-    assert not lands_at_once(pinik.prepare(two_link, Target("tip", [0.5, 0.1, 0.0]), "two_bone", **options).settings)
+    assert lands_at_once(pinik.prepare(two_link, Target("tip", [0.5, 0.1, 0.0]), "two_bone").question)
+    assert not lands_at_once(pinik.prepare(two_link, Target("tip", [0.5, 0.1, 0.0]), "two_bone", **options).question)
     places = [[0.2, 0.6, 0.0], [0.5, 0.3, 0.2]]
     many = pinik.solve_many(two_link, "tip", places, "two_bone", **options)
     for k, place in enumerate(places):

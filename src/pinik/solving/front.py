@@ -14,7 +14,6 @@ from ..errors import InputError
 from ..model.robot_model import RobotModel
 from ..problem.kinematics import Kinematics
 from ..problem.targets import Target, Tolerance
-from ..solvers.parameter import JointValues
 from ..solvers.registry import SOLVERS, Method
 from .kept import Kept, kept_of
 from .options import Options
@@ -28,6 +27,7 @@ __all__ = ["answer", "iterate", "prepare", "solve"]
 
 _WHOLE = (int, type(None))
 _NUMBER = (float, int, type(None))
+_PAIRS = (tuple, list, Tolerance)
 
 
 def solve(
@@ -297,16 +297,17 @@ def _words(
         if type(locked) not in (tuple, list):
             return None
         locked = tuple(locked)
-    if tolerance is not None and type(tolerance) is not Tolerance:
-        tolerance = tuple(tolerance.tolist()) if type(tolerance) is np.ndarray else tuple(tolerance)
-        if any([type(number) is not float for number in tolerance]):
+    if tolerance is not None:
+        numbers = tolerance.tolist() if type(tolerance) is np.ndarray else tolerance
+        if type(numbers) not in _PAIRS or any([type(number) is not float for number in numbers]):
             return None
+        tolerance = tuple(numbers)
     own = tuple([(name, type(value), _as_key(value)) for name, value in parameters.items()]) if parameters else ()
     return what, meant, limits, locked, restarts, seed, max_iterations, tolerance, time_limit, engine, trace, own
 
 
 def _as_key(value: object) -> object:
-    return JointValues(value) if type(value) is dict else value
+    return tuple([(name, type(x), x) for name, x in value.items()]) if type(value) is dict else value
 
 
 def _said(kept: Kept, words: tuple[object, ...] | None) -> Prepared | None:

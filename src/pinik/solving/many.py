@@ -213,9 +213,10 @@ def _read_places(places: Any) -> tuple[Array | None, Array]:
     """(rotations (N, 3, 3) where there are any, points (N, 3) [m])."""
     if isinstance(places, Sequence) and any(isinstance(place, pinocchio.SE3) for place in places):
         places = np.array([as_se3(place, f"places[{k}]").homogeneous for k, place in enumerate(places)])
-    if np.size(places) == 0 and np.ndim(places) == 1:
-        return None, np.zeros((0, 3))
-    if as_numbers(places, "places").ndim != 3:
+    numbers = as_numbers(places, "places")
+    if numbers.shape == (0,):
+        return np.zeros((0, 3, 3)), np.zeros((0, 3))
+    if numbers.ndim != 3:
         return None, as_points(places, "places")
     matrices = as_many(places, (4, 4), "places")
     for k in np.flatnonzero((np.abs(matrices[:, 3] - (0.0, 0.0, 0.0, 1.0)) > 1e-9).any(axis=1))[:1]:
