@@ -1,4 +1,4 @@
-"""How good a peer's answer is, by the judge that the tests have too, whatever the peer says about it."""
+"""How good a peer's answer is, according to the judge in `tests/judge.py`; what the peer claims does not count."""
 
 from __future__ import annotations
 

@@ -239,7 +239,9 @@ def test_the_time_limit_ends_a_hopeless_solve(method, panda, lion):
 
 
 @needs_native
-@pytest.mark.skipif(sys.platform != "linux", reason="only Linux lets a process limit its memory and enlarge its stacks")
+@pytest.mark.skipif(
+    sys.platform != "linux", reason="needs Linux: the process limits its memory and enlarges its stacks"
+)
 def test_more_threads_than_the_system_gives_do_the_work_all_the_same():
     code = (
         "import resource, numpy as np, pinik\n"
