@@ -15,7 +15,7 @@ from ..model.robot_model import RobotModel
 from ..problem.kinematics import Kinematics
 from ..problem.targets import Target, Tolerance
 from ..solvers.registry import SOLVERS, Method
-from .kept import Kept, kept_of
+from .kept import Kept, Key, kept_of
 from .options import Options
 from .prepared import Prepared
 from .question import Question
@@ -25,8 +25,6 @@ from .words import UNWEIGHTED, Wanted, asked_targets
 
 __all__ = ["answer", "iterate", "prepare", "solve"]
 
-_WHOLE = (int, type(None))
-_NUMBER = (float, int, type(None))
 _PAIRS = (tuple, list, Tolerance)
 
 
@@ -253,7 +251,7 @@ def answer(
         prepared = _said(kept, words)
     if prepared is None:
         prepared = kept.prepared(robot, asked, _options(method, said, parameters), words)
-    return prepared(asked, q0)
+    return prepared.answer(asked, q0)
 
 
 def _is_plain(wanted: Wanted) -> bool:
@@ -274,43 +272,41 @@ def _is_plain(wanted: Wanted) -> bool:
     )
 
 
-def _words(
-    what: tuple[object, ...], method: Method, said: tuple[Any, ...], parameters: dict[str, Any]
-) -> tuple[object, ...] | None:
+def _words(what: object, method: Method, said: tuple[Any, ...], parameters: dict[str, Any]) -> Key | None:
     """The words of a question as a key; None for words that have to be checked each time.
 
-    Equality could confuse values of other types, as `True` equals 1 and is no count, so they do not get into a key.
+    Types are a part of it: equality alone would confuse `True` with 1.
     """
-    limits, locked, restarts, seed, max_iterations, tolerance, time_limit, engine, trace = said
     meant: object = SOLVERS.get(method) if type(method) is str else method
-    if (
-        meant is None
-        or type(limits) is not bool
-        or type(trace) is not bool
-        or type(seed) is not int
-        or type(restarts) not in _WHOLE
-        or type(max_iterations) not in _WHOLE
-        or type(time_limit) not in _NUMBER
-    ):
+    if meant is None:
         return None
-    if locked != ():
-        if type(locked) not in (tuple, list):
+    if said[1] != () or said[5] is not None:
+        plain = _plain_options(*said)
+        if plain is None:
             return None
-        locked = tuple(locked)
-    if tolerance is not None:
-        numbers = tolerance.tolist() if type(tolerance) is np.ndarray else tolerance
-        if type(numbers) not in _PAIRS or any([type(number) is not float for number in numbers]):
-            return None
-        tolerance = tuple(numbers)
+        said = plain
     own = tuple([(name, type(value), _as_key(value)) for name, value in parameters.items()]) if parameters else ()
-    return what, meant, limits, locked, restarts, seed, max_iterations, tolerance, time_limit, engine, trace, own
+    return what, meant, said, tuple(map(type, said)), own
+
+
+def _plain_options(limits: object, locked: Any, *between: Any) -> tuple[Any, ...] | None:
+    """The options with names and tolerances in tuples; None where they are given in another way."""
+    restarts, seed, max_iterations, tolerance, *rest = between
+    if locked != () and type(locked) not in (tuple, list):
+        return None
+    if tolerance is not None:
+        tolerance = tolerance.tolist() if type(tolerance) is np.ndarray else tolerance
+        if type(tolerance) not in _PAIRS or any([type(number) is not float for number in tolerance]):
+            return None
+        tolerance = tuple(tolerance)
+    return limits, tuple(locked), restarts, seed, max_iterations, tolerance, *rest
 
 
 def _as_key(value: object) -> object:
     return tuple([(name, type(x), x) for name, x in value.items()]) if type(value) is dict else value
 
 
-def _said(kept: Kept, words: tuple[object, ...] | None) -> Prepared | None:
+def _said(kept: Kept, words: Key | None) -> Prepared | None:
     try:
         return None if words is None else kept.said(words)
     except TypeError:  # something in them cannot be a key

@@ -11,7 +11,7 @@ from ..problem.targets import Target
 from .options import Options
 from .prepared import Prepared
 
-__all__ = ["Kept", "kept_of"]
+__all__ = ["Kept", "Key", "kept_of"]
 
 # `pinocchio.Data`, of which a question keeps one or two, takes some 50 bytes times nv³ and 50 kB besides (measured).
 _BYTES_AT_MOST = 200_000_000
@@ -22,6 +22,7 @@ _MOST = 256
 _MOST_WAYS = 16  # in which one question may be asked before its oldest words are forgotten
 
 Key = tuple[object, ...]
+"""Words or a meaning, as a key."""
 
 
 @dataclass(eq=False)

@@ -87,7 +87,19 @@ class Prepared:
         quick = self.at(targets, q0)
         if quick is not None:
             return quick
-        asked = self.targets if targets is None else self._as_asked(targets)
+        return self.answer(self.targets if targets is None else self._as_asked(targets), q0, began)
+
+    def answer(
+        self, asked: tuple[Target, ...], q0: ArrayLike | str | None = None, began: float | None = None
+    ) -> Solution:
+        """Solve for targets of the very kinds that it was prepared with.
+
+        Args:
+            asked: The targets.
+            q0: Start, as for a call.
+            began: When the time limit began to run; now when None.
+        """
+        began = time.perf_counter() if began is None else began
         nearest = is_nearest(q0)
         start = self._neutral if q0 is None or nearest else self.robot.check_configuration(q0, "q0")
         if self.native is not None:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from typing import Any
 
 from ..errors import InputError, UnknownNameError
@@ -23,7 +23,7 @@ UNWEIGHTED = 1.0
 """The weight of a target that is given none; this very object tells that none was given."""
 
 
-def check_words(method: Method, words: Iterable[str], options: Sequence[str] = OPTION_NAMES) -> None:
+def check_words(method: Method, words: Collection[str], options: Sequence[str] = OPTION_NAMES) -> None:
     """Check that all words left over are parameters of the method.
 
     Args:
@@ -34,6 +34,8 @@ def check_words(method: Method, words: Iterable[str], options: Sequence[str] = O
     Raises:
         UnknownNameError: One is not; the error lists what it resembles among all words that the front takes.
     """
+    if not words:
+        return
     unknown = None
     meant = meant_by(method)
     solver = meant if isinstance(meant, type) else type(meant)
