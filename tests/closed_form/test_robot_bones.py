@@ -374,5 +374,5 @@ class TestAsAMethod:
         assert pinik.CLOSED_FORMS["two_bone"] is pinik.TwoBoneSolver
         with pytest.raises(pinik.UnknownNameError, match="'two_bone'"):
             two_link.solve("tip", [0.5, 0.1, 0.0], method="two_bones")
-        with pytest.raises(pinik.InputError, match="elbow is one of 'nearest', 'up', 'down'"):
+        with pytest.raises(pinik.InputError, match="elbow must be one of 'nearest', 'up', 'down'"):
             two_link.solve("tip", [0.5, 0.1, 0.0], method="two_bone", elbow="left")

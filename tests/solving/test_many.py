@@ -167,6 +167,30 @@ class TestInputs:
         for s, targets in zip(many, asked, strict=True):
             assert [t.to_dict() for t in s.targets] == [t.to_dict() for t in targets]
 
+    @pytest.mark.parametrize("engine", ["python", pytest.param("native", marks=needs_native)])
+    @pytest.mark.parametrize(
+        "nothing",
+        [
+            ([],),
+            (TIP, []),
+            (TIP, np.zeros((0, 3))),
+            (TIP, np.zeros((0, 4, 4))),
+            (Target(TIP, [0, 0, 1]), []),
+            (Target(TIP, placement=np.eye(4)), []),
+        ],
+        ids=["targets", "places", "positions", "matrices", "a point nowhere", "a pose nowhere"],
+    )
+    def test_no_question_has_no_answer(self, nothing, engine, panda):
+        for q0 in (None, panda.neutral(), np.zeros((0, 8)), "nearest"):
+            many = pinik.solve_many(panda, *nothing, q0=q0, engine=engine)
+            assert len(many) == len(list(many)) == 0
+            assert many.q.shape == (0, 8)
+            for figure in (*FIGURES[1:], "success", "time"):
+                assert getattr(many, figure).shape == (0,), figure
+            assert str(many).startswith("0 of 0 solved in ")
+            with pytest.raises(IndexError, match="there are 0 solutions; got index 0"):
+                many[0]
+
 
 class TestSolutions:
     def test_one_of_many_is_a_solution_with_the_same_figures(self, panda, poses):
@@ -199,7 +223,7 @@ class TestSolutions:
         np.testing.assert_array_equal(many[-1].q, many[4].q)
         np.testing.assert_array_equal(many[np.int64(1)].targets[0].position, poses[1, :3, 3])
         for index in (5, -6):
-            with pytest.raises(IndexError, match=f"there are 5 solutions; got {index}"):
+            with pytest.raises(IndexError, match=f"there are 5 solutions; got index {index}"):
                 many[index]
 
     def test_a_solution_stays_when_another_is_looked_at(self, panda, poses):
@@ -207,8 +231,10 @@ class TestSolutions:
         first, second = many[0], many[1]
         np.testing.assert_array_equal(first.targets[0].position, poses[0, :3, 3])
         np.testing.assert_array_equal(second.targets[0].position, poses[1, :3, 3])
-        first.q[:] = 0.0
-        assert many.q[0].any()
+        with pytest.raises(ValueError, match="read-only"):
+            first.q[:] = 0.0
+        many.q[0] = 0.0  # the arrays are one's own
+        assert first.q.any()
 
     def test_its_words_are_short(self, panda, poses):
         many = pinik.solve_many(panda, TIP, poses[:5])

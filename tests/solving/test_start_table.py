@@ -11,6 +11,7 @@ from by_hand import ZOO
 from engines import needs_native
 from pinik import Kinematics, Target
 from pinik.model.limits import Limits
+from pinik.problem.problem import Problem
 from pinik.solving.starts import Starts, random_start
 from robots import load_quietly
 
@@ -28,19 +29,20 @@ def sequence(starts, q0, count=NEAREST, target=0):
 
 def table(robot, targets, q0, *, limits=True, seed=0):
     """All that the table holds, each drawn by itself."""
-    kinematics = Kinematics(robot, targets)
+    problem = Problem(robot, targets)
     draw = {"seed": seed, "target": OF_THE_TABLE}
     neutral = robot.neutral()
     about = q0.copy()  # slides without limits are drawn about 0
     for joint in robot.joints:
-        if joint.nv and joint.has_one_axis and kinematics.problem.free[joint.idx_v]:
+        if joint.nv and joint.has_one_axis and problem.free[joint.idx_v]:
             about[joint.idx_q : joint.idx_q + joint.nq] = neutral[joint.idx_q : joint.idx_q + joint.nq]
     box = Limits.of(robot, limits)
-    return np.array([random_start(kinematics, box, about, attempt=k, **draw) for k in range(SIZE)])
+    return np.array([random_start(problem, box, about, attempt=k, **draw) for k in range(SIZE)])
 
 
 def squared_distance(robot, targets, q):
-    """[m²] by plain Pinocchio: a radian is 0.3 m, its square 2 − 2 cos."""
+    """[m²] by plain Pinocchio: a radian is 0.3 of the chain's length, its square 2 − 2 cos."""
+    of_a_radian = (0.3 * Problem(robot, targets).size_of_chain) ** 2
     model, data = robot.model, robot.model.createData()
     pinocchio.framesForwardKinematics(model, data, q)
     total = 0.0
@@ -53,9 +55,9 @@ def squared_distance(robot, targets, q):
         if t.position is not None:
             own += np.sum((M.translation - t.position) ** 2)
         if t.rotation is not None:
-            own += 0.09 * (2.0 - 2.0 * (np.trace(t.rotation.T @ M.rotation) - 1.0) / 2.0)
+            own += of_a_radian * (2.0 - 2.0 * (np.trace(t.rotation.T @ M.rotation) - 1.0) / 2.0)
         elif t.direction is not None:
-            own += 0.09 * (2.0 - 2.0 * (M.rotation @ t.axis) @ t.direction)
+            own += of_a_radian * (2.0 - 2.0 * (M.rotation @ t.axis) @ t.direction)
         total += t.weight**2 * own
     return total
 
@@ -112,13 +114,13 @@ def test_the_table_is_told_apart_by_the_seed_and_by_nothing_else(panda):
 
 def test_starts_beyond_the_nearest_are_drawn_by_attempt_target_and_seed(panda):
     pose = [Target("panda_hand_tcp", [0.4, 0.2, 0.5])]
-    q0, kinematics = panda.random(1), Kinematics(panda, pose)
+    q0, problem = panda.random(1), Problem(panda, pose)
     starts = starts_of(panda, pose, seed=4)
     sequence(starts, q0, count=2)
     for number in (NEAREST + 1, NEAREST + 2, 60):
         for target in (0, 9):
             drawn = starts.next(q0, target=target, number=number)
-            expected = random_start(kinematics, Limits.of(panda), q0, seed=4, target=target, attempt=number)
+            expected = random_start(problem, Limits.of(panda), q0, seed=4, target=target, attempt=number)
             np.testing.assert_array_equal(drawn, expected)
 
 

@@ -11,7 +11,7 @@ import pytest
 
 import pinik
 from pinik.solvers.registry import make_solver
-from pinik.viewer.protocol.parameters import changed_parameters, describe_parameters, plain
+from pinik.viewer.protocol.parameters import changed_parameters, describe_parameters
 
 
 def described(solver):
@@ -25,13 +25,11 @@ def test_every_parameter_is_described_with_its_own_range(name):
     about = described(solver)
     assert set(about) == set(fields)
     for parameter, one in about.items():
-        metadata = fields[parameter].metadata
-        assert (one["low"], one["high"], one["help"], one["unit"]) == tuple(
-            metadata[key] for key in ("low", "high", "help", "unit")
-        )
+        own = fields[parameter].metadata["parameter"]
+        assert (one["low"], one["high"], one["help"], one["unit"]) == (own.low, own.high, own.help, own.unit)
         assert one["value"] == one["default"]
         assert one["kind"] in ("number", "truth", "choice", "joints")
-        assert (one["none"] is None) == (not metadata["optional"] and not metadata["unbounded"])
+        assert (one["none"] is None) == (not own.optional and not own.unbounded)
     json.dumps(about, allow_nan=False)
 
 
@@ -98,6 +96,8 @@ def test_what_was_changed_is_told_and_nothing_else():
 
 
 def test_infinity_has_no_json():
-    assert plain(math.inf) is None
-    assert plain(2.5) == 2.5
-    assert plain({"a": 1.0}) == {"a": 1.0}
+    for given, told in ((math.inf, None), (None, None), (2.5, 2.5)):
+        assert described(Every(endless=given))["endless"]["value"] == told
+    joints = described(Every(joints={"a": 1.0}))["joints"]["value"]
+    assert type(joints) is dict
+    assert joints == {"a": 1.0}

@@ -104,7 +104,7 @@ def test_the_message_of_a_small_robot():
     }
 
 
-def test_size_is_the_longest_way_along_the_joints():
+def test_size_is_the_longest_way_from_a_first_joint_along_the_others():
     crane = robot(
         *(link(name) for name in ("base", "mast", "trolley", "hook", "stub")),
         joint("turn", "base", "mast", by_hand.origin((0, 3, 4))),
@@ -112,9 +112,11 @@ def test_size_is_the_longest_way_along_the_joints():
         joint("rope", "trolley", "hook", by_hand.origin((0, 0, -6)), kind="fixed", limit=""),
         joint("side", "base", "stub", by_hand.origin((0, 0, 1))),
     )
-    assert robot_message(pinik.load(crane), 1)["size"] == pytest.approx(5 + 1 + 2 + 6)
-    assert robot_message(load_quietly("arm"), 1)["size"] == pytest.approx(1.32)
+    assert robot_message(pinik.load(crane), 1)["size"] == pytest.approx(1 + 2 + 6)
+    assert robot_message(load_quietly("arm"), 1)["size"] == pytest.approx(1.2)
     assert robot_message(pinik.load(robot(link("alone"))), 1)["size"] == 1
+    rigid = robot(link("a"), link("b"), joint("j", "a", "b", by_hand.origin((0, 3, 0)), kind="fixed", limit=""))
+    assert robot_message(pinik.load(rigid), 1)["size"] == 3
 
 
 def test_frames_are_what_moves_with_the_ends_first(panda):

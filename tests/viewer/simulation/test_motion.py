@@ -28,10 +28,10 @@ def advanced(motion, ball, steps):
 
 
 def chain_length(robot, frame):
-    """From the root over the joints that move the frame to the frame, by the model's own numbers."""
+    """From the first joint over the others that move the frame to the frame, by the model's own numbers."""
     model = robot.model
     at = model.frames[robot.frame_id(frame)]
-    links = [np.linalg.norm(model.jointPlacements[j].translation) for j in list(model.supports[at.parentJoint])]
+    links = [np.linalg.norm(model.jointPlacements[j].translation) for j in list(model.supports[at.parentJoint])[2:]]
     return sum(links) + np.linalg.norm(at.placement.translation)
 
 
