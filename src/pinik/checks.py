@@ -28,7 +28,7 @@ __all__ = [
     "as_vector",
 ]
 
-_FARTHEST = 1e9  # [m]: beyond, squares of distances lose all meaning
+FARTHEST = 1e9  # [m]: beyond, squares of distances lose all meaning
 
 _IDENTITY = np.eye(3)
 _NO_NUMBERS = (str, bytes, bool, np.bool_)
@@ -52,8 +52,8 @@ def as_finite_number(value: object, what: str) -> float:
 def as_length(value: object, what: str) -> float:
     """`value` as a length [m]; InputError also for one over a million kilometres."""
     length = as_finite_number(value, what)
-    if abs(length) > _FARTHEST:
-        raise InputError(f"{what} is in metres, at most {_FARTHEST:g}; got {length:g}")
+    if abs(length) > FARTHEST:
+        raise InputError(f"{what} is in metres, at most {FARTHEST:g}; got {length:g}")
     return length
 
 
@@ -110,8 +110,8 @@ def as_vector(value: ArrayLike, size: int, what: str, of: str = "") -> Array:
 def as_point(value: ArrayLike, what: str) -> Array:
     """`value` as a point (3,) [m]; InputError also for one farther than a million kilometres off."""
     point = as_vector(value, 3, what)
-    if np.abs(point).max() > _FARTHEST:
-        raise InputError(f"{what} is a point in metres, at most {_FARTHEST:g} away; got {point.tolist()}")
+    if np.abs(point).max() > FARTHEST:
+        raise InputError(f"{what} is a point in metres, at most {FARTHEST:g} away; got {point.tolist()}")
     return point
 
 
@@ -148,7 +148,7 @@ def as_rotation(value: ArrayLike, what: str) -> Array:
 def as_points(values: ArrayLike, what: str) -> Array:
     """`values` as points (n, 3) [m], each as `as_point` takes it."""
     points = as_many(values, (3,), what)
-    _refuse_the_first(np.abs(points).max(axis=1, initial=0.0) > _FARTHEST, points, as_point, what)
+    _refuse_the_first(np.abs(points).max(axis=1, initial=0.0) > FARTHEST, points, as_point, what)
     return points
 
 

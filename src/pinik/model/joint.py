@@ -17,7 +17,8 @@ __all__ = ["Joint", "joints_of", "limits_cut_by_followers"]
 
 Array = NDArray[np.float64]
 
-_WIDEST_RANGE = 100.0  # [rad or m]: wider limits, such as the ±1e16 of some files, are none
+WIDEST_RANGE = 100.0  # [rad or m]: wider limits, such as the ±1e16 of some files, are none
+LARGEST_UNIT_ERROR = 1e-3  # of the squared length of a (cos, sin) pair or quaternion
 _FREE = (-math.inf, math.inf)
 
 
@@ -114,7 +115,7 @@ class Joint:
         Without limits, or with limits so wide that they are none, ±π about zero for a turning joint and ±1 m about
         `slide_about` for a sliding one; moved inside the limits where it would reach out.
         """
-        if upper - lower <= _WIDEST_RANGE:
+        if upper - lower <= WIDEST_RANGE:
             return lower, upper
         half, middle = (1.0, slide_about) if self.kind == "prismatic" else (math.pi, 0.0)
         middle = min(max(middle, lower + half), upper - half)

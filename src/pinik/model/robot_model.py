@@ -18,7 +18,7 @@ from ..checks import as_finite_number, as_many, as_se3, as_vector
 from ..description import reader as urdf
 from ..errors import InputError, RobotLoadError, UnknownNameError
 from .build import build_model
-from .joint import Joint, joints_of, limits_cut_by_followers
+from .joint import LARGEST_UNIT_ERROR, Joint, joints_of, limits_cut_by_followers
 from .poses import read_poses
 
 if TYPE_CHECKING:
@@ -259,7 +259,7 @@ class Robot:
             return values
         for joint in self.joints:
             circle = joint.circle(values)
-            if circle is not None and abs(float(circle[0] @ circle[0]) - 1.0) > 1e-3:
+            if circle is not None and abs(float(circle[0] @ circle[0]) - 1.0) > LARGEST_UNIT_ERROR:
                 got, words = circle
                 raise InputError(
                     f"{what}: {joint.kind} joint {joint.name!r} holds {words}, of unit length; got {got.tolist()}"
@@ -273,7 +273,7 @@ class Robot:
             circle = joint.circle(values.T)
             if circle is not None:
                 lengths = np.linalg.norm(circle[0], axis=0)
-                for k in np.flatnonzero(np.abs(lengths**2 - 1.0) > 1e-3)[:1]:
+                for k in np.flatnonzero(np.abs(lengths**2 - 1.0) > LARGEST_UNIT_ERROR)[:1]:
                     self.check_configuration(values[k], f"{what}[{k}]")
                 circle[0][:] /= lengths
         return values

@@ -22,10 +22,10 @@ if TYPE_CHECKING:
 
 __all__ = ["CCD"]
 
-_ROUNDING = 1e-14  # of coordinates and unit axes behind a chain of joints; a joint that would follow it alone stays
-_SUSPECT = 1e-6  # across a joint's axis so much less than along it that rounding may be all there is
-_NO_COLUMN = 1e-12  # of a Jacobian [m or rad]
-_HALVINGS = 12
+ROUNDING = 1e-14  # of coordinates and unit axes behind a chain of joints; a joint that would follow it alone stays
+SUSPECT = 1e-6  # across a joint's axis so much less than along it that rounding may be all there is
+NO_COLUMN = 1e-12  # of a Jacobian [m or rad]
+HALVINGS = 12
 _NOTHING = np.zeros((3, 3))
 _RELAXATION_OF_POSES = 1.7
 
@@ -142,7 +142,7 @@ class CCD(SweepingSolver):
         else:
             M = sum([chaser.correlation(mover, origin) for chaser in chasers], _NOTHING)
             cosine, sine, along = _coefficients(M, axis)
-            if math.hypot(cosine, sine) <= _SUSPECT * along:
+            if math.hypot(cosine, sine) <= SUSPECT * along:
                 cosine, sine = _measured_across(axis, origin, mover, chasers)
             change = _best_turn(cosine, sine, low, high, shortest=scale < 1.0 or self.max_step < math.pi)
         if scale > 1.0 and not coordinate.slides and abs(change) > math.pi:
@@ -162,12 +162,12 @@ class CCD(SweepingSolver):
         at = kinematics.linearize(q)
         J = at.J[:, column]
         squared = float(J.dot(J))
-        if squared <= (_NO_COLUMN * kinematics.lightest) ** 2:  # its followers cancel it, but for rounding
+        if squared <= (NO_COLUMN * kinematics.lightest) ** 2:  # its followers cancel it, but for rounding
             return 0.0
         low, high = coordinate.room(q, limits)
         change = min(max(part * float(J.dot(at.e)) / squared, low, -self.max_step), high, self.max_step)
         before = float(at.e.dot(at.e))
-        for _ in range(_HALVINGS):
+        for _ in range(HALVINGS):
             moved = q.copy()
             coordinate.advance(moved, change, kinematics.model, limits)
             e = kinematics.linearize(moved).e
@@ -212,7 +212,7 @@ def _measured_across(axis: Array, origin: Array, mover: Joint, chasers: list[Cha
     So it is where the effector lies on the joint's axis, or the axis that it should turn is the joint's own.
     """
     cosine, sine, blur = (sum(parts) for parts in zip(*(c.across(axis, origin, mover) for c in chasers), strict=True))
-    return (cosine, sine) if math.hypot(cosine, sine) > _ROUNDING * blur else (0.0, 0.0)
+    return (cosine, sine) if math.hypot(cosine, sine) > ROUNDING * blur else (0.0, 0.0)
 
 
 def _best_turn(cosine: float, sine: float, low: float, high: float, *, shortest: bool) -> float:

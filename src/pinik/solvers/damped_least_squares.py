@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 __all__ = ["DampedLeastSquares"]
 
 # Keeps JJᵀ + λ²I positive definite where rows depend on each other and the damping has faded with the residual.
-_SMALLEST_DAMPING_SQUARED = 1e-15
+SMALLEST_DAMPING_SQUARED = 1e-15
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -77,7 +77,7 @@ class DampedLeastSquares(JacobianSolver):
         elif self.rule == "manipulability":
             w = math.sqrt(max(float(np.linalg.det(J.dot(J.T))), 0.0))
             squared *= max(0.0, 1.0 - w / self.manipulability) ** 2
-        return squared + _SMALLEST_DAMPING_SQUARED
+        return squared + SMALLEST_DAMPING_SQUARED
 
     def step(self, at: Linearization, kinematics: Kinematics) -> Array:
         """`direction`, damped by the whole distance also where D_max shortens the pull."""

@@ -16,6 +16,8 @@ if TYPE_CHECKING:
 
 __all__ = ["PseudoInverse"]
 
+SMALLEST_SINGULAR_VALUE = 1e-12
+
 
 @dataclass(frozen=True, kw_only=True)
 class PseudoInverse(JacobianSolver):
@@ -45,7 +47,7 @@ class PseudoInverse(JacobianSolver):
     def direction(self, J: Array, e: Array, pull: Array | None = None, lightest: float = 1.0) -> Array:
         """J†e, and (I − J†J)·pull with a pull (nv,); rows may be as light as the part `lightest` of the others."""
         left, sigma, right = np.linalg.svd(J, full_matrices=False)
-        rank = int((sigma > max(self.cutoff * lightest * sigma[:1].sum(), 1e-12)).sum())
+        rank = int((sigma > max(self.cutoff * lightest * sigma[:1].sum(), SMALLEST_SINGULAR_VALUE)).sum())
         basis = right[:rank]  # (rank, nv): the row space
         dq: Array = (left[:, :rank].T.dot(e) / sigma[:rank]).dot(basis)
         return dq if pull is None else dq + pull - basis.T.dot(basis.dot(pull))

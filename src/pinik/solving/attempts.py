@@ -24,7 +24,7 @@ __all__ = ["Outcome", "Settings", "attempt_all", "is_nearest"]
 Array = NDArray[np.float64]
 
 # Restarts that a target proved unreachable still gets: the nearest point has valleys too.
-_RESTARTS_WHEN_UNREACHABLE = 8
+RESTARTS_WHEN_UNREACHABLE = 8
 # Of the chain's length: what an exact method may be off by.
 _EXACT = 1e-5
 
@@ -140,7 +140,7 @@ class _Attempts:
         asked = self.settings
         most = asked.restarts if asked.starts.draws else 0
         if proof is not None:
-            most = min(most, _RESTARTS_WHEN_UNREACHABLE)
+            most = min(most, RESTARTS_WHEN_UNREACHABLE)
         for self.restarts in range(most + 1):
             status = self._attempt(
                 self._start(),

@@ -27,8 +27,8 @@ TO_THE_END = Patience(50, 1e-4)
 AT_REST = 1e-9
 """What an exact method's rounding may still move a joint by [rad or m]."""
 
-_OF_THE_DISTANCE = math.sqrt(0.1)  # what a bold run's damping goes by
-_OF_THE_CHAIN = 0.5  # a miss that stays is damped as if it were this part of the chain's length, in the geometric mean
+OF_THE_DISTANCE = math.sqrt(0.1)  # what a bold run's damping goes by
+OF_THE_CHAIN = 0.5  # a miss that stays is damped as if it were this part of the chain's length, in the geometric mean
 
 
 def compiled_for(
@@ -105,9 +105,9 @@ def run(
             return
         seen = at
         if bold:
-            seen = at._replace(distance=_OF_THE_DISTANCE * at.distance)
+            seen = at._replace(distance=OF_THE_DISTANCE * at.distance)
         elif beyond:
-            least = _OF_THE_CHAIN * kinematics.size_of_chain
+            least = OF_THE_CHAIN * kinematics.size_of_chain
             seen = at._replace(distance=math.sqrt(at.distance * max(at.distance, least)))
         q, updated = advance(solver, kinematics, box, seen, tolerance, scale)
         there, rests = kinematics.linearize(q), solver.exact and bool(np.abs(q - at.q).max() < AT_REST)

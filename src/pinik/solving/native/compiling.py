@@ -19,16 +19,15 @@ from ...solvers.damped_least_squares import DampedLeastSquares
 from ...solvers.pseudo_inverse import PseudoInverse
 from ...solvers.transpose import JacobianTranspose
 from ..attempts import Settings
-from .module import METHODS, load
+from .constants import make_constants
+from .module import load
 
 __all__ = ["make_engine"]
 
 if TYPE_CHECKING:
     from ..._native import Engine
 
-_KINDS = ("revolute", "continuous", "prismatic", "floating", "planar")
-_RULES = ("constant", "residual", "sugihara", "manipulability")
-_MOST = 2**31 - 1  # the largest number that the engine counts to
+_MOST = 2**62  # restarts and iterations beyond it are not told apart; the engine counts in 64 bits
 _IDENTITY = pinocchio.SE3.Identity()
 _ROBOTS: WeakKeyDictionary[Robot, Any] = WeakKeyDictionary()
 
@@ -41,8 +40,8 @@ def make_engine(settings: Settings) -> Engine:
     problem = _problem(robot, kinematics)
     asked = module.Settings()
     asked.solver = _solver(settings.solver, kinematics)
-    asked.patience = settings.solver.patience.iterations, settings.solver.patience.progress
-    asked.tolerance = tuple(settings.tolerance)
+    asked.patience = module.Patience(settings.solver.patience.iterations, settings.solver.patience.progress)
+    asked.tolerance = module.Tolerance(*settings.tolerance)
     asked.limits = limits.enabled
     asked.restarts = min(settings.restarts, _MOST)
     asked.seed = settings.seed & 0xFFFFFFFFFFFFFFFF
@@ -62,13 +61,13 @@ def _robot(robot: Robot) -> Any:
 
 
 def _make_robot(robot: Robot) -> Any:
-    native = load().Robot()
+    native, kinds = load().Robot(), load().JointKind
     leaders = {joint.leader for joint in robot.joints}
     model = robot.model
     for joint in robot.joints:
         placement = model.jointPlacements[joint.id]
         native.add_joint(
-            kind=_KINDS.index(joint.kind),
+            kind=kinds[joint.kind],
             parent=model.parents[joint.id],
             rotation=placement.rotation,
             translation=placement.translation,
@@ -89,7 +88,7 @@ def _make_robot(robot: Robot) -> Any:
 
 
 def _problem(robot: Any, kinematics: Kinematics) -> Any:
-    problem = load().Problem(robot)
+    problem = load().Problem(robot, make_constants())
     free, limited = Limits.of(kinematics.robot, False), Limits.of(kinematics.robot)
     for term in kinematics.terms:
         target = term.target
@@ -130,8 +129,9 @@ def _problem(robot: Any, kinematics: Kinematics) -> Any:
 
 
 def _solver(solver: Solver, kinematics: Kinematics) -> Any:
-    native = load().Solver()
-    native.method = METHODS.index(type(solver))
+    module = load()
+    native = module.Solver()
+    native.method = module.Method[solver.name]
     native.max_step, native.max_residual = solver.max_step, solver.max_residual
     if isinstance(solver, CCD):
         if solver.stiffness:
@@ -153,5 +153,5 @@ def _solver(solver: Solver, kinematics: Kinematics) -> Any:
         native.rest_posture = [(robot.joint(name).id, angle) for name, angle in solver.rest_posture.items()]
     elif isinstance(solver, DampedLeastSquares):
         native.damping, native.manipulability = solver.damping, solver.manipulability
-        native.rule, native.by_svd = _RULES.index(solver.rule), solver.factorization == "svd"
+        native.rule, native.by_svd = module.DampingRule[solver.rule], solver.factorization == "svd"
     return native
