@@ -3,17 +3,19 @@
 VENV := .venv
 python := $(VENV)/bin/python
 pip := $(python) -m pip --quiet --quiet --no-input --disable-pip-version-check
-engine := CMakeLists.txt $(wildcard src/native/*)
+engine := CMakeLists.txt $(wildcard src/native/*.cmake src/native/*/*)
+sanitized := build/sanitized
 
 # A sourced ROS workspace would put another Pinocchio, built for another Python, before ours.
 unexport PYTHONPATH
 
-.PHONY: help run test lint bench notebooks clean
+.PHONY: help run test lint sanitize bench notebooks clean
 
 help:
 	@echo "make run       install what is missing into $(VENV), run a tour and open the live view"
 	@echo "make test      run every check: style, types and tests"
 	@echo "make lint      check style and types only"
+	@echo "make sanitize  run the engine's tests under AddressSanitizer and UndefinedBehaviorSanitizer"
 	@echo "make bench     measure how fast the solvers are"
 	@echo "make notebooks run the notebooks and save them with their pictures"
 	@echo "make clean     remove $(VENV) and everything else that was built here"
@@ -31,6 +33,13 @@ lint: $(VENV)/installed-dev
 	@$(python) -m ruff check .
 	@$(python) -m ruff format --check .
 	@$(python) -m mypy
+
+# Python itself is built without sanitizers, so their library must be loaded first, and Python's own leaks be ignored.
+sanitize: $(VENV)/installed-dev $(sanitized)/built
+	@LD_PRELOAD="$$($(CXX) -print-file-name=libasan.so) $$($(CXX) -print-file-name=libstdc++.so)" \
+		ASAN_OPTIONS=detect_leaks=0 UBSAN_OPTIONS=print_stacktrace=1 \
+		PINIK_REQUIRE_NATIVE=1 PINIK_SANITIZED_ENGINE="$$(echo $(sanitized)/pinik/_native*.so)" \
+		$(python) -m pytest tests/solving/test_native.py tests/solving/test_native_equivalence.py --timeout=3600
 
 bench: $(VENV)/installed-dev
 	@$(python) -m pytest benchmarks --benchmark-enable --benchmark-only
@@ -58,3 +67,11 @@ $(VENV)/installed-dev: pyproject.toml $(engine) $(python)
 	@$(pip) install $$($(python) tools/build_requirements.py --with-tools)
 	@$(pip) install --no-build-isolation --editable '.[dev]'
 	@touch $(VENV)/installed $@
+
+$(sanitized)/built: pyproject.toml $(engine) $(python)
+	@echo "Compiling the engine with sanitizers (several minutes)"
+	@rm -rf $(sanitized)
+	@$(pip) wheel --no-deps --wheel-dir $(sanitized) --config-settings build-dir=$(sanitized)/cmake \
+		--config-settings cmake.define.PINIK_SANITIZE=ON .
+	@$(python) -m zipfile -e $(sanitized)/*.whl $(sanitized)
+	@touch $@

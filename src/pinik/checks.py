@@ -30,7 +30,7 @@ __all__ = [
     "as_vector",
 ]
 
-_FARTHEST = 1e9  # [m]: beyond it, squared distances lose all precision
+FARTHEST = 1e9  # [m]: beyond it, squared distances lose all precision
 
 _IDENTITY = np.eye(3)
 _NO_NUMBERS = (str, bytes, bool, np.bool_)
@@ -71,8 +71,8 @@ def as_count(value: object, what: str, least: int = 1, most: int | None = None) 
 def as_length(value: object, what: str) -> float:
     """`value` as a length [m]; InputError also if it exceeds a million kilometres."""
     length = as_finite_number(value, what)
-    if abs(length) > _FARTHEST:
-        raise InputError(f"must be within ±{_FARTHEST:g} m; got {length:g}", argument=what)
+    if abs(length) > FARTHEST:
+        raise InputError(f"must be within ±{FARTHEST:g} m; got {length:g}", argument=what)
     return length
 
 
@@ -129,8 +129,8 @@ def as_vector(value: ArrayLike, size: int, what: str, of: str = "") -> Array:
 def as_point(value: ArrayLike, what: str) -> Array:
     """`value` as a point (3,) [m]; InputError also if a coordinate exceeds a million kilometres."""
     point = as_vector(value, 3, what)
-    if np.abs(point).max() > _FARTHEST:
-        raise InputError(f"must be a point within {_FARTHEST:g} m of the origin; got {point.tolist()}", argument=what)
+    if np.abs(point).max() > FARTHEST:
+        raise InputError(f"must be a point within {FARTHEST:g} m of the origin; got {point.tolist()}", argument=what)
     return point
 
 
@@ -168,7 +168,7 @@ def as_rotation(value: ArrayLike, what: str) -> Array:
 def as_points(values: ArrayLike, what: str) -> Array:
     """`values` as points (n, 3) [m], each checked as by `as_point`."""
     points = as_many(values, (3,), what)
-    _refuse_the_first(np.abs(points).max(axis=1, initial=0.0) > _FARTHEST, points, as_point, what)
+    _refuse_the_first(np.abs(points).max(axis=1, initial=0.0) > FARTHEST, points, as_point, what)
     return points
 
 

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import ast
-import importlib.util
+import dataclasses
+import hashlib
 import os
 import subprocess
 import sys
@@ -17,12 +18,13 @@ import pinocchio
 import pytest
 
 import pinik
-from engines import REQUIRED, WHY_NOT, needs_native
+from engines import REQUIRED, SANITIZED, WHY_NOT, needs_native
 from judge import assert_honest, plain_placement
 from pinik import Status, Target
-from pinik.solving.native import codec, module
+from pinik.solving.native import codec, constants, module
 
 METHODS = ["ccd", "jt", "pinv", "dls"]
+STUB = Path(pinik.__file__).with_name("_native.pyi")
 
 
 @pytest.fixture
@@ -69,9 +71,19 @@ def test_the_stub_is_what_nanobind_writes_for_the_module():
 
     generator = StubGen(_native)
     generator.put(_native)
-    committed = importlib.util.find_spec("pinik").origin
-    stub = Path(committed).with_name("_native.pyi")
-    assert shape_of(stub.read_text()) == shape_of(generator.get())
+    assert shape_of(STUB.read_text()) == shape_of(generator.get())
+
+
+def test_package_and_module_hold_the_digest_of_the_stub():
+    """So that a change of signatures changes it, and the module of an earlier build is told apart."""
+    lines = [line for line in STUB.read_text().splitlines() if not line.startswith("abi:")]
+    digest = hashlib.sha256("\n".join(lines).encode()).hexdigest()[:16]
+    assert digest == module.ABI
+    assert f'abi: str = "{digest}"' in STUB.read_text()
+    if WHY_NOT is None:
+        from pinik import _native
+
+        assert digest == _native.abi
 
 
 def shape_of(stub: str) -> str:
@@ -104,6 +116,74 @@ def test_an_engine_for_another_pinocchio_refuses(another_pinocchio, panda):
     assert panda.solve("panda_hand_tcp", [0.4, 0.1, 0.5], seed=103).engine == "python"
     with pytest.raises(pinik.EngineError, match=r"99\.1\.0 is installed"):
         panda.solve("panda_hand_tcp", [0.4, 0.1, 0.5], engine="native", seed=104)
+
+
+@needs_native
+@pytest.mark.parametrize("abi", ["that of an earlier build", None])
+def test_an_engine_of_another_build_refuses(monkeypatch, reload_engine, panda, abi):
+    from pinik import _native
+
+    if abi is None:
+        monkeypatch.delattr(_native, "abi")
+    else:
+        monkeypatch.setattr(_native, "abi", abi)
+    assert module.why_not() == "the compiled module belongs to another build of pinik; install pinik again"
+    assert panda.solve("panda_hand_tcp", [0.4, 0.1, 0.5], seed=105).engine == "python"
+    with pytest.raises(pinik.EngineError, match="another build of pinik; install pinik again"):
+        panda.solve("panda_hand_tcp", [0.4, 0.1, 0.5], engine="native", seed=106)
+
+
+@needs_native
+def test_the_engine_knows_every_method_rule_kind_and_status_by_its_name():
+    from pinik import _native
+
+    def names(enumeration):
+        return {member.name for member in enumeration}
+
+    rule = next(field for field in dataclasses.fields(pinik.DampedLeastSquares) if field.name == "rule")
+    assert names(_native.Method) == set(METHODS) == {solver.name for solver in module.METHODS}
+    assert names(_native.DampingRule) == set(rule.metadata["choices"])
+    assert names(_native.JointKind) == {"revolute", "continuous", "prismatic", "floating", "planar"}
+    assert names(_native.Status) == {status.name for status in Status} | {"RUNNING"}
+
+
+@needs_native
+def test_every_constant_of_the_engine_is_handed_over():
+    from pinik import _native
+
+    theirs = {name for name in vars(_native.Constants) if not name.startswith("_")}
+    assert theirs == {*constants.CONSTANTS, "to_the_end"}
+    made = constants.make_constants()
+    assert {name: getattr(made, name) for name in constants.CONSTANTS} == constants.CONSTANTS
+
+
+@needs_native
+def test_the_engine_computes_with_the_constants_that_it_is_given(monkeypatch, panda):
+    def restarts(seed):
+        return panda.solve("panda_hand_tcp", [3.0, 0.0, 0.5], engine="native", seed=seed).restarts
+
+    assert restarts(107) == constants.CONSTANTS["restarts_when_unreachable"]
+    monkeypatch.setitem(constants.CONSTANTS, "restarts_when_unreachable", 3)
+    assert restarts(108) == 3
+
+
+@needs_native
+@pytest.mark.parametrize("most", [2**31 - 1, 2**31, 2**63, 10**30])
+def test_any_number_of_restarts_and_iterations_is_taken(most, panda):
+    opposed = [Target("panda_hand_tcp", [0.4, y, 0.5]) for y in (-0.2, 0.2)]
+    for q0 in (None, "nearest"):
+        prepared = pinik.prepare(panda, opposed, restarts=most, max_iterations=most, time_limit=0.05, engine="native")
+        assert prepared(opposed, q0).status is Status.TIME_LIMIT
+
+
+@needs_native
+@pytest.mark.parametrize("name", ["restarts", "max_iterations", "iterations_to_the_end"])
+def test_the_engine_counts_in_64_bits(name):
+    from pinik import _native
+
+    settings = _native.Settings()
+    setattr(settings, name, 2**62)
+    assert getattr(settings, name) == 2**62
 
 
 def pinocchio_of_the_module() -> str:
@@ -238,10 +318,14 @@ def test_the_time_limit_ends_a_hopeless_solve(method, panda, lion):
         assert s.time >= 0.1
 
 
-@needs_native
-@pytest.mark.skipif(
-    sys.platform != "linux", reason="needs Linux: the process limits its memory and enlarges its stacks"
+needs_a_limit_of_memory = pytest.mark.skipif(
+    not sys.platform.startswith("linux") or SANITIZED is not None,
+    reason="needs Linux, where a process can limit its memory; sanitizers need more than any limit",
 )
+
+
+@needs_native
+@needs_a_limit_of_memory
 def test_more_threads_than_the_system_gives_do_the_work_all_the_same():
     code = (
         "import resource, numpy as np, pinik\n"
@@ -256,3 +340,34 @@ def test_more_threads_than_the_system_gives_do_the_work_all_the_same():
     large_stacks = ["sh", "-c", f'{largest}; exec "$0" -W ignore -c "$1"', sys.executable, code]
     done = subprocess.run(large_stacks, capture_output=True, text=True, check=False)
     assert done.stdout.split() == ["True"], done.stderr
+
+
+LITTLE_MEMORY = """
+import os, resource
+import numpy as np, pinik
+
+panda = pinik.load("panda")
+places = np.tile([0.4, 0.1, 0.5], (2000, 1))
+pinik.solve_many(panda, "panda_hand_tcp", places[:2])
+for megabytes in range(2, 130, 4):
+    child = os.fork()
+    if child == 0:
+        used = int(open("/proc/self/statm").read().split()[0]) * resource.getpagesize()
+        resource.setrlimit(resource.RLIMIT_AS, (used + megabytes * 2**20,) * 2)
+        try:
+            pinik.solve_many(panda, "panda_hand_tcp", places, threads=500)
+        except (MemoryError, RuntimeError):  # no memory, or no thread
+            os._exit(1)
+        os._exit(0)
+    print(megabytes, os.waitstatus_to_exitcode(os.waitpid(child, 0)[1]))
+"""
+
+
+@needs_native
+@needs_a_limit_of_memory
+def test_a_lack_of_memory_is_an_exception_and_does_not_end_the_process():
+    code = [sys.executable, "-W", "ignore", "-c", LITTLE_MEMORY]
+    done = subprocess.run(code, capture_output=True, text=True, check=True)
+    ended = [line.split() for line in done.stdout.splitlines()]
+    assert len(ended) == 32
+    assert [line for line in ended if line[1] not in ("0", "1")] == [], done.stderr

@@ -17,7 +17,7 @@ __all__ = ["checked", "checked_many", "random_configuration"]
 
 Array = NDArray[np.float64]
 
-_OFF_UNIT_LENGTH = 1e-3  # how far the squared length of a quaternion or (cos, sin) pair may be from 1
+LARGEST_UNIT_ERROR = 1e-3  # how far the squared length of a quaternion or (cos, sin) pair may be from 1
 
 
 def checked(model: pinocchio.Model, joints: Iterable[Joint], q: ArrayLike, what: str, of: str = "") -> Array:
@@ -39,7 +39,7 @@ def checked(model: pinocchio.Model, joints: Iterable[Joint], q: ArrayLike, what:
         return values
     for joint in joints:
         circle = joint.circle(values)
-        if circle is not None and abs(float(circle[0] @ circle[0]) - 1.0) > _OFF_UNIT_LENGTH:
+        if circle is not None and abs(float(circle[0] @ circle[0]) - 1.0) > LARGEST_UNIT_ERROR:
             got, words = circle
             raise InputError(
                 f"{what}: {words} of {joint.kind} joint {joint.name!r} must be of unit length; got {got.tolist()}"
@@ -54,7 +54,7 @@ def checked_many(model: pinocchio.Model, joints: Iterable[Joint], q: ArrayLike, 
         circle = joint.circle(values.T)
         if circle is not None:
             lengths = np.linalg.norm(circle[0], axis=0)
-            for k in np.flatnonzero(np.abs(lengths**2 - 1.0) > _OFF_UNIT_LENGTH)[:1]:
+            for k in np.flatnonzero(np.abs(lengths**2 - 1.0) > LARGEST_UNIT_ERROR)[:1]:
                 checked(model, [joint], values[k], f"{what}[{k}]")
             circle[0][:] /= lengths
     return values

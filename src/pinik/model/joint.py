@@ -16,7 +16,7 @@ __all__ = ["Joint", "joints_of"]
 
 Array = NDArray[np.float64]
 
-_WIDEST_RANGE = 100.0  # [rad or m]: wider limits, such as ±1e16 in some files, count as none
+WIDEST_RANGE = 100.0  # [rad or m]: wider limits, such as ±1e16 in some files, count as none
 _FREE = (-math.inf, math.inf)
 
 
@@ -135,7 +135,7 @@ class Joint:
         It is the whole range, unless that is infinite or wider than 100. Then it is ±π about 0 for turning joints and
         ±1 m about `slide_about` for sliding joints, shifted into the limits.
         """
-        if upper - lower <= _WIDEST_RANGE:
+        if upper - lower <= WIDEST_RANGE:
             return lower, upper
         half, middle = (1.0, slide_about) if self.kind == "prismatic" else (math.pi, 0.0)
         middle = min(max(middle, lower + half), upper - half)

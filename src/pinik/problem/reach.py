@@ -20,7 +20,7 @@ __all__ = ["Bounds", "Shortfall", "bounds_of", "reach_bounds", "shortfall"]
 
 Vector = Sequence[float]  # three plain numbers: every solve asks, and numpy is slow with so few
 
-_ROUNDING = 1e-12  # of the lengths that enter: what rounding in the placements of a chain may amount to
+ROUNDING = 1e-12  # of the lengths that enter: what rounding in the placements of a chain may amount to
 
 
 class Shortfall(NamedTuple):
@@ -79,7 +79,7 @@ def _shortfall(index: int, target: Target, bounds: Bounds | None) -> Shortfall |
     base, reach, hole = bounds
     position = target.position
     distance = float(np.linalg.norm(position - base))
-    slack = _ROUNDING * (reach + float(np.linalg.norm(position)) + float(np.linalg.norm(base)))
+    slack = ROUNDING * (reach + float(np.linalg.norm(position)) + float(np.linalg.norm(base)))
     if distance > reach + slack:
         return Shortfall(index, distance - reach, reach, False)
     if distance < hole - slack:

@@ -20,9 +20,9 @@ Array = NDArray[np.float64]
 _MASK = (1 << 64) - 1
 _GOLDEN = 0x9E3779B97F4A7C15
 
-_SIZE = 256  # configurations in the table
-_NEAREST = 32  # how many of the table's configurations are tried before others are drawn
-_OF_THE_TABLE = _MASK  # the table's key in place of a target's number
+SIZE = 256  # configurations in the table
+NEAREST = 32  # how many of the table's configurations are tried before others are drawn
+OF_THE_TABLE = _MASK  # the table's key in place of a target's number
 
 
 class Starts:
@@ -49,8 +49,8 @@ class Starts:
         self._drawn = np.flatnonzero(is_drawn)
         self._still = np.flatnonzero(needed & ~is_drawn)  # the table is for these values of theirs
         self._table: Array | None = None  # (size, nq)
-        self._lengths: Array = np.zeros(_SIZE)
-        self._seen: Array = np.zeros((_SIZE, 0))
+        self._lengths: Array = np.zeros(SIZE)
+        self._seen: Array = np.zeros((SIZE, 0))
         self._order: NDArray[np.intp] = np.zeros(0, dtype=np.intp)
 
     @property
@@ -63,7 +63,7 @@ class Starts:
 
         What is not drawn stays as in `q0`.
         """
-        if number > _NEAREST:
+        if number > NEAREST:
             return random_start(
                 self._kinematics.problem, self._limits, q0, seed=self._seed, target=target, attempt=number
             )
@@ -84,7 +84,7 @@ class Starts:
             self._make(q0)
         wanted = np.concatenate([_wanted(target) for target in self._kinematics.targets])
         scores = self._lengths + self._seen @ wanted
-        self._order = np.argsort(scores, kind="stable")[:_NEAREST]
+        self._order = np.argsort(scores, kind="stable")[:NEAREST]
 
     def _make(self, q0: Array) -> None:
         kinematics = self._kinematics
@@ -92,8 +92,8 @@ class Starts:
         about[self._drawn] = kinematics.robot.neutral()[self._drawn]
         self._table = np.array(
             [
-                random_start(kinematics.problem, self._limits, about, seed=self._seed, target=_OF_THE_TABLE, attempt=k)
-                for k in range(_SIZE)
+                random_start(kinematics.problem, self._limits, about, seed=self._seed, target=OF_THE_TABLE, attempt=k)
+                for k in range(SIZE)
             ]
         )
         rows = []

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -12,6 +13,7 @@ from ...problem.reach import Shortfall
 from ...problem.targets import Target, TargetError
 from ..state import State, Status
 from .codec import targets_of
+from .module import load
 
 __all__ = ["Answer", "Answers", "attempt_many"]
 
@@ -21,7 +23,21 @@ if TYPE_CHECKING:
 
 Array = NDArray[np.float64]
 
-_STATUSES = tuple(Status)
+
+@functools.cache
+def _statuses() -> dict[_native.Status, Status | None]:
+    """Map the engine's own enumeration to `Status` by name, and RUNNING to None."""
+    return {own: None if own.name == "RUNNING" else Status[own.name] for own in load().Status}
+
+
+@functools.cache
+def _numbered() -> NDArray[np.object_]:
+    """The same in an array, by the numbers that the engine gives its statuses."""
+    statuses = _statuses()
+    numbered = np.empty(len(statuses), dtype=object)
+    for own, status in statuses.items():
+        numbered[own.value] = status
+    return numbered
 
 
 @dataclass(frozen=True, eq=False)
@@ -43,8 +59,7 @@ def attempt_many(engine: Engine, goals: Array, starts: Array, nearest: bool, thr
     q, status, position, orientation, iterations, updates, restarts, seconds = engine.solve_many(
         starts, goals, nearest, threads
     )
-    statuses = np.array(_STATUSES, dtype=object)[status]
-    return Answers(q, statuses, position, orientation, iterations, updates, restarts, seconds)
+    return Answers(q, _numbered()[status], position, orientation, iterations, updates, restarts, seconds)
 
 
 class Answer:
@@ -75,7 +90,9 @@ class Answer:
     @property
     def status(self) -> Status:
         """Why the solve ended."""
-        return _STATUSES[self._answer.status]
+        status = _statuses()[self._answer.status]
+        assert status is not None  # a solve that has returned has ended
+        return status
 
     @property
     def q(self) -> Array:
@@ -118,7 +135,6 @@ def _errors(pairs: Any) -> tuple[TargetError, ...]:
     return tuple([TargetError(position, orientation) for position, orientation in pairs])
 
 
-def _state(q: Array, iteration: int, updates: int, errors: Any, residual: float, attempt: int, status: int) -> State:
+def _state(q: Array, iteration: int, updates: int, errors: Any, residual: float, attempt: int, status: Any) -> State:
     q.setflags(write=False)
-    ended = _STATUSES[status] if status < len(_STATUSES) else None
-    return State(q, iteration, updates, _errors(errors), residual, attempt, ended)
+    return State(q, iteration, updates, _errors(errors), residual, attempt, _statuses()[status])

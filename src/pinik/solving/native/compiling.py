@@ -19,16 +19,15 @@ from ...solvers.damped_least_squares import DampedLeastSquares
 from ...solvers.pseudo_inverse import PseudoInverse
 from ...solvers.transpose import JacobianTranspose
 from ..question import Question
-from .module import METHODS, load
+from .constants import make_constants
+from .module import load
 
 __all__ = ["make_engine"]
 
 if TYPE_CHECKING:
     from ..._native import Engine
 
-_KINDS = ("revolute", "continuous", "prismatic", "floating", "planar")
-_RULES = ("constant", "residual", "sugihara", "manipulability")
-_MOST = 2**31 - 1  # the largest number that the engine counts to
+_MOST = 2**62  # restarts and iterations beyond it are not told apart; the engine counts in 64 bits
 _IDENTITY = pinocchio.SE3.Identity()
 _ROBOTS: WeakKeyDictionary[RobotModel, Any] = WeakKeyDictionary()
 
@@ -40,8 +39,8 @@ def make_engine(question: Question) -> Engine:
     robot = _robot(problem.robot)
     asked = module.Settings()
     asked.solver = _solver(question.solver, problem)
-    asked.patience = question.solver.patience.iterations, question.solver.patience.progress
-    asked.tolerance = tuple(options.tolerance)
+    asked.patience = module.Patience(question.solver.patience.iterations, question.solver.patience.progress)
+    asked.tolerance = module.Tolerance(*options.tolerance)
     asked.limits = options.limits
     asked.restarts = min(options.restarts_at_most, _MOST)
     asked.seed = options.seed & 0xFFFFFFFFFFFFFFFF
@@ -61,13 +60,13 @@ def _robot(robot: RobotModel) -> Any:
 
 
 def _make_robot(robot: RobotModel) -> Any:
-    native = load().Robot()
+    native, kinds = load().Robot(), load().JointKind
     leaders = {joint.leader for joint in robot.joints}
     model = robot.model
     for joint in robot.joints:
         placement = model.jointPlacements[joint.id]
         native.add_joint(
-            kind=_KINDS.index(joint.kind),
+            kind=kinds[joint.kind],
             parent=model.parents[joint.id],
             rotation=placement.rotation,
             translation=placement.translation,
@@ -88,7 +87,7 @@ def _make_robot(robot: RobotModel) -> Any:
 
 
 def _problem(robot: Any, asked: Problem) -> Any:
-    problem = load().Problem(robot)
+    problem = load().Problem(robot, make_constants())
     free, limited = Limits.of(asked.robot, False), Limits.of(asked.robot)
     for term in asked.terms:
         target, chain = term.pattern, term.chain
@@ -129,8 +128,9 @@ def _problem(robot: Any, asked: Problem) -> Any:
 
 
 def _solver(solver: Solver, problem: Problem) -> Any:
-    native = load().Solver()
-    native.method = METHODS.index(type(solver))
+    module = load()
+    native = module.Solver()
+    native.method = module.Method[solver.name]
     native.max_step, native.max_residual = solver.max_step, solver.max_residual
     if isinstance(solver, CCD):
         if solver.stiffness:
@@ -152,5 +152,5 @@ def _solver(solver: Solver, problem: Problem) -> Any:
         native.rest_posture = [(robot.joint(name).id, angle) for name, angle in solver.rest_posture.items()]
     elif isinstance(solver, DampedLeastSquares):
         native.damping, native.manipulability = solver.damping, solver.manipulability
-        native.rule, native.by_svd = _RULES.index(solver.rule), solver.factorization == "svd"
+        native.rule, native.by_svd = module.DampingRule[solver.rule], solver.factorization == "svd"
     return native

@@ -14,7 +14,11 @@ from ...solvers.damped_least_squares import DampedLeastSquares
 from ...solvers.pseudo_inverse import PseudoInverse
 from ...solvers.transpose import JacobianTranspose
 
-__all__ = ["METHODS", "load", "why_not"]
+__all__ = ["ABI", "METHODS", "load", "why_not"]
+
+ABI = "30fe9f972285d79a"
+"""Identifies the signatures that this package expects of the module: the digest of its stub, which the module holds
+as well (src/native/bindings/abi.hpp)."""
 
 METHODS: tuple[type[Solver], ...] = (CCD, JacobianTranspose, PseudoInverse, DampedLeastSquares)
 """The solvers that the compiled engine implements; a class derived from one of them runs in Python."""
@@ -29,6 +33,8 @@ def load() -> Any:
         from ... import _native
     except ImportError as error:
         return f"it does not load: {error}"
+    if getattr(_native, "abi", None) != ABI:
+        return "the compiled module belongs to another build of pinik; install pinik again"
     if _native.pinocchio_version != pinocchio.__version__:
         return (
             f"it was built against Pinocchio {_native.pinocchio_version}, and {pinocchio.__version__} is installed; "

@@ -1,14 +1,14 @@
-// Where restarts begin: numbers that depend on seed, target and attempt alone, after pinik.starts.
+// Where attempts begin: numbers that depend only on seed, target and attempt; follows pinik.solving.starts.
 #pragma once
 
 #include <cstdint>
 
-#include "kinematics.hpp"
-#include "limits.hpp"
+#include "../model/limits.hpp"
+#include "../problem/kinematics.hpp"
 
 namespace pinik {
 
-// The number in [0, 1) that belongs to these four, by SplitMix64 (Steele, Lea and Flood 2014).
+// The number in [0, 1) that belongs to these four keys, by SplitMix64 (Steele, Lea and Flood 2014).
 inline double uniform(std::uint64_t seed, std::uint64_t target, std::uint64_t attempt, std::uint64_t index) {
   constexpr std::uint64_t golden = 0x9E3779B97F4A7C15ull;
   std::uint64_t z = seed;
@@ -21,17 +21,17 @@ inline double uniform(std::uint64_t seed, std::uint64_t target, std::uint64_t at
   return static_cast<double>(z >> 11) * 0x1p-53;
 }
 
-// The limits made finite for drawing, as pinik.Joint.range_to_draw_from makes them.
-inline std::pair<double, double> range_to_draw_from(const Joint& joint, double lower, double upper, double slide_about) {
-  constexpr double widest = 100.0;
+// The range from which a joint's value is drawn, as in pinik.model.joint.Joint.range_to_draw_from.
+inline std::pair<double, double> range_to_draw_from(const Joint& joint, double lower, double upper, double slide_about,
+                                                    double widest) {
   if (upper - lower <= widest) return {lower, upper};
   const double half = joint.slides() ? 1.0 : M_PI;
   const double middle = std::min(std::max(joint.slides() ? slide_about : 0.0, lower + half), upper - half);
   return {middle - half, middle + half};
 }
 
-// Where attempts begin that are given no start: at configurations of a table whose frames are near their targets, the
-// nearest first, then at drawn ones; after pinik.starts.
+// Chooses the start of each attempt that is given none: first the configurations of a table, in the order of how near
+// their frames are to the targets, then random ones.
 template <int Rows>
 class Starts {
  public:
@@ -53,12 +53,12 @@ class Starts {
       features_ += 3 * term.asks_position + 9 * term.asks_rotation + 3 * (term.asks_axis && !term.asks_at);
   }
 
-  // Whether any joint is drawn: without one, all starts are the same.
+  // Whether any joint is drawn at random; if none is, all starts are the same.
   bool draws() const { return !drawn_.empty(); }
 
-  // Start number 1, 2, … of one problem, the first of them first; all that is not drawn stays as in `start`.
-  void next(Kinematics<Rows>& kinematics, const Vector& start, std::uint64_t target, int number, Vector& q) {
-    if (number > nearest) return draw(start, start, target, static_cast<std::uint64_t>(number), q);
+  // Write start number 1, 2, … of one problem into `q`; number 1 must come first. What is not drawn is as in `start`.
+  void next(Kinematics<Rows>& kinematics, const Vector& start, std::uint64_t target, std::int64_t number, Vector& q) {
+    if (number > problem_.constants.table_nearest) return draw(start, start, target, static_cast<std::uint64_t>(number), q);
     if (number == 1) rank(kinematics, start);
     Eigen::Index best;
     scores_.minCoeff(&best);
@@ -71,16 +71,13 @@ class Starts {
   }
 
  private:
-  static constexpr int size = 256, nearest = 32;  // how many are kept, and tried before others are drawn
-  static constexpr std::uint64_t of_the_table = ~0ull;  // the table's key in place of a target's number
-
   const Problem& problem_;
   const Limits& limits_;
   const std::uint64_t seed_;
   std::vector<int> drawn_;  // joints
-  std::vector<int> still_;  // entries of q that the targets depend on and that are not drawn
-  Eigen::MatrixXd table_;   // (nq, size); empty before it is wanted
-  // A score is an entry of lengths_, and a row of seen_ times goal_.
+  std::vector<int> still_;  // entries of q that are not drawn although the targets depend on them
+  Eigen::MatrixXd table_;   // (nq, size); empty until it is needed
+  // scores_ = lengths_ + seen_ goal_
   Eigen::Index features_ = 0;
   Eigen::MatrixXd seen_;
   Vector lengths_, goal_, scores_;
@@ -93,7 +90,8 @@ class Starts {
       const double u = uniform(seed_, target, number, static_cast<std::uint64_t>(joint.idx_v));
       const int entry = joint.idx_q;
       const auto [low, high] =
-          range_to_draw_from(joint, limits_.lower[entry], limits_.upper[entry], slides_about[entry]);
+          range_to_draw_from(joint, limits_.lower[entry], limits_.upper[entry], slides_about[entry],
+                             problem_.constants.widest_range);
       const double angle = low + u * (high - low);
       if (joint.nq == 2) {
         q[entry] = std::cos(angle);
@@ -104,7 +102,7 @@ class Starts {
     }
   }
 
-  bool is_of_another(const Vector& start) const {
+  bool is_for_another(const Vector& start) const {
     if (table_.size() == 0) return true;
     for (int entry : still_)
       if (table_(entry, 0) != start[entry]) return true;
@@ -112,13 +110,15 @@ class Starts {
   }
 
   void make(Kinematics<Rows>& kinematics, const Vector& start) {
+    const Eigen::Index size = problem_.constants.table_size;
+    const double squared_metres_per_radian = problem_.squared_metres_per_radian;
     table_.resize(start.size(), size);
     seen_.resize(size, features_);
     lengths_.setZero(size);
     const Vector zero = Vector::Zero(start.size());
     Vector q;
     for (Eigen::Index k = 0; k < size; ++k) {
-      draw(start, zero, of_the_table, static_cast<std::uint64_t>(k), q);
+      draw(start, zero, problem_.constants.table_key, static_cast<std::uint64_t>(k), q);
       table_.col(k) = q;
       kinematics.forward(q);
       Eigen::Index f = 0;
@@ -142,10 +142,10 @@ class Starts {
     }
   }
 
-  // Give each of the table's configurations its squared distance from the goals, but for a constant: a radian counts as
-  // in Linearization::distance, its square as 2 − 2 cos.
+  // Compute the squared distance of each configuration in the table from the goals, up to a constant. A radian counts as
+  // in Linearization::distance, with 2 − 2 cos in place of its square.
   void rank(Kinematics<Rows>& kinematics, const Vector& start) {
-    if (is_of_another(start)) make(kinematics, start);
+    if (is_for_another(start)) make(kinematics, start);
     goal_.resize(features_);
     Eigen::Index f = 0;
     for (std::size_t t = 0; t < problem_.terms.size(); ++t) {

@@ -1,29 +1,28 @@
-// Residual and Jacobian of a problem at one configuration, after pinik.target_term and pinik.kinematics.
+// Residual and Jacobian of a problem at one configuration; follows pinik.problem.term and pinik.problem.kinematics.
 #pragma once
 
 #include <optional>
 #include <vector>
 
+#include "../model/fast.hpp"
 #include "chain.hpp"
-#include "fast.hpp"
 
 namespace pinik {
 
-// The targets seen from one configuration; Rows is 3, 6 or Eigen::Dynamic.
+// The targets linearised at one configuration; Rows is 3, 6 or Eigen::Dynamic.
 template <int Rows>
 struct Linearization {
   Vector q;
   Eigen::Matrix<double, Rows, 1> e;
-  Eigen::Matrix<double, Rows, Eigen::Dynamic> J;  // a column for each coordinate of the problem
+  Eigen::Matrix<double, Rows, Eigen::Dynamic> J;  // one column for each coordinate of the problem
   std::vector<TargetError> errors;
   double residual = 0.0;  // ‖e‖
-  double distance = 0.0;  // how far off in all [m], a radian counted as 0.3 m
+  double distance = 0.0;  // the error of all targets in one number [m]
 };
 
-constexpr double squared_metres_per_radian = 0.3 * 0.3;  // what orientation errors count in a distance
-
 template <int Rows>
-inline void see_chain(Chain& chain, const Goal& goal, bool at_target, Linearization<Rows>& at) {
+inline void see_chain(Chain& chain, const Problem& problem, bool at_target, Linearization<Rows>& at) {
+  const Goal& goal = problem.goals.front();
   const Placement frame = chain.forward(at.q.data());
   const Vec3 e = goal.position - frame.p;
   at.e.template head<3>() = e;
@@ -32,29 +31,30 @@ inline void see_chain(Chain& chain, const Goal& goal, bool at_target, Linearizat
   error.position = std::sqrt(squared);
   double turned = 0.0;
   if constexpr (Rows == 6) {
-    at.e.template tail<3>() = log3(goal.rotation * frame.R.transpose(), error.orientation);
+    const double size = problem.size_of_chain;
+    at.e.template tail<3>() = size * log3(goal.rotation * frame.R.transpose(), error.orientation);
     turned = error.orientation * error.orientation;
   }
-  at.residual = std::sqrt(squared + turned);
-  at.distance = std::sqrt(squared + squared_metres_per_radian * turned);
-  chain.jacobian(at_target ? goal.position : frame.p, at.J);
+  at.residual = std::sqrt(squared + problem.size_of_chain * problem.size_of_chain * turned);
+  at.distance = std::sqrt(squared + problem.squared_metres_per_radian * turned);
+  chain.jacobian(at_target ? goal.position : frame.p, problem.size_of_chain, at.J);
 }
 
-PINIK_FAST static void see(Chain& chain, const Goal& goal, bool at_target, Linearization<3>& at) {
-  see_chain(chain, goal, at_target, at);
+PINIK_FAST static void see(Chain& chain, const Problem& problem, bool at_target, Linearization<3>& at) {
+  see_chain(chain, problem, at_target, at);
 }
 
-PINIK_FAST static void see(Chain& chain, const Goal& goal, bool at_target, Linearization<6>& at) {
-  see_chain(chain, goal, at_target, at);
+PINIK_FAST static void see(Chain& chain, const Problem& problem, bool at_target, Linearization<6>& at) {
+  see_chain(chain, problem, at_target, at);
 }
 
-// Forward kinematics and what follows from it; holds the working memory of one thread.
+// Forward kinematics, residual and Jacobian, with the working memory of one thread.
 template <int Rows>
 class Kinematics {
  public:
   const Problem& problem;
-  bool target_jacobian = false;  // take the Jacobian at the target instead of the effector (thesis, eq. 3.9)
-  std::vector<Placement> world;  // by joint, of the last forward()
+  bool target_jacobian = false;  // whether the Jacobian is that of the target's position instead of the frame's (thesis, eq. 3.9)
+  std::vector<Placement> world;  // placements by joint, from the last forward()
 
   explicit Kinematics(const Problem& problem) : problem(problem), world(problem.mechanism->joints.size()) {
     if (Rows != Eigen::Dynamic && Chain::fits(problem)) chain_.emplace(problem);
@@ -69,7 +69,7 @@ class Kinematics {
 
   Placement frame(const Term& term) const { return world[term.frame_joint] * term.frame; }
 
-  // The frame in the axes that the target's numbers are in.
+  // The placement of the frame in its reference, in which the target's numbers are given.
   Placement seen_from_reference(const Term& term) const {
     const Placement at = frame(term);
     if (!term.has_reference) return at;
@@ -92,7 +92,7 @@ class Kinematics {
     if constexpr (Rows != Eigen::Dynamic) {
       if (chain_) {
         at.J.resize(Rows, columns);
-        return see(*chain_, problem.goals.front(), target_jacobian, at);
+        return see(*chain_, problem, target_jacobian, at);
       }
     }
     forward(at.q);
@@ -107,7 +107,7 @@ class Kinematics {
  private:
   std::optional<Chain> chain_;
 
-  // Write one term's rows; its squared, weighted share in the distance.
+  // Write one term's rows and return its contribution to the squared distance.
   double linearize_term(std::size_t index, Linearization<Rows>& at) const {
     const Term& term = problem.terms[index];
     const Placement frame = this->frame(term);
@@ -130,8 +130,8 @@ class Kinematics {
       row += 3;
     }
     if (term.asks_orientation()) {
-      at.e.template segment<3>(row) = term.weight * orientation(index, term, frame, goal, row, at, error.orientation);
-      own += squared_metres_per_radian * error.orientation * error.orientation;
+      at.e.template segment<3>(row) = term.turn_weight * orientation(index, term, frame, goal, row, at, error.orientation);
+      own += problem.squared_metres_per_radian * error.orientation * error.orientation;
     }
     return term.weight * term.weight * own;
   }
@@ -143,20 +143,20 @@ class Kinematics {
     if (term.asks_rotation) {
       for (const Part& part : parts)
         if (!part.slides && part.moves_frame != part.moves_reference)
-          column(part) += (part.moves_frame ? term.weight : -term.weight) * turn(part);
+          column(part) += (part.moves_frame ? term.turn_weight : -term.turn_weight) * turn(part);
       return log3(goal.rotation * frame.R.transpose(), angle);
     }
     const Vec3 axis = frame.R * term.axis;
     if (!term.asks_at) {
       for (const Part& part : parts)
         if (!part.slides && part.moves_frame != part.moves_reference)
-          column(part) += (part.moves_frame ? term.weight : -term.weight) * across(axis, turn(part));
+          column(part) += (part.moves_frame ? term.turn_weight : -term.turn_weight) * across(axis, turn(part));
       return shortest_rotation(axis, goal.direction, angle);
     }
     const Vec3 line = goal.at - frame.p;
     const double distance = line.norm();
     angle = 0.0;
-    if (distance < no_direction) return Vec3::Zero();
+    if (distance < problem.constants.no_direction) return Vec3::Zero();
     const Vec3 direction = line / distance;
     for (const Part& part : parts) {
       Vec3 turning = Vec3::Zero(), shift = Vec3::Zero();
@@ -165,17 +165,17 @@ class Kinematics {
         shift = velocity(part, frame.p);
       }
       if (part.moves_reference) shift -= velocity(part, goal.at);
-      column(part) += term.weight * (turning + direction.cross(shift) / distance);
+      column(part) += term.turn_weight * (turning + direction.cross(shift) / distance);
     }
     return shortest_rotation(axis, direction, angle);
   }
 
   static Vec3 across(const Vec3& axis, const Vec3& vector) { return vector - axis * axis.dot(vector); }
 
-  // How fast a hinge's coordinate turns what it carries.
+  // The angular velocity that a coordinate gives to the links behind its joint.
   Vec3 turn(const Part& part) const { return part.multiplier * world[part.joint].R.col(part.axis); }
 
-  // How fast a coordinate moves a point that it carries.
+  // The velocity that a coordinate gives to a point behind its joint.
   Vec3 velocity(const Part& part, const Vec3& point) const {
     const Placement& joint = world[part.joint];
     const Vec3 axis = part.multiplier * joint.R.col(part.axis);

@@ -7,12 +7,12 @@
 
 namespace pinik {
 
-// Branch-free, so that the compiler takes several angles at a time: reduced to [−π/4, π/4] by π/2 in three parts (Cody
-// and Waite), then Taylor's series. Right to 2e-16 for angles up to 1e5 rad; the library's own take over beyond.
-// All three arrays have room for a multiple of four.
+// The loop has no branches, so that the compiler can vectorise it. Angles are reduced to [−π/4, π/4] by π/2 in three
+// parts (Cody and Waite) and put into Taylor series. The error is below 2e-16 for angles up to 1e5 rad; beyond them the
+// standard library is used. The length of each array must be a multiple of four that is at least `count`.
 inline void sines_and_cosines(const double* __restrict angles, int count, double* __restrict sines,
                               double* __restrict cosines) {
-  constexpr double to_integer = 6755399441055744.0;  // 1.5 · 2⁵²: what is added to it is rounded to a whole number
+  constexpr double to_integer = 6755399441055744.0;  // 1.5 · 2⁵²: adding it rounds to a whole number
   constexpr double half_pi_1 = 0x1.921fb544p+0, half_pi_2 = 0x1.0b4611a6p-34, half_pi_3 = 0x1.3198a2e037073p-69;
   double farthest = 0.0;
   for (int k = 0; k < count; ++k) farthest = std::abs(angles[k]) > farthest ? std::abs(angles[k]) : farthest;
@@ -41,7 +41,7 @@ inline void sines_and_cosines(const double* __restrict angles, int count, double
     cosine = cosine * s - 1.0 / 720.0;
     cosine = cosine * s + 1.0 / 24.0;
     cosine = 1.0 - 0.5 * s + s * s * cosine;
-    // The number of quarters says which of the two is the sine, and the signs.
+    // The number of quarter turns decides which of the two values is the sine, and their signs.
     std::int64_t sine_bits, cosine_bits;
     std::memcpy(&sine_bits, &sine, sizeof sine);
     std::memcpy(&cosine_bits, &cosine, sizeof cosine);

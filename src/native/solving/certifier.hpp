@@ -1,16 +1,17 @@
-// The last word on an answer: forward kinematics by plain Pinocchio, which the solvers do not use.
+// Measures an answer's errors by Pinocchio's own forward kinematics, which the solvers do not use; follows
+// pinik.solving.state.measure_errors.
 #pragma once
 
 #include <memory>
 
-#include "problem.hpp"
+#include "../problem/problem.hpp"
 
 namespace pinik {
 
-// A robot as a model of Pinocchio's own.
+// A robot as a Pinocchio model.
 class Certifier {
  public:
-  // One thread's working memory.
+  // The working memory of one thread.
   class Memory {
    public:
     explicit Memory(const Certifier& certifier);
@@ -25,7 +26,7 @@ class Certifier {
   explicit Certifier(const Mechanism& mechanism);
   ~Certifier();
 
-  // Each target's error at q.
+  // The error of each target at q.
   std::vector<TargetError> errors(const Problem& problem, const Vector& q, Memory& memory) const;
 
  private:

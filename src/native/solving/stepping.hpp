@@ -1,7 +1,9 @@
-// One step of any method: clamped, scaled, and along the limits where it meets them; after pinik.stepping.
+// One step of any method: clamped, scaled, and redirected along the limits that it meets; follows
+// pinik.solving.stepping.
 #pragma once
 
-#include "sweep.hpp"
+#include "../solvers/directions.hpp"
+#include "../solvers/sweep.hpp"
 
 namespace pinik {
 
@@ -11,14 +13,15 @@ class Stepping {
   Stepping(const Solver& solver, Kinematics<Rows>& kinematics)
       : solver_(solver), kinematics_(kinematics), directions_(solver, kinematics.problem), sweep_(solver, kinematics) {}
 
-  // What damping goes by from now on, of the distance; by more where a target is proved out of reach.
-  void damp_by(double share, bool beyond) {
-    directions_.share_of_distance = share;
+  // Set the part of the distance that sets the damping, and whether a target is proved out of reach.
+  void damp_by(double part, bool beyond) {
+    directions_.part_of_distance = part;
     directions_.beyond = beyond;
   }
 
-  // The configuration after the next step from `at` into `q`; how many joints were updated one by one.
-  int advance(const Linearization<Rows>& from, const Limits& limits, const Tolerance& tolerance, double scale, Vector& q) {
+  // Write the configuration after the next step into `q`. Returns how many joints a sweep updated.
+  int advance(const Linearization<Rows>& from, const Limits& limits, const Tolerance& tolerance, double scale,
+              Vector& q) {
     if (solver_.sweeps()) {
       q = from.q;
       const int updates = sweep_(q, limits, tolerance);
@@ -57,7 +60,7 @@ class Stepping {
       if (held_[c]) dq_[static_cast<Eigen::Index>(c)] = 0.0;
     q = at.q;
     const double length = dq_.norm();
-    if (!std::isfinite(length)) return;  // no step: the loop will say that it stalled
+    if (!std::isfinite(length)) return;  // no step; the loop will report that it stalled
     if (length > solver_.max_step) {
       const double largest = dq_.cwiseAbs().maxCoeff();
       if (largest > solver_.max_step) dq_ *= solver_.max_step / largest;
@@ -75,8 +78,8 @@ class Stepping {
     }
   }
 
-  // The step again, after the first try `q` left the limits: joints that sat at a limit already and would go further
-  // out hold still and leave their part to the others, until none does; what is outside then is clipped.
+  // Repeat the step after the first attempt `q` left the limits. Joints that are at a limit and would move further out
+  // are held, so that the others take over their part, until no joint needs to be held; the rest is clipped.
   void along_limits(const Linearization<Rows>& at, const Limits& limits, double scale, Vector& q) {
     const Problem& problem = kinematics_.problem;
     for (;;) {
@@ -97,7 +100,7 @@ class Stepping {
     q = inside_;
   }
 
-  // Cut each position part to D_max, its direction kept: ClampMag of the thesis.
+  // Shorten the position part of each target to D_max without changing its direction (ClampMag of the thesis).
   void shorten(Eigen::Matrix<double, Rows, 1>& e) const {
     for (const Term& term : kinematics_.problem.terms)
       if (term.asks_position) {

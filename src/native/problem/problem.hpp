@@ -1,78 +1,56 @@
-// What a solve is asked for: targets compiled for one mechanism, as pinik.kinematics.Kinematics compiles them.
+// What a solve is asked for: targets compiled for one mechanism; follows pinik.problem.kinematics.
 #pragma once
 
-#include <limits>
 #include <vector>
 
-#include "mechanism.hpp"
+#include "../model/mechanism.hpp"
+#include "constants.hpp"
+#include "targets.hpp"
 
 namespace pinik {
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
-constexpr double no_direction = 1e-9;  // [m] nearer than this to the point that it looks at, a frame looks at it
-
-struct Tolerance {
-  double position = 1e-4, orientation = 1e-3;
-};
-
-// How far a target is missed; NaN for what it does not ask for.
-struct TargetError {
-  double position = std::nan(""), orientation = std::nan("");
-
-  bool within(const Tolerance& t) const {
-    return !(position > t.position) && !(orientation > t.orientation);
-  }
-};
-
-// Where one target wants its frame; what it does not ask for is not read. In the reference's axes, where there is one.
-struct Goal {
-  Vec3 position = Vec3::Zero();
-  Mat3 rotation = Mat3::Identity();
-  Vec3 direction = Vec3::UnitX();
-  Vec3 at = Vec3::Zero();
-};
-
-// One target's frame and what is asked of it, without the numbers that say where.
+// One target: its frame and what it constrains, without the numbers that change from solve to solve.
 struct Term {
   int frame_joint = 0, reference_joint = 0;
   Placement frame, reference;  // in their joints
   bool has_reference = false;
   bool asks_position = false, asks_rotation = false, asks_axis = false, asks_at = false;
   Vec3 axis = Vec3::UnitX();  // in the frame
-  double weight = 1.0;        // at most 1, the heaviest target's
+  double weight = 1.0;        // of the position's rows, relative to the heaviest target, which has 1
+  double turn_weight = 1.0;   // of the orientation's rows [m]: weight times Problem::size_of_chain
   int row = 0, rows = 0;
   std::vector<char> in_frame_support, in_reference_support;  // by joint
-  // What proves a position out of reach: bounds on its distance from the chain's first joint.
+  // Bounds on the distance from the chain's first joint, which prove that a position is out of reach.
   bool has_bounds = false;
   Vec3 base = Vec3::Zero();
-  double reach[2] = {infinity, infinity}, hole[2] = {0.0, 0.0};  // without and with limits
+  double reach[2] = {infinity, infinity}, hole[2] = {0.0, 0.0};  // [0] without limits, [1] with limits
 
   bool asks_orientation() const { return asks_rotation || asks_axis; }
 };
 
-// A joint that moves with a coordinate, and how much of it: the coordinate's own joint, or one that mimics it.
+// A joint that moves with a coordinate, and by how much: the coordinate's own joint, or one that mimics it.
 struct Mover {
   int joint;
   double multiplier;
 };
 
-// One free tangent coordinate.
+// One free coordinate of the tangent space.
 struct Coordinate {
-  int joint = 0, index = 0;  // whose, and which of its tangent coordinates
-  int entry = -1;            // in q, where it has limits
-  std::vector<Mover> movers;  // that move a frame relative to its reference
-  std::vector<Mover> moved;   // all, those too that move both
-  bool slides = false;  // the first mover
+  int joint = 0, index = 0;  // its joint, and which of the joint's tangent coordinates it is
+  int entry = -1;            // the entry of q that has its limits; −1 if there is none
+  std::vector<Mover> movers;  // joints that move a frame relative to its reference
+  std::vector<Mover> moved;   // all joints that move, including those that move frame and reference alike
+  bool slides = false;  // whether the first mover slides
 };
 
-// One mover's share in one term's Jacobian column.
+// The contribution of one mover to a column of one term's Jacobian.
 struct Part {
   int coordinate, joint, axis;
   double multiplier;
   bool slides, moves_frame, moves_reference;
 };
 
-// A joint that owns coordinates: their numbers by tangent coordinate of the joint, −1 for those that are not free.
+// A joint that has free coordinates: their numbers by tangent coordinate of the joint, −1 where one is not free.
 struct MovingJoint {
   int joint;
   int coordinates[6];
@@ -80,20 +58,24 @@ struct MovingJoint {
 
 struct Problem {
   const Mechanism* mechanism = nullptr;
+  Constants constants;
   std::vector<Term> terms;
-  std::vector<Coordinate> coordinates;  // distal joints first, as CCD visits them
-  std::vector<int> joints;              // all that the terms' frames hang on, base first
+  std::vector<Coordinate> coordinates;  // from the tip to the base, in CCD's order
+  std::vector<int> joints;              // all joints that the terms' frames depend on, from the base
   std::vector<std::vector<Part>> parts;  // by term
-  std::vector<MovingJoint> moving;       // base first
+  std::vector<MovingJoint> moving;       // from the base
   int rows = 0;
-  bool is_plain = true;  // every coordinate is a number in q
-  double lightest = 1.0, size_of_chain = 1.0;  // the smallest weight, the longest chain [m]
-  std::vector<Goal> goals;                     // by term; a solve's own
+  bool is_plain = true;  // whether every coordinate is one entry of q
+  double lightest = 1.0, size_of_chain = 1.0;  // the smallest weight; the length of the longest chain [m]
+  double squared_metres_per_radian = 1.0;      // what a radian counts in Linearization::distance
+  std::vector<Goal> goals;                     // by term; each solve sets them
 
-  // Fill in all that follows from terms and coordinates.
+  // Compute everything that follows from terms and coordinates.
   void finish() {
     rows = 0;
+    squared_metres_per_radian = (constants.radian * size_of_chain) * (constants.radian * size_of_chain);
     for (Term& term : terms) {
+      term.turn_weight = term.weight * size_of_chain;
       term.row = rows;
       term.rows = 3 * (term.asks_position + term.asks_orientation());
       rows += term.rows;
@@ -134,7 +116,7 @@ struct Problem {
     return j.slides() || (j.kind == JointKind::floating && index < 3) || (j.kind == JointKind::planar && index < 2);
   }
 
-  // Which of its own axes a joint's tangent coordinate goes along or about.
+  // The joint axis along or about which a tangent coordinate moves: 0, 1 or 2.
   int axis_of(int joint, int index) const { return mechanism->joints[joint].has_one_axis() ? 2 : index % 3; }
 
  private:

@@ -1,4 +1,4 @@
-// All that needs Pinocchio's own model: compiled apart, as its headers take a minute.
+// Everything that needs Pinocchio's headers, which take a minute to compile.
 #include "certifier.hpp"
 
 #include <pinocchio/algorithm/kinematics.hpp>
@@ -26,7 +26,7 @@ void add_one_axis(pinocchio::Model& model, const Mechanism& mechanism, const Joi
       model.addJoint(parent, mimic, placement, name);
       return;
     }
-  throw std::invalid_argument("a follower comes before its leader");
+  throw std::invalid_argument("a mimic joint must come after the joint that it follows");
 }
 
 void add(pinocchio::Model& model, const Mechanism& mechanism, std::size_t number) {
@@ -50,7 +50,7 @@ pinocchio::SE3 in_world(int joint, const Placement& placement, const pinocchio::
   return data.oMi[static_cast<std::size_t>(joint)] * se3(placement);
 }
 
-TargetError error_of(const Term& term, const Goal& goal, const pinocchio::Data& data) {
+TargetError error_of(const Term& term, const Goal& goal, double no_direction, const pinocchio::Data& data) {
   pinocchio::SE3 at = in_world(term.frame_joint, term.frame, data);
   if (term.has_reference) at = in_world(term.reference_joint, term.reference, data).actInv(at);
   TargetError error;
@@ -63,7 +63,7 @@ TargetError error_of(const Term& term, const Goal& goal, const pinocchio::Data& 
     const bool there = term.asks_at && direction.norm() < no_direction;
     error.orientation = there ? 0.0 : std::atan2(axis.cross(direction).norm(), axis.dot(direction));
   }
-  // What was asked for and cannot be measured is missed, not left out.
+  // An error that cannot be computed counts as a miss.
   if (term.asks_position && !std::isfinite(error.position)) error.position = infinity;
   if (term.asks_orientation() && !std::isfinite(error.orientation)) error.orientation = infinity;
   return error;
@@ -110,7 +110,7 @@ std::vector<TargetError> Certifier::errors(const Problem& problem, const Vector&
   pinocchio::forwardKinematics(model_->model, data, q);
   std::vector<TargetError> errors;
   for (std::size_t t = 0; t < problem.terms.size(); ++t)
-    errors.push_back(error_of(problem.terms[t], problem.goals[t], data));
+    errors.push_back(error_of(problem.terms[t], problem.goals[t], problem.constants.no_direction, data));
   return errors;
 }
 

@@ -1,8 +1,8 @@
-// Cyclic coordinate descent: one pass over the joints, after pinik.solvers.ccd.
+// Cyclic coordinate descent: one pass over the joints; follows pinik.solvers.ccd.
 #pragma once
 
+#include "../model/limits.hpp"
 #include "chaser.hpp"
-#include "limits.hpp"
 #include "solver.hpp"
 
 namespace pinik {
@@ -10,9 +10,10 @@ namespace pinik {
 template <int Rows>
 class Sweep {
  public:
-  Sweep(const Solver& solver, Kinematics<Rows>& kinematics) : solver_(solver), kinematics_(kinematics) {}
+  Sweep(const Solver& solver, Kinematics<Rows>& kinematics)
+      : solver_(solver), kinematics_(kinematics), constants_(kinematics.problem.constants) {}
 
-  // One pass from the distal joints to the base, in place; how many joints were updated.
+  // One pass from the tip to the base, in place. Returns how many joints were updated.
   int operator()(Vector& q, const Limits& limits, const Tolerance& tolerance) {
     const Problem& problem = kinematics_.problem;
     look(q);
@@ -35,21 +36,15 @@ class Sweep {
       if (problem.mechanism->joints[static_cast<std::size_t>(coordinate.joint)].nv == 1)
         carry(coordinate, axis, origin, change);
       else
-        look(q);  // the joint's other coordinates turned with it
+        look(q);  // this also turned the axes of the joint's other coordinates
     }
     return updates;
   }
 
  private:
-  static constexpr int halvings = 12;
-  // Of coordinates and unit axes behind a chain of joints; a joint that would follow it alone stays.
-  static constexpr double rounding = 1e-14;
-  // Across a joint's axis so much less than along it that rounding may be all there is.
-  static constexpr double suspect = 1e-6;
-  static constexpr double no_column = 1e-12;  // of a Jacobian [m or rad]
-
   const Solver& solver_;
   Kinematics<Rows>& kinematics_;
+  const Constants& constants_;
   std::vector<Chaser> chasers_;
   Linearization<Rows> at_;
 
@@ -68,7 +63,7 @@ class Sweep {
     return true;
   }
 
-  // How far a coordinate may change, downwards and upwards.
+  // How far a coordinate may decrease and increase.
   static std::pair<double, double> room(const Coordinate& coordinate, const Vector& q, const Limits& limits) {
     if (coordinate.entry < 0 || !limits.enabled) return {-infinity, infinity};
     const double value = q[coordinate.entry];
@@ -85,7 +80,7 @@ class Sweep {
       q[joint.idx_q] = std::min(std::max(q[joint.idx_q], limits.lower[joint.idx_q]), limits.upper[joint.idx_q]);
   }
 
-  // The exact solution of the coordinate's own problem, scaled, inside its room.
+  // The exact solution of the problem in this one coordinate, scaled and clamped to its limits.
   double best_change(const Coordinate& coordinate, const Vec3& axis, const Vec3& origin, const Vector& q,
                      const Limits& limits, double scale) const {
     const auto [mover, multiplier] = coordinate.movers.front();
@@ -103,17 +98,17 @@ class Sweep {
       for (const Chaser& chaser : chasers_)
         if (chaser.moved_by(mover)) M += chaser.correlation(mover, origin);
       Turning g = turning(M, axis);
-      if (g.cosine * g.cosine + g.sine * g.sine <= suspect * suspect * g.along * g.along)
+      if (g.cosine * g.cosine + g.sine * g.sine <= constants_.ccd_suspect * constants_.ccd_suspect * g.along * g.along)
         g = measured_across(mover, axis, origin);
       change = best_turn(g, low, high, scale < 1.0 || solver_.max_step < M_PI);
-      // The long way round to a goal has none of its own to overshoot into.
+      // A turn the long way round must not overshoot its goal.
       if (scale > 1.0 && std::abs(change) > M_PI) scale = 1.0;
     }
     change = std::min(std::max(scale * change, low), high) / multiplier;
     return std::min(std::max(change, -solver_.max_step), solver_.max_step);
   }
 
-  // Σ w (d − c)·a / Σ w over the pairs that the joint changes; Welman's eq. 4.24 for one.
+  // Σ w (d − c)·a / Σ w over the pairs that the joint changes; for one pair Welman's eq. 4.24.
   double best_slide(int joint, const Vec3& axis, const Vec3& origin) const {
     double pull = 0.0, weight = 0.0;
     for (const Chaser& chaser : chasers_) {
@@ -127,7 +122,7 @@ class Sweep {
     return weight > 0.0 ? pull / weight : 0.0;
   }
 
-  // k₂ − k₁ and k₃ of g (Welman's eq. 4.19), and the size of what they are the differences of.
+  // k₂ − k₁ and k₃ of g (Welman's eq. 4.19), and the size of the terms that were subtracted.
   struct Turning {
     double cosine, sine, along;
   };
@@ -139,8 +134,8 @@ class Sweep {
     return {k2 - k1, k3, std::abs(k1) + std::abs(k2)};
   }
 
-  // The same without a difference of large numbers; nothing where rounding alone may make as much of them. So it is
-  // where the effector lies on the joint's axis, or the axis that it should turn is the joint's own.
+  // The same without subtracting large numbers. Returns zero where the result could be rounding alone, which happens when
+  // the effector lies on the joint's axis, or when the axis to be turned is the joint's axis.
   Turning measured_across(int joint, const Vec3& axis, const Vec3& origin) const {
     Chaser::Across sum;
     for (const Chaser& chaser : chasers_) {
@@ -150,11 +145,11 @@ class Sweep {
       sum.sine += own.sine;
       sum.blur += own.blur;
     }
-    if (std::hypot(sum.cosine, sum.sine) <= rounding * sum.blur) return {0.0, 0.0, 0.0};
+    if (std::hypot(sum.cosine, sum.sine) <= constants_.ccd_rounding * sum.blur) return {0.0, 0.0, 0.0};
     return {sum.cosine, sum.sine, 0.0};
   }
 
-  // The φ in [low, high] that maximises g, which is as cosine · cos φ + sine · sin φ.
+  // The φ in [low, high] that maximises cosine · cos φ + sine · sin φ.
   static double best_turn(const Turning& g, double low, double high, bool shortest) {
     if (g.cosine == 0.0 && g.sine == 0.0) return 0.0;
     const double best = std::atan2(g.sine, g.cosine);
@@ -182,21 +177,22 @@ class Sweep {
     }
   }
 
-  // A change that lowers the residual, for a leader whose followers move the targets as well: it turns about several
-  // lines at once and has no closed form, so a Gauss-Newton step along its column is halved until the residual falls.
+  // A change that reduces the residual, for a leader whose followers move the targets as well. It turns about several
+  // axes at once, so there is no closed form; a Gauss-Newton step along its column is halved until the residual falls.
   double downhill_change(std::size_t c, const Vector& q, const Limits& limits, double part) {
     const Coordinate& coordinate = kinematics_.problem.coordinates[c];
     at_.q = q;
     kinematics_.linearize(at_);
     const auto column = at_.J.col(static_cast<Eigen::Index>(c));
     const double squared = column.squaredNorm();
-    const double least = no_column * kinematics_.problem.lightest;
-    if (squared <= least * least) return 0.0;  // its followers cancel it, but for rounding
+    const Problem& problem = kinematics_.problem;
+    const double least = constants_.ccd_no_column * problem.lightest * problem.size_of_chain;
+    if (squared <= least * least) return 0.0;  // the motion of its followers cancels it
     const auto [low, high] = room(coordinate, q, limits);
     const double wanted = part * column.dot(at_.e) / squared;
     double change = std::min({std::max({wanted, low, -solver_.max_step}), high, solver_.max_step});
     const double before = at_.e.squaredNorm();
-    for (int k = 0; k < halvings; ++k) {
+    for (int k = 0; k < constants_.ccd_halvings; ++k) {
       at_.q = q;
       advance(coordinate, change, at_.q, limits);
       kinematics_.linearize(at_);

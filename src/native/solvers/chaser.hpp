@@ -1,23 +1,23 @@
-// One target during a sweep of cyclic coordinate descent, after pinik.solvers.chaser.
+// One target during a sweep of cyclic coordinate descent; follows pinik.solvers.chaser.
 #pragma once
 
-#include "kinematics.hpp"
+#include "../problem/kinematics.hpp"
 
 namespace pinik {
 
-// Effector and goal, carried along without a forward kinematics.
+// The frame (effector) and its goal, moved along with each joint update without computing forward kinematics again.
 struct Chaser {
   const Term* term = nullptr;
-  double weight = 1.0, alpha = 0.0, max_residual = infinity;
-  int axes = 0;           // columns of U and V that matter: 0, 1 or 3
+  double weight = 1.0, alpha = 0.0, max_residual = infinity, no_direction = 0.0;
+  int axes = 0;           // how many columns of U and V are used: 0, 1 or 3
   bool has_goal = false, has_at = false;
   Vec3 p, goal, at;
-  Mat3 U, V;              // the effector's axes, and where they should be
+  Mat3 U, V;              // the effector's axes and their goals
 
   template <int Rows>
   Chaser(const Kinematics<Rows>& kinematics, std::size_t index, double alpha, double max_residual)
       : term(&kinematics.problem.terms[index]), weight(term->weight * term->weight), alpha(alpha),
-        max_residual(max_residual) {
+        max_residual(max_residual), no_direction(kinematics.problem.constants.no_direction) {
     const Placement frame = kinematics.frame(*term);
     const Goal wanted = kinematics.wanted(index);
     p = frame.p;
@@ -59,7 +59,7 @@ struct Chaser {
     return std::atan2(u.cross(v).norm(), u.dot(v));
   }
 
-  // Σ w c dᵀ of what the joint carries (c) and where it should go (d), seen from `origin`.
+  // Σ w c dᵀ over the vectors c that the joint moves and their goals d, both relative to `origin`.
   Mat3 correlation(int joint, const Vec3& origin) const {
     Mat3 M = Mat3::Zero();
     if (axes == 3)
@@ -74,7 +74,7 @@ struct Chaser {
     return M;
   }
 
-  // Calls `see` with each pair of effector's point, its goal and their weight.
+  // Call `see` with each point of the effector, its goal and their weight.
   template <class See>
   void for_each_pair(const Vec3& origin, See see) const {
     if (has_goal) {
@@ -92,8 +92,8 @@ struct Chaser {
     }
   }
 
-  // What `correlation` holds across a joint's axis: Σ w c·d, Σ w a·(c × d), and what a relative error of 1 in every
-  // coordinate would make of them.
+  // The part of `correlation` perpendicular to a joint's axis: Σ w c·d, Σ w a·(c × d), and the error of these sums for a
+  // relative error of 1 in every coordinate.
   struct Across {
     double cosine = 0.0, sine = 0.0, blur = 0.0;
   };
@@ -114,7 +114,7 @@ struct Chaser {
     return {weight * sum.cosine, moves_frame(joint) ? weight * sum.sine : -weight * sum.sine, weight * sum.blur};
   }
 
-  // Turn about `origin`, or shift, what the joint moves: effector, goal, or both.
+  // Rotate about `origin`, or shift, whatever the joint moves: the effector, the goal, or both.
   void carry(int joint, const Vec3& origin, const Mat3* R, const Vec3& shift) {
     auto moved = [&](const Vec3& point) -> Vec3 { return R ? Vec3(origin + *R * (point - origin)) : Vec3(point + shift); };
     if (term->in_frame_support[static_cast<std::size_t>(joint)]) {
@@ -129,7 +129,7 @@ struct Chaser {
   }
 
  private:
-  // The goal, or the point on the way to it that D_max allows.
+  // The goal, or the point on the way to it at the distance D_max.
   Vec3 drawn_goal() const {
     if (max_residual == infinity) return goal;
     const Vec3 e = goal - p;
@@ -137,7 +137,7 @@ struct Chaser {
     return length <= max_residual ? goal : Vec3(p + e * (max_residual / length));
   }
 
-  // The direction of the point to look at; the axis itself where that has none.
+  // The direction to the point to look at; the axis itself if the point is too near to have a direction.
   Vec3 facing() const {
     if (!has_at) return V.col(0);
     const Vec3 line = at - p;

@@ -1,15 +1,15 @@
-// The commonest question made fast: one frame, carried by a chain of one-axis joints that mimic nothing.
+// A fast path for the most common problem: one frame at the end of a chain of one-axis joints without mimic joints.
 #pragma once
 
 #include <cstring>
 #include <vector>
 
+#include "../model/trigonometry.hpp"
 #include "problem.hpp"
-#include "trigonometry.hpp"
 
 namespace pinik {
 
-// Residual and Jacobian in one walk along the chain; what the general pinik::Kinematics computes for such a problem.
+// Computes residual and Jacobian in one walk along the chain, with the same result as the general pinik::Kinematics.
 class Chain {
  public:
   explicit Chain(const Problem& problem) {
@@ -28,7 +28,7 @@ class Chain {
     for (std::vector<double>* numbers : {&angles_, &sines_, &cosines_}) numbers->resize(links_.size() + 3);
   }
 
-  // Whether a problem is of that kind.
+  // Whether this class can be used for a problem.
   static bool fits(const Problem& problem) {
     if (problem.terms.size() != 1) return false;
     const Term& term = problem.terms.front();
@@ -42,7 +42,7 @@ class Chain {
     return true;
   }
 
-  // Where the frame is with the values q; keeps the joints' lines for jacobian().
+  // The placement of the frame at q. Keeps the axes of the joints for jacobian().
   Placement forward(const double* q) {
     const int count = static_cast<int>(links_.size());
     for (int k = 0; k < count; ++k) angles_[k] = q[links_[k].entry];
@@ -61,7 +61,7 @@ class Chain {
         cosine = angles_[k];
         sine = q[link.entry + 1];
       }
-      // The joint's own turn goes into its placement first, which leaves the shorter way from link to link.
+      // Applying the joint's rotation to its placement first shortens the dependency chain from link to link.
       const Vec3 a = cosine * R.col(0) + sine * R.col(1), b = cosine * R.col(1) - sine * R.col(0), c = R.col(2);
       const Vec3 moved = t + shift * c;
       p += x * moved[0] + y * moved[1] + z * moved[2];
@@ -80,29 +80,29 @@ class Chain {
     return at;
   }
 
-  // The columns of the last forward(), for a point that the last link carries.
+  // The Jacobian of a point that is fixed to the last link, at the configuration of the last forward().
   template <int Rows>
-  void jacobian(const Vec3& point, Eigen::Matrix<double, Rows, Eigen::Dynamic>& J) const {
+  void jacobian(const Vec3& point, double turn_weight, Eigen::Matrix<double, Rows, Eigen::Dynamic>& J) const {
     for (const Link& link : links_) {
       if (link.column < 0) continue;
       auto column = J.col(link.column);
       const Eigen::Map<const Vec3> axis(link.axis), origin(link.origin);
       column.template head<3>() = link.slides ? Vec3(axis) : Vec3(axis.cross(point - origin));
-      if constexpr (Rows == 6) column.template tail<3>() = link.slides ? Vec3(Vec3::Zero()) : Vec3(axis);
+      if constexpr (Rows == 6) column.template tail<3>() = link.slides ? Vec3(Vec3::Zero()) : Vec3(turn_weight * axis);
     }
   }
 
  private:
-  using Column = double __attribute__((vector_size(32)));  // of a matrix with three rows
+  using Column = double __attribute__((vector_size(32)));  // a column of a matrix with three rows
 
   static Vec3 as_vector(const Column& column) { return {column[0], column[1], column[2]}; }
 
   struct Link {
-    Placement placement;  // in the link before
-    int entry = 0;  // of q
+    Placement placement;  // in the previous link
+    int entry = 0;  // in q
     bool is_circle = false, slides = false;
-    int column = -1;          // of the Jacobian; −1 for a joint that holds still
-    double axis[4] = {}, origin[4] = {};  // in the world; the fourth is nothing
+    int column = -1;          // of the Jacobian; −1 for a joint that does not move
+    double axis[4] = {}, origin[4] = {};  // in the world; the fourth number is unused
   };
 
   std::vector<Link> links_;

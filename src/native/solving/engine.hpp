@@ -1,34 +1,18 @@
-// One problem with one method and its settings, ready to be solved again and again, from any thread.
+// One problem with one method and its settings, which can be solved again and again from any thread.
 #pragma once
 
 #include <algorithm>
-#include <condition_variable>
-#include <exception>
 #include <memory>
 #include <mutex>
-#include <system_error>
-#include <thread>
+#include <new>
 #include <variant>
 
 #include "attempts.hpp"
 #include "certifier.hpp"
+#include "pool.hpp"
+#include "robot.hpp"
 
 namespace pinik {
-
-// A robot as the engine knows it.
-struct Robot {
-  Mechanism mechanism;
-  std::unique_ptr<Certifier> certifier;
-
-  void finish() { certifier = std::make_unique<Certifier>(mechanism); }
-};
-
-// An outcome whose errors plain Pinocchio has measured; it has the last word on the status.
-struct Answer : Outcome {
-  std::vector<TargetError> errors;
-  std::vector<Goal> goals;  // what was asked
-  double seconds = 0.0;
-};
 
 class Engine {
  public:
@@ -47,20 +31,15 @@ class Engine {
     return answer;
   }
 
-  // Solve `count` problems from threads of their own, `take` telling start and goals of each and `put` taking its
-  // answer; numbers decide what is drawn, not threads. `pause` is called now and then and says whether to go on.
+  // Solve `count` problems in several threads. `take` sets the start and the goals of a problem, `put` receives its
+  // answer, and `pause` is called now and then and returns whether to continue. The number of a problem seeds its random
+  // starts, so that the answers do not depend on the threads.
   template <class Take, class Put, class Pause>
-  void solve_many(std::uint64_t count, int threads, bool nearest, Take take, Put put, Pause pause) {
+  void solve_many(std::uint64_t count, int threads, bool nearest, const Take& take, const Put& put, Pause pause) {
     std::atomic<std::uint64_t> next{0};
     std::atomic<bool> stop{false};
-    std::exception_ptr failure;
-    int working = 0;
-    std::mutex mutex;
-    std::condition_variable finished;
-    auto work = [&] {
-      std::exception_ptr caught;
-      try {
-        std::unique_ptr<Worker> worker = borrow();
+    const auto make = [&] {
+      return [&, worker = borrow()]() mutable {
         Vector start;
         std::vector<Goal> goals;
         for (std::uint64_t i = next++; i < count && !stop; i = next++) {
@@ -68,34 +47,9 @@ class Engine {
           put(i, worker->solve(*robot_, settings_, start, goals, i, nearest, {&stop, nullptr}));
         }
         give_back(std::move(worker));
-      } catch (...) {
-        caught = std::current_exception();
-        stop = true;
-      }
-      const std::lock_guard<std::mutex> lock(mutex);
-      if (caught) failure = caught;
-      if (--working == 0) finished.notify_one();
+      };
     };
-    std::vector<std::thread> pool;
-    const std::uint64_t wanted = std::min<std::uint64_t>(static_cast<std::uint64_t>(threads), count);
-    {
-      std::unique_lock<std::mutex> lock(mutex);
-      try {
-        for (std::uint64_t t = 0; t < wanted; ++t) {
-          pool.emplace_back(work);
-          ++working;
-        }
-      } catch (const std::system_error&) {  // the system gives no more threads: those that run do the work
-        if (pool.empty()) throw;
-      }
-      while (!finished.wait_for(lock, std::chrono::milliseconds(20), [&] { return working == 0; })) {
-        lock.unlock();
-        if (!pause()) stop = true;
-        lock.lock();
-      }
-    }
-    for (std::thread& thread : pool) thread.join();
-    if (failure) std::rethrow_exception(failure);
+    share(std::min<std::uint64_t>(static_cast<std::uint64_t>(threads), count), stop, make, pause);
   }
 
  private:
@@ -116,7 +70,7 @@ class Engine {
         attempts.emplace<3>(problem, settings, interrupts);
     }
 
-    // The start is put inside the limits.
+    // Solve one problem; `start` is put inside the limits.
     Answer solve(const Robot& robot, const Settings& settings, Vector& start, std::vector<Goal>& goals,
                  std::uint64_t target, bool nearest, const Interrupts& now) {
       const Clock::time_point began = Clock::now();
@@ -164,7 +118,10 @@ class Engine {
 
   void give_back(std::unique_ptr<Worker> worker) {
     const std::lock_guard<std::mutex> lock(mutex_);
-    idle_.push_back(std::move(worker));
+    try {
+      idle_.push_back(std::move(worker));
+    } catch (const std::bad_alloc&) {  // the worker is deleted instead of kept
+    }
   }
 };
 

@@ -1,32 +1,17 @@
-// One run of one method from one start, after pinik.run: the loop.
+// One run of one method from one start: the loop; follows pinik.solving.run.
 #pragma once
 
+#include "state.hpp"
 #include "stepping.hpp"
 
 namespace pinik {
 
-// Why a run ended, numbered as the members of pinik.Status; `running` where it has not.
-enum class Status { converged, stalled, max_iterations, time_limit, unreachable, running };
-
-struct State {
-  Vector q;
-  long iteration = 0, joint_updates = 0;
-  std::vector<TargetError> errors;
-  double residual = infinity;
-  int attempt = 0;
-  Status status = Status::running;
-};
-
 struct RunSettings {
-  long max_iterations = 100;
+  std::int64_t max_iterations = 0;
   Tolerance tolerance;
   Patience patience;
   bool bold = false, downhill = false, beyond = false;
-  int attempt = 0;
 };
-
-// What a bold run's damping goes by, of the distance.
-inline const double of_the_distance = std::sqrt(0.1);
 
 template <int Rows>
 class Run {
@@ -34,20 +19,20 @@ class Run {
   Run(const Solver& solver, Kinematics<Rows>& kinematics)
       : solver_(solver), kinematics_(kinematics), stepping_(solver, kinematics) {}
 
-  // Run from `start`, which is inside the limits. `see(at, iteration, updates, status)` is called with every state,
-  // the start's too, and says whether to go on.
+  // Run from `start`, which is inside the limits. Calls `see(at, iteration, updates, status)` with every state, including
+  // the start's, and stops when it returns false.
   template <class See>
   void operator()(const Vector& start, const Limits& limits, const Limits& loose, const RunSettings& settings, See see) {
     const bool bold = settings.bold && !solver_.sweeps();
-    stepping_.damp_by(bold ? of_the_distance : 1.0, settings.beyond);
+    stepping_.damp_by(bold ? kinematics_.problem.constants.bold_part_of_distance : 1.0, settings.beyond);
     const Limits* box = bold && limits.enabled ? &loose : &limits;
     at_.q = start;
     kinematics_.linearize(at_);
     double milestone = at_.residual, scale = 1.0;
-    long since = 0, iteration = 0, updates = 0;
+    std::int64_t since = 0, iteration = 0, updates = 0;
     for (;;) {
       bool reached = all_within(settings.tolerance);
-      if (reached && !limits.contains(at_.q)) {  // only a run that steps freely gets there
+      if (reached && !limits.contains(at_.q)) {  // only a bold run gets there
         box = &limits;
         limits.wrap(at_.q);
         limits.clip(at_.q);

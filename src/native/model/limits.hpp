@@ -1,14 +1,16 @@
-// Joint limits as a box in which configurations are kept, after pinik.limits.
+// Joint limits as a box that contains the allowed configurations; follows pinik.model.limits.
 #pragma once
 
-#include "problem.hpp"
+#include <vector>
+
+#include "mechanism.hpp"
 
 namespace pinik {
 
 struct Limits {
   bool enabled = true;
-  Vector lower, upper;         // of the entries of q; infinite where there are none
-  std::vector<char> turning;   // which entries are hinge angles, equal when whole turns apart
+  Vector lower, upper;         // for each entry of q; infinite if there is none
+  std::vector<char> turning;   // which entries are angles, where a whole turn changes nothing
 
   static Limits of(const Mechanism& mechanism, bool enabled) {
     Limits limits;
@@ -27,7 +29,7 @@ struct Limits {
     return limits;
   }
 
-  // Without the limits, but for those that leave a joint only one value.
+  // The same box without its limits, except for those that leave a joint a single value.
   Limits loosened() const {
     Limits loose = *this;
     loose.enabled = false;
@@ -49,7 +51,7 @@ struct Limits {
     return !enabled || ((q.array() >= lower.array()) && (q.array() <= upper.array())).all();
   }
 
-  // Turn hinge angles that lie outside by whole turns, as near to their limits as they get.
+  // Turn angles outside their limits by whole turns, to the representative nearest to the middle of the range.
   void wrap(Vector& q) const {
     if (!enabled) return;
     for (Eigen::Index i = 0; i < q.size(); ++i)

@@ -1,4 +1,4 @@
-// A robot's joints, made ready for fast forward kinematics.
+// A robot's joints, prepared for fast forward kinematics.
 #pragma once
 
 #include <vector>
@@ -9,33 +9,33 @@ namespace pinik {
 
 enum class JointKind { revolute, continuous, prismatic, floating, planar };
 
-// One movable joint as pinik.Joint describes it; index 0 of a mechanism's joints is the world.
+// One movable joint, as pinik.model.joint describes it. Index 0 of a mechanism's joints is the world.
 struct Joint {
   JointKind kind = JointKind::revolute;
   int parent = 0;
-  Placement placement;         // in the parent joint, both turned so that their lines are their z axes
-  Mat3 to_line = Mat3::Identity();  // what turns z onto the joint's own axis
-  int idx_q = 0, nq = 0;       // a follower has no entries of its own: nq = 0 and its leader's idx_q
+  Placement placement;         // in the parent joint; both are turned so that their axes become z
+  Mat3 to_line = Mat3::Identity();  // the rotation that turns z onto the joint's axis
+  int idx_q = 0, nq = 0;       // a follower has nq = 0 and the idx_q of its leader
   int idx_v = 0, nv = 0;
   bool follows = false;
   double multiplier = 1.0, offset = 0.0;
-  double lower = 0.0, upper = 0.0;  // [rad or m], a leader's cut by its followers'; infinite where there are none
-  bool shared = false;              // whether others follow it
+  double lower = 0.0, upper = 0.0;  // [rad or m]; infinite if there are none
+  bool shared = false;              // whether other joints follow it
 
   bool has_one_axis() const { return kind != JointKind::floating && kind != JointKind::planar; }
   bool slides() const { return kind == JointKind::prismatic; }
 };
 
-// The entries of a floating or planar joint moved by a tangent step, in place.
+// Apply a tangent step to the entries of a floating or planar joint, in place.
 void integrate_free(JointKind kind, double* own, const double* step);
 
-// A robot: its joints in the order of Pinocchio's model.
+// The joints of a robot, in the order of Pinocchio's model.
 class Mechanism {
  public:
   std::vector<Joint> joints{Joint()};  // the world
   int nq = 0;
 
-  // Where a joint with these values is, its parent being at `parent`.
+  // The placement of a joint in the world for the configuration q, when its parent is at `parent`.
   Placement moved(const Placement& parent, const Joint& joint, const double* q) const {
     Placement at = parent * joint.placement;
     const double* own = q + joint.idx_q;
@@ -63,7 +63,7 @@ class Mechanism {
     return at;
   }
 
-  // q moved by a tangent step of one joint, in place; `step` points at the joint's own entries.
+  // Apply a tangent step of one joint to q, in place; `step` points to the joint's own entries.
   void integrate(const Joint& joint, double* q, const double* step) const {
     double* own = q + joint.idx_q;
     if (joint.nq == 1) {
@@ -79,9 +79,9 @@ class Mechanism {
     }
   }
 
-  // Scale (cos, sin) pairs and quaternions to unit length; false where they are far from it, or a number is not finite.
-  bool normalize(Vector& q) const {
-    constexpr double largest_error = 1e-3;
+  // Scale (cos, sin) pairs and quaternions to unit length. Returns false if a squared length differs from 1 by more than
+  // `largest_error`, or if a number is not finite.
+  bool normalize(Vector& q, double largest_error) const {
     if (q.size() != nq || !q.allFinite()) return false;
     for (const Joint& joint : joints) {
       const int size = joint.kind == JointKind::floating ? 4 : joint.kind == JointKind::planar || joint.nq == 2 ? 2 : 0;

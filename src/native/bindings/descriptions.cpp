@@ -1,0 +1,160 @@
+// Robots and problems, described joint by joint and target by target.
+#include <nanobind/eigen/dense.h>
+#include <nanobind/stl/array.h>
+#include <nanobind/stl/pair.h>
+#include <nanobind/stl/shared_ptr.h>
+#include <nanobind/stl/vector.h>
+
+#include <array>
+#include <stdexcept>
+#include <string>
+
+#include "../problem/problem.hpp"
+#include "../solving/robot.hpp"
+#include "interface.hpp"
+
+namespace pinik {
+
+using namespace nb::literals;
+
+namespace {
+
+const Joint& joint_of(const Robot& robot, int number) {
+  const std::vector<Joint>& joints = robot.mechanism.joints;
+  if (number < 0 || static_cast<std::size_t>(number) >= joints.size())
+    throw std::invalid_argument("a joint's number must be at least 0 and less than " + std::to_string(joints.size()) +
+                                "; got " + std::to_string(number));
+  return joints[static_cast<std::size_t>(number)];
+}
+
+void add_joint(Robot& robot, JointKind kind, int parent, const Mat3& R, const Vec3& p, const Vec3& axis, int idx_q,
+               int nq, int idx_v, int nv, bool follows, double multiplier, double offset, double lower, double upper,
+               bool shared) {
+  Mechanism& mechanism = robot.mechanism;
+  Joint joint;
+  joint.kind = kind;
+  joint.parent = parent;
+  if (joint.has_one_axis()) joint.to_line = Eigen::Quaterniond::FromTwoVectors(Vec3::UnitZ(), axis).toRotationMatrix();
+  const Mat3 from_parent = joint_of(robot, parent).to_line.transpose();
+  joint.placement = Placement{from_parent * R * joint.to_line, from_parent * p};
+  joint.idx_q = idx_q;
+  joint.nq = nq;
+  joint.idx_v = idx_v;
+  joint.nv = nv;
+  joint.follows = follows;
+  joint.multiplier = multiplier;
+  joint.offset = offset;
+  joint.lower = lower;
+  joint.upper = upper;
+  joint.shared = shared;
+  mechanism.nq += nq;
+  mechanism.joints.push_back(joint);
+}
+
+// A placement in a joint, in the joint's turned axes.
+Placement in_joint(const Robot& robot, int joint, const Mat3& R, const Vec3& p) {
+  const Mat3 turned = joint_of(robot, joint).to_line.transpose();
+  return {turned * R, turned * p};
+}
+
+void add_term(Problem& problem, const Robot& robot, int frame_joint, const Mat3& frame_R, const Vec3& frame_p,
+              bool has_reference, int reference_joint, const Mat3& reference_R, const Vec3& reference_p,
+              bool asks_position, bool asks_rotation, bool asks_axis, bool asks_at, const Vec3& axis, double weight,
+              bool has_bounds, const Vec3& base, std::array<double, 2> reach, std::array<double, 2> hole) {
+  Term term;
+  term.frame_joint = frame_joint;
+  term.frame = in_joint(robot, frame_joint, frame_R, frame_p);
+  term.has_reference = has_reference;
+  term.reference_joint = reference_joint;
+  term.reference = in_joint(robot, reference_joint, reference_R, reference_p);
+  term.asks_position = asks_position;
+  term.asks_rotation = asks_rotation;
+  term.asks_axis = asks_axis;
+  term.asks_at = asks_at;
+  term.axis = axis;
+  term.weight = weight;
+  term.has_bounds = has_bounds;
+  term.base = base;
+  for (std::size_t k = 0; k < 2; ++k) {
+    term.reach[k] = reach[k];
+    term.hole[k] = hole[k];
+  }
+  problem.terms.push_back(term);
+}
+
+using Movers = std::vector<std::pair<int, double>>;
+
+void add_coordinate(Problem& problem, int joint, int index, int entry, const Movers& movers, const Movers& moved) {
+  Coordinate coordinate;
+  coordinate.joint = joint;
+  coordinate.index = index;
+  coordinate.entry = entry;
+  for (const auto& [mover, multiplier] : movers) coordinate.movers.push_back({mover, multiplier});
+  for (const auto& [mover, multiplier] : moved) coordinate.moved.push_back({mover, multiplier});
+  problem.coordinates.push_back(coordinate);
+}
+
+void register_constants(nb::module_& m) {
+  nb::class_<Constants>(m, "Constants")
+      .def(nb::init<>())
+      .def_rw("farthest", &Constants::farthest)
+      .def_rw("widest_range", &Constants::widest_range)
+      .def_rw("largest_unit_error", &Constants::largest_unit_error)
+      .def_rw("radian", &Constants::radian)
+      .def_rw("no_direction", &Constants::no_direction)
+      .def_rw("reach_rounding", &Constants::reach_rounding)
+      .def_rw("smallest_damping_squared", &Constants::smallest_damping_squared)
+      .def_rw("smallest_cutoff", &Constants::smallest_cutoff)
+      .def_rw("ccd_rounding", &Constants::ccd_rounding)
+      .def_rw("ccd_suspect", &Constants::ccd_suspect)
+      .def_rw("ccd_no_column", &Constants::ccd_no_column)
+      .def_rw("ccd_halvings", &Constants::ccd_halvings)
+      .def_rw("bold_part_of_distance", &Constants::bold_part_of_distance)
+      .def_rw("part_of_chain", &Constants::part_of_chain)
+      .def_rw("to_the_end", &Constants::to_the_end)
+      .def_rw("restarts_when_unreachable", &Constants::restarts_when_unreachable)
+      .def_rw("table_size", &Constants::table_size)
+      .def_rw("table_nearest", &Constants::table_nearest)
+      .def_rw("table_key", &Constants::table_key);
+}
+
+}  // namespace
+
+void register_descriptions(nb::module_& m) {
+  nb::enum_<JointKind>(m, "JointKind")
+      .value("revolute", JointKind::revolute)
+      .value("continuous", JointKind::continuous)
+      .value("prismatic", JointKind::prismatic)
+      .value("floating", JointKind::floating)
+      .value("planar", JointKind::planar);
+  nb::class_<Patience>(m, "Patience")
+      .def(nb::init<std::int64_t, double>(), "iterations"_a, "progress"_a);
+  register_constants(m);
+  nb::class_<Robot>(m, "Robot")
+      .def(nb::init<>())
+      .def("add_joint", &add_joint, "kind"_a, "parent"_a, "rotation"_a, "translation"_a, "axis"_a, "idx_q"_a, "nq"_a,
+           "idx_v"_a, "nv"_a, "follows"_a, "multiplier"_a, "offset"_a, "lower"_a, "upper"_a, "shared"_a)
+      .def("finish", &Robot::finish);
+  nb::class_<Problem>(m, "Problem")
+      .def("__init__",
+           [](Problem* self, const Robot& robot, const Constants& constants) {
+             new (self) Problem();
+             self->mechanism = &robot.mechanism;
+             self->constants = constants;
+           },
+           nb::keep_alive<1, 2>(), "robot"_a, "constants"_a)
+      .def("add_term", &add_term, "robot"_a, "frame_joint"_a, "frame_rotation"_a, "frame_translation"_a,
+           "has_reference"_a, "reference_joint"_a, "reference_rotation"_a, "reference_translation"_a,
+           "asks_position"_a, "asks_rotation"_a, "asks_axis"_a, "asks_at"_a, "axis"_a, "weight"_a, "has_bounds"_a,
+           "base"_a, "reach"_a, "hole"_a)
+      .def("add_coordinate", &add_coordinate, "joint"_a, "index"_a, "entry"_a, "movers"_a, "moved"_a)
+      .def("finish",
+           [](Problem& self, double lightest, double size_of_chain) {
+             self.lightest = lightest;
+             self.size_of_chain = size_of_chain;
+             self.finish();
+           },
+           "lightest"_a, "size_of_chain"_a);
+}
+
+}  // namespace pinik

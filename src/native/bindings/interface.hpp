@@ -1,0 +1,15 @@
+// The parts of the module pinik._native, each registered by a file of its own.
+#pragma once
+
+#include <nanobind/nanobind.h>
+
+namespace pinik {
+
+namespace nb = nanobind;
+
+void register_descriptions(nb::module_& m);  // Constants, Robot and Problem
+void register_settings(nb::module_& m);      // Solver and Settings
+void register_answers(nb::module_& m);       // Status and Answer
+void register_engine(nb::module_& m);        // Engine
+
+}  // namespace pinik

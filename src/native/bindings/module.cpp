@@ -1,0 +1,17 @@
+// The Python module pinik._native; only pinik.solving.native uses it.
+#include <pinocchio/config.hpp>  // only the version
+
+#include "abi.hpp"
+#include "interface.hpp"
+#include "numbers.hpp"
+
+NB_MODULE(_native, m) {
+  pinik::import_numpy();
+  m.doc() = "pinik's compiled engine; use it through pinik.solve, engine=\"native\".";
+  m.attr("pinocchio_version") = PINOCCHIO_VERSION;
+  m.attr("abi") = pinik::abi;
+  pinik::register_descriptions(m);
+  pinik::register_settings(m);
+  pinik::register_answers(m);
+  pinik::register_engine(m);
+}

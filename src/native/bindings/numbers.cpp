@@ -1,0 +1,59 @@
+#include "numbers.hpp"
+
+#define NPY_NO_DEPRECATED_API NPY_1_7_API_VERSION
+#include <numpy/arrayobject.h>
+
+#include <algorithm>
+
+namespace pinik {
+
+namespace {
+
+using RowMajor = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
+
+}  // namespace
+
+void import_numpy() {
+  if (_import_array() < 0) throw nb::python_error();
+}
+
+Goal goal_from(const double* row) {
+  Goal goal;
+  goal.position = Eigen::Map<const Vec3>(row);
+  goal.rotation = Eigen::Map<const RowMajor>(row + 3);
+  goal.direction = Eigen::Map<const Vec3>(row + 12);
+  goal.at = Eigen::Map<const Vec3>(row + 15);
+  return goal;
+}
+
+std::vector<Goal> goals_from(const double* rows, std::size_t count) {
+  std::vector<Goal> goals;
+  for (std::size_t t = 0; t < count; ++t) goals.push_back(goal_from(rows + numbers_of_a_goal * t));
+  return goals;
+}
+
+nb::object as_array(const Goal& goal) {
+  Vector row(numbers_of_a_goal);
+  const RowMajor R = goal.rotation;
+  row << goal.position, Eigen::Map<const Eigen::Matrix<double, 9, 1>>(R.data()), goal.direction, goal.at;
+  return as_array(row);
+}
+
+const double* numbers_of(nb::handle array, std::initializer_list<std::ptrdiff_t> shape) {
+  if (!PyArray_Check(array.ptr())) return nullptr;
+  auto* own = reinterpret_cast<PyArrayObject*>(array.ptr());
+  const bool fits = PyArray_TYPE(own) == NPY_DOUBLE && PyArray_ISCARRAY_RO(own) &&
+                    PyArray_NDIM(own) == static_cast<int>(shape.size()) &&
+                    std::equal(shape.begin(), shape.end(), PyArray_DIMS(own));
+  return fits ? static_cast<const double*>(PyArray_DATA(own)) : nullptr;
+}
+
+nb::object as_array(const Vector& numbers) {
+  npy_intp size = numbers.size();
+  nb::object array = nb::steal(PyArray_SimpleNew(1, &size, NPY_DOUBLE));
+  if (!array.is_valid()) throw nb::python_error();
+  std::copy_n(numbers.data(), size, static_cast<double*>(PyArray_DATA(reinterpret_cast<PyArrayObject*>(array.ptr()))));
+  return array;
+}
+
+}  // namespace pinik

@@ -1,0 +1,44 @@
+// The numbers of the algorithm that both engines use. pinik.solving.native.constants hands them over, so that each is
+// written once, in the Python module that it belongs to. The defaults only mark what has not been handed over.
+#pragma once
+
+#include <cstdint>
+#include <limits>
+
+namespace pinik {
+
+constexpr double not_given = std::numeric_limits<double>::quiet_NaN();
+
+// A run has stalled after this many iterations in which the residual fell by less than this part.
+struct Patience {
+  std::int64_t iterations = 0;
+  double progress = not_given;
+};
+
+struct Constants {
+  // pinik.checks and pinik.model
+  double farthest = not_given;
+  double widest_range = not_given;
+  double largest_unit_error = not_given;
+  // pinik.problem
+  double radian = not_given;
+  double no_direction = not_given;
+  double reach_rounding = not_given;
+  // pinik.solvers
+  double smallest_damping_squared = not_given;
+  double smallest_cutoff = not_given;
+  double ccd_rounding = not_given;
+  double ccd_suspect = not_given;
+  double ccd_no_column = not_given;
+  int ccd_halvings = 0;
+  // pinik.solving
+  double bold_part_of_distance = not_given;
+  double part_of_chain = not_given;
+  Patience to_the_end;
+  int restarts_when_unreachable = 0;
+  int table_size = 0;
+  int table_nearest = 0;
+  std::uint64_t table_key = 0;
+};
+
+}  // namespace pinik

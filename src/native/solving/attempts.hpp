@@ -1,0 +1,149 @@
+// The attempts of one solve: restarts, and the best state so far; follows pinik.solving.attempts.
+#pragma once
+
+#include <atomic>
+#include <chrono>
+
+#include "outcome.hpp"
+#include "run.hpp"
+#include "settings.hpp"
+#include "starts.hpp"
+
+namespace pinik {
+
+using Clock = std::chrono::steady_clock;
+using StopFlag = const std::atomic<bool>*;
+using Pause = bool (*)();  // called now and then; returns whether to continue
+
+// What may end a solve from outside: a flag and a call, either of which may be missing.
+struct Interrupts {
+  StopFlag stop = nullptr;
+  Pause pause = nullptr;
+};
+
+// Solves one problem after another, with the working memory of one thread.
+template <int Rows>
+class Attempts {
+ public:
+  Attempts(const Problem& problem, const Settings& settings, const Interrupts& interrupts)
+      : problem_(problem), settings_(settings), interrupts_(interrupts), kinematics_(problem),
+        run_(settings_.solver, kinematics_), limits_(Limits::of(*problem.mechanism, settings.limits)), loose_(limits_.loosened()),
+        starts_(problem, limits_, settings.seed) {
+    kinematics_.target_jacobian = settings.solver.target_jacobian;
+  }
+
+  // Solve from `start`, which is put inside the limits, or with `nearest` from the best start in the table, where `start`
+  // gives what is not drawn. `target` is the problem's number among many; it seeds the random starts.
+  Outcome operator()(Vector& start, std::uint64_t target, bool nearest) {
+    began_ = paused_ = Clock::now();
+    states_seen_ = 0;
+    outcome_ = Outcome();
+    least_residual_ = infinity;
+    limits_.wrap(start);
+    limits_.clip(start);
+    target_ = target;
+    first_number_ = nearest ? 1 : 0;
+    outcome_.q = start;
+    outcome_.proof = shortfall(problem_, settings_.limits);
+    if (outcome_.proof && outcome_.proof->distance <= settings_.tolerance.position) outcome_.proof.reset();
+    if (problem_.coordinates.empty()) {
+      attempt(start_of(0, start), problem_.constants.to_the_end, 0, false, false, 0);
+      outcome_.status = Status::stalled;
+    } else if (settings_.restarts == 0) {
+      outcome_.status =
+          attempt(start_of(0, start), problem_.constants.to_the_end, settings_.max_iterations, false, false, 0);
+    } else {
+      outcome_.status = attempt_and_restart(start);
+    }
+    return std::move(outcome_);
+  }
+
+ private:
+  const Problem& problem_;
+  const Settings settings_;
+  const Interrupts& interrupts_;
+  Kinematics<Rows> kinematics_;
+  Run<Rows> run_;
+  const Limits limits_, loose_;
+  Outcome outcome_;
+  double least_residual_ = infinity;  // of outcome_.q
+  std::uint64_t target_ = 0;
+  std::int64_t first_number_ = 0;  // 1 if the first attempt begins at the first of starts_
+  Clock::time_point began_, paused_;
+  std::int64_t states_seen_ = 0;
+  Starts<Rows> starts_;
+  Vector drawn_;
+  Linearization<Rows> inside_;
+
+  Status attempt_and_restart(const Vector& start) {
+    const bool proved = outcome_.proof.has_value();
+    std::int64_t most = starts_.draws() ? settings_.restarts : 0;
+    if (proved) most = std::min<std::int64_t>(most, problem_.constants.restarts_when_unreachable);
+    for (std::int64_t number = 0; number <= most; ++number) {
+      outcome_.restarts = number;
+      const Status status =
+          attempt(start_of(number, start), settings_.patience, settings_.max_iterations, !proved, proved, number);
+      if (status == Status::converged || status == Status::time_limit) return status;
+    }
+    const Vector best = outcome_.q;
+    return attempt(best, problem_.constants.to_the_end, settings_.iterations_to_the_end, false, true,
+                   outcome_.restarts + 1);
+  }
+
+  const Vector& start_of(std::int64_t attempt, const Vector& given) {
+    const std::int64_t number = attempt + first_number_;
+    if (number == 0) return given;
+    starts_.next(kinematics_, given, target_, number, drawn_);
+    return drawn_;
+  }
+
+  Status attempt(const Vector& start, Patience patience, std::int64_t max_iterations, bool bold, bool downhill,
+                 std::int64_t number) {
+    RunSettings run{max_iterations, settings_.tolerance, patience, bold, downhill, outcome_.proof.has_value()};
+    Status ended = Status::running;
+    std::int64_t iterations = 0, updates = 0;
+    const auto see = [&](const Linearization<Rows>& at, std::int64_t iteration, std::int64_t updated, Status status) {
+      iterations = iteration;
+      updates = updated;
+      if (settings_.trace)
+        outcome_.states.push_back({at.q, iteration, updated, at.errors, at.residual, number, status});
+      ended = status;
+      if (status == Status::converged || (at.residual < least_residual_ && limits_.contains(at.q))) keep(at);
+      if (status == Status::running && out_of_time()) ended = Status::time_limit;
+      if (ended != Status::running && ended != Status::converged && !limits_.contains(at.q)) consider_inside(at);
+      return ended == Status::running;
+    };
+    run_(start, limits_, loose_, run, see);
+    outcome_.iterations += iterations;
+    outcome_.joint_updates += updates;
+    return ended;
+  }
+
+  bool out_of_time() {
+    constexpr int states_between = 256;
+    constexpr std::chrono::milliseconds pauses_apart{50};
+    if (interrupts_.stop && interrupts_.stop->load(std::memory_order_relaxed)) return true;
+    if (interrupts_.pause && ++states_seen_ % states_between == 0 && Clock::now() - paused_ > pauses_apart) {
+      paused_ = Clock::now();
+      if (!interrupts_.pause()) return true;
+    }
+    return settings_.time_limit < infinity &&
+           std::chrono::duration<double>(Clock::now() - began_).count() > settings_.time_limit;
+  }
+
+  // Keep a state outside the limits if it is the best so far after it has been put inside.
+  void consider_inside(const Linearization<Rows>& at) {
+    inside_.q = at.q;
+    limits_.wrap(inside_.q);
+    limits_.clip(inside_.q);
+    kinematics_.linearize(inside_);
+    if (inside_.residual < least_residual_) keep(inside_);
+  }
+
+  void keep(const Linearization<Rows>& at) {
+    outcome_.q = at.q;
+    least_residual_ = at.residual;
+  }
+};
+
+}  // namespace pinik

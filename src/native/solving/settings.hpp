@@ -1,0 +1,25 @@
+// What a solve was asked for besides its targets; follows pinik.solving.attempts.Settings.
+#pragma once
+
+#include <cstdint>
+
+#include "../problem/constants.hpp"
+#include "../problem/targets.hpp"
+#include "../solvers/solver.hpp"
+
+namespace pinik {
+
+struct Settings {
+  Solver solver;
+  Patience patience;  // of an attempt that is not the last
+  bool limits = true;
+  std::int64_t restarts = 0;
+  std::uint64_t seed = 0;
+  std::int64_t max_iterations = 0;         // of one attempt
+  std::int64_t iterations_to_the_end = 0;  // of the last run, which continues the best of the failed attempts
+  Tolerance tolerance;
+  double time_limit = infinity;  // [s]
+  bool trace = false;
+};
+
+}  // namespace pinik

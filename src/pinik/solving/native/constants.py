@@ -1,0 +1,46 @@
+"""The numbers of the algorithm that both engines use, handed over to the compiled engine."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from ... import checks
+from ...model import configurations, joint
+from ...problem import problem, reach, targets
+from ...solvers import ccd, damped_least_squares, pseudo_inverse
+from .. import attempts, run, starts
+from .module import load
+
+__all__ = ["CONSTANTS", "make_constants"]
+
+CONSTANTS = {
+    "farthest": checks.FARTHEST,
+    "widest_range": joint.WIDEST_RANGE,
+    "largest_unit_error": configurations.LARGEST_UNIT_ERROR,
+    "radian": problem.RADIAN,
+    "no_direction": targets.NO_DIRECTION,
+    "reach_rounding": reach.ROUNDING,
+    "smallest_damping_squared": damped_least_squares.SMALLEST_DAMPING_SQUARED,
+    "smallest_cutoff": pseudo_inverse.SMALLEST_CUTOFF,
+    "ccd_rounding": ccd.ROUNDING,
+    "ccd_suspect": ccd.SUSPECT,
+    "ccd_no_column": ccd.NO_COLUMN,
+    "ccd_halvings": ccd.HALVINGS,
+    "bold_part_of_distance": run.BOLD_SHARE,
+    "part_of_chain": run.SHARE_OF_CHAIN,
+    "restarts_when_unreachable": attempts.RESTARTS_WHEN_UNREACHABLE,
+    "table_size": starts.SIZE,
+    "table_nearest": starts.NEAREST,
+    "table_key": starts.OF_THE_TABLE,
+}
+"""The value of each constant, by its name in the compiled engine; `to_the_end` is not a single number."""
+
+
+def make_constants() -> Any:
+    """Build the compiled engine's copy of the constants."""
+    native = load()
+    constants = native.Constants()
+    for name, value in CONSTANTS.items():
+        setattr(constants, name, value)
+    constants.to_the_end = native.Patience(run.TO_THE_END.iterations, run.TO_THE_END.progress)
+    return constants
