@@ -22,7 +22,7 @@ TIP_UP: Vector = (-math.pi / 2, -math.pi / 2, 0)  # and back: the tip's z leaves
 
 
 def _dress(robot: Description) -> None:
-    """Give the links their shapes, one mesh a colour."""
+    """Add the links' shapes, one mesh for each colour."""
     shapes = {"base": arm_shapes.base(BASE_HEIGHT, RADII[0], RIMS[0])}
     for number, ends in enumerate(pairwise(zip(RADII, RIMS, strict=True)), start=1):
         shapes[f"bone{number}"] = arm_shapes.segment(LENGTHS[number - 1], *ends)

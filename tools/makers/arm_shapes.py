@@ -1,4 +1,4 @@
-"""The arm's looks: cardan joints between lathed segments, a base, a gripper; in the bones' axes."""
+"""The arm's shapes: universal joints between turned segments, a base and a gripper, in the bones' axes."""
 
 from __future__ import annotations
 
@@ -14,8 +14,8 @@ MATERIALS = {
 }
 Surfaces = dict[str, Mesh]  # by material
 
-FOOT = 1.36  # where a fork's root is, in radii from its joint's centre: clear of the other fork at 45 degrees
-GRIP = 0.040  # [m], from the tip to each finger: a ball of this radius is held
+FOOT = 1.36  # distance of a fork's root from its joint's centre, in radii: clear of the other fork at 45 degrees
+GRIP = 0.040  # [m], from the tip to each finger, which hold a ball of this radius
 CHEEK = (0.74, 1.04)  # a fork's cheeks, in radii from the middle
 
 
@@ -113,12 +113,12 @@ def gripper(length: float, radius: float, rim: float) -> Surfaces:
 
 
 def _quarter(shape: Mesh) -> Mesh:
-    """Turned about y, x to z."""
+    """The mesh turned about y, from x to z."""
     return Mesh(shape.vertices[:, [2, 1, 0]] * (-1.0, 1.0, 1.0), shape.faces)
 
 
 def _other_side(shape: Mesh) -> Mesh:
-    """Mirrored in x."""
+    """The mesh mirrored in x."""
     return Mesh(shape.vertices * (-1.0, 1.0, 1.0), shape.faces[:, ::-1])
 
 

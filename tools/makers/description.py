@@ -1,4 +1,4 @@
-"""A robot on its way to a URDF and an SRDF: links, joints, shapes, named poses."""
+"""A robot's links, joints, shapes and named poses, to be written as a URDF and an SRDF."""
 
 from __future__ import annotations
 
@@ -10,12 +10,12 @@ from xml.sax.saxutils import quoteattr
 Vector = tuple[float, float, float]
 ZERO: Vector = (0.0, 0.0, 0.0)
 
-EFFORT = 100.0  # [N m]; URDF asks for one, kinematics for none
+EFFORT = 100.0  # [N m]; URDF requires a value, kinematics does not use it
 VELOCITY = 3.0  # [rad/s]
 
 
 def number(value: float) -> str:
-    """The shortest decimal that reads back as the same float; micrometres where it is one anyway."""
+    """The shortest decimal that reads back as the same float, rounded to micrometres if that changes nothing."""
     rounded = round(value, 6)
     return repr(float(rounded if abs(rounded - value) < 1e-12 else value) + 0.0)
 
@@ -49,7 +49,7 @@ def sphere(radius: float, material: str, xyz: Vector = ZERO) -> Visual:
 def mesh_visual(
     address: str, material: str, *, rpy: Vector = ZERO, scale: float = 1.0, mirrored: bool = False
 ) -> Visual:
-    """A mesh file in millimetres; left and right exchanged if `mirrored`."""
+    """A mesh file in millimetres, with left and right exchanged if `mirrored`."""
     size = 0.001 * scale
     scales = (size, -size if mirrored else size, size)
     return Visual(f'<mesh filename="{address}" scale="{vector(scales)}"/>', material, rpy=rpy)
@@ -57,7 +57,7 @@ def mesh_visual(
 
 @dataclass
 class Description:
-    """Collects a robot's parts in order and writes them down."""
+    """Collects a robot's parts in order and writes them to files."""
 
     name: str
     summary: str
@@ -98,7 +98,7 @@ class Description:
         )
 
     def pose(self, name: str, **degrees: float) -> None:
-        """A named pose; joints left out are at zero."""
+        """Add a named pose; joints that are not listed are at zero."""
         unknown = set(degrees) - set(self.moving)
         if unknown:
             raise ValueError(f"pose {name!r} sets joints that do not exist: {sorted(unknown)}")

@@ -31,7 +31,7 @@ from .lion_shapes import Surfaces
 AXES: dict[str, Vector] = {"roll": (1, 0, 0), "pitch": (0, 1, 0), "yaw": (0, 0, 1)}
 Hinge = tuple[str, float, float]  # axis, lower and upper limit [deg] (of the left side)
 
-# Positive pitch lowers what points forward and swings what hangs down backward.
+# Positive pitch lowers a part that points forward, and swings a hanging part backward.
 SPINE_HINGES: list[Hinge] = [("yaw", -20, 20), ("pitch", -30, 30), ("roll", -15, 15)]
 CHEST_HINGES: list[Hinge] = [("yaw", -20, 20), ("pitch", -30, 25)]
 NECK_HINGES: list[Hinge] = [("yaw", -40, 40), ("pitch", -40, 50)]
@@ -67,7 +67,7 @@ def _articulate(
     *,
     mirrored: bool = False,
 ) -> None:
-    """Hang `child` on `parent` by one hinge, or by several through the same point."""
+    """Attach `child` to `parent` by one hinge, or by several through the same point."""
     for axis, lower, upper in hinges:
         last = axis == hinges[-1][0]
         name = joint if len(hinges) == 1 else f"{joint}_{axis}"
@@ -109,7 +109,7 @@ def _leg(robot: Description, side: str, end: str) -> None:
 
 
 def _dress(robot: Description) -> None:
-    """Give the links their shapes: one mesh a colour, in the link's frame; the right legs mirror the left."""
+    """Add the links' shapes, one mesh for each colour, in the link's frame; the right legs mirror the left."""
     at = {"pelvis": PELVIS, "spine": SPINE, "chest": CHEST, "neck": NECK, "head": HEAD, "jaw": JAW}
     for link, surfaces in [
         *lion_shapes.trunk().items(),

@@ -1,4 +1,4 @@
-"""Where the lion's joints are when it stands [m]: x from the hips, y from the middle (left side), z from the ground."""
+"""The lion's joints when it stands [m]: x from the hips, y from the middle (left side), z from the ground."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ HIND_LEG = {
     "paw": (-0.03, 0.135, 0.0),
 }
 
-HEAD_SIZE = 1.12  # the head is sculpted smaller and grown about its joint
+HEAD_SIZE = 1.12  # the head is sculpted smaller and scaled about its joint
 
 TAIL_SEGMENT = 0.15
-TAIL_DROOP = (-35, -22, -16, -4, 14, 20)  # [deg], each segment to the one before
+TAIL_DROOP = (-35, -22, -16, -4, 14, 20)  # [deg], each segment relative to the one before

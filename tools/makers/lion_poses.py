@@ -1,4 +1,4 @@
-"""The lion's named poses [deg]; joints left out are at zero. The paws it stands on share one plane."""
+"""The lion's named poses [deg]; joints not listed are at zero. The paws that it stands on lie in one plane."""
 
 from __future__ import annotations
 

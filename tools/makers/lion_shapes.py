@@ -1,4 +1,4 @@
-"""The lion's body: for each link its surfaces by colour, sculpted where the lion stands (see lion_anatomy)."""
+"""The lion's body: each link's surfaces by colour, sculpted in the standing posture (see lion_anatomy)."""
 
 from __future__ import annotations
 
@@ -45,12 +45,12 @@ TRUNK_CELL, LEG_CELL, HEAD_CELL = 0.030, 0.0175, 0.0125
 
 
 def both(make: Callable[[float], Solid]) -> tuple[Solid, Solid]:
-    """The same part on the left and on the right; `make` gets the side's sign."""
+    """The same part on both sides; `make` gets the side's sign."""
     return make(1.0), make(-1.0)
 
 
 def painted(shape: Mesh, base: str, **regions: Field) -> Surfaces:
-    """A surface in one colour, but for some regions."""
+    """A surface in one colour, except for some regions."""
     surfaces: Surfaces = {}
     for material, region in regions.items():
         inside, shape = split(shape, region)
@@ -366,7 +366,7 @@ def hind_leg() -> dict[str, Surfaces]:
 
 
 def tail(number: int, count: int) -> Surfaces:
-    """Bent so that at rest the tail is one smooth curve."""
+    """A segment bent so that the tail at rest is one smooth curve."""
     thick = [0.046 - 0.024 * min(k / (count - 1), 1.0) for k in (number - 1, number)]
     if number == 1:
         thick[0] = 0.062

@@ -1,4 +1,4 @@
-"""Shapes in clay: solids given by distance, blended smoothly and meshed by surface nets; and tubes, lathes, extrusions.
+"""Sculpted shapes: distance fields, blended smoothly and meshed by surface nets; and tubes, lathes, extrusions.
 
 Lengths are metres. Only +, -, *, /, sqrt, min, max and comparisons touch grids: every machine makes the same mesh.
 """
@@ -28,7 +28,7 @@ class Mesh:
         return Mesh(self.vertices + np.asarray(offset, dtype=float), self.faces)
 
     def facing(self, axis: str) -> Mesh:
-        """What pointed along z now points along this axis; the three axes are exchanged cyclically."""
+        """The mesh with its axes permuted cyclically, so that its z axis becomes this axis."""
         order = {"x": [2, 0, 1], "y": [1, 2, 0], "z": [0, 1, 2]}[axis]
         return Mesh(self.vertices[:, order], self.faces)
 
@@ -37,7 +37,7 @@ class Mesh:
         return Mesh((self.vertices - center) * factor + center, self.faces)
 
     def obj(self, scale: float = 1000.0) -> bytes:
-        """Wavefront OBJ in millimetres to a tenth."""
+        """Wavefront OBJ in millimetres, rounded to a tenth."""
         vertices = np.round(self.vertices * scale, 1) + 0.0
         lines = [f"v {x:g} {y:g} {z:g}" for x, y, z in vertices.tolist()]
         lines += [f"f {a} {b} {c}" for a, b, c in (self.faces + 1).tolist()]
@@ -108,7 +108,7 @@ def limb(a: Point, b: Point, radius_a: float, radius_b: float) -> Solid:
 
 
 def half_space(normal: Point, offset: float) -> Field:
-    """Inside is where normal · p < offset."""
+    """The half space normal · p < offset."""
     length = math.sqrt(sum(c * c for c in normal))
     nx, ny, nz = (c / length for c in normal)
     return lambda x, y, z: nx * x + ny * y + nz * z - offset / length
@@ -153,7 +153,7 @@ def outside(solid: Solid) -> Field:
 
 def mesh(solid: Solid, cell: float) -> Mesh:
     """Surface nets: one vertex in each cell that the surface crosses, drawn onto the surface."""
-    # An odd fraction of a cell off, so that no node lies on a plane of symmetry.
+    # Offset by an odd fraction of a cell, so that no node lies on a plane of symmetry.
     axes = [np.arange(lo - 1.37 * cell, hi + 2.4 * cell, cell) for lo, hi in zip(solid.low, solid.high, strict=True)]
     grid = np.meshgrid(*axes, indexing="ij")
     inside = solid.field(*grid) < 0
