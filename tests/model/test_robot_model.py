@@ -270,7 +270,7 @@ class TestAngles:
 
     @pytest.mark.parametrize("bad", [math.nan, math.inf, "0.3", None, [0.1], True, 10**400])
     def test_an_angle_is_a_finite_number(self, arm, bad):
-        with pytest.raises(InputError, match="the angle of joint 'bone1_x' is a finite number"):
+        with pytest.raises(InputError, match="the angle of joint 'bone1_x' must be a finite number"):
             arm.configuration({"bone1_x": bad})
 
     def test_angles_and_placements_are_not_confused(self):
@@ -341,7 +341,7 @@ class TestJointPlacements:
 class TestConfigurations:
     @pytest.mark.parametrize("shape", [(), (11,), (13,), (12, 1), (1, 12)])
     def test_of_the_wrong_shape_are_refused(self, arm, shape):
-        with pytest.raises(InputError, match=r"q takes 12 finite numbers \(the configuration of 'arm'\)"):
+        with pytest.raises(InputError, match=r"q must be 12 finite numbers \(the configuration of 'arm'\)"):
             arm.placement("tip", np.zeros(shape))
 
     @pytest.mark.parametrize("bad", [math.nan, math.inf, -math.inf])
@@ -354,7 +354,7 @@ class TestConfigurations:
 
     @pytest.mark.parametrize("bad", ["straight", None, {"bone1_x": 0.3}, ["0"] * 12])
     def test_that_are_no_numbers_are_refused(self, arm, bad):
-        with pytest.raises(InputError, match="q takes 12 finite numbers"):
+        with pytest.raises(InputError, match="q must be 12 finite numbers"):
             arm.angles(bad)
 
     @pytest.mark.parametrize(
@@ -703,7 +703,7 @@ class TestLoad:
 
     @pytest.mark.parametrize("bad", [None, 5, b"<robot/>", ["arm"]])
     def test_what_is_neither_name_nor_path_nor_text_is_refused(self, bad):
-        with pytest.raises(InputError, match="a robot is a catalogue name, a path or URDF text"):
+        with pytest.raises(InputError, match="a robot must be a catalogue name, a path or URDF text"):
             pinik.load(bad)
 
     def test_an_unknown_root_is_refused_with_the_known_ones(self):
@@ -711,7 +711,7 @@ class TestLoad:
             pinik.load("two_link", root="floating")
 
     def test_one_folder_is_no_list_of_package_dirs(self):
-        with pytest.raises(InputError, match="package_dirs takes a list of folders"):
+        with pytest.raises(InputError, match="package_dirs must be a list of folders"):
             pinik.load("two_link", package_dirs="/tmp")
 
     def test_without_its_meshes_warns_and_works(self):

@@ -327,17 +327,17 @@ def test_a_target_sent_in_moves_while_it_runs(method, arm):
 @pytest.mark.parametrize(
     ("options", "words"),
     [
-        ({"q0": [0.0] * 3}, "q0 takes 12 finite numbers"),
-        ({"q0": [math.nan] * 12}, "q0 takes 12 finite numbers"),
-        ({"position": [0, 0]}, "position takes 3 finite numbers"),
-        ({"position": [0, 0, math.inf]}, "position takes 3 finite numbers"),
-        ({"position": [0, 0, 1e300]}, "at most 1e\\+09 away"),
-        ({"tolerance": 1e-3}, "tolerance takes 2 finite numbers"),
+        ({"q0": [0.0] * 3}, "q0 must be 12 finite numbers"),
+        ({"q0": [math.nan] * 12}, "q0 must be 12 finite numbers"),
+        ({"position": [0, 0]}, "position must be 3 finite numbers"),
+        ({"position": [0, 0, math.inf]}, "position must be 3 finite numbers"),
+        ({"position": [0, 0, 1e300]}, "within 1e\\+09 m of the origin"),
+        ({"tolerance": 1e-3}, "tolerance must be 2 finite numbers"),
         ({"tolerance": (1e-3, 0.0)}, "two positive numbers"),
-        ({"restarts": -1}, "restarts is a whole number of at least 0"),
-        ({"max_iterations": 2.5}, "max_iterations is a whole number"),
-        ({"time_limit": 0}, "time_limit is a positive number"),
-        ({"locked": "bone1_x"}, "locked takes a list"),
+        ({"restarts": -1}, "restarts must be a whole number of at least 0"),
+        ({"max_iterations": 2.5}, "max_iterations must be a whole number"),
+        ({"time_limit": 0}, "time_limit must be a positive number"),
+        ({"locked": "bone1_x"}, "locked must be a list"),
         ({"locked": ["bone1_q"]}, "did you mean 'bone1_z'|did you mean 'bone1_x'"),
         ({"method": "newton"}, "no method 'newton'; available: 'ccd'"),
         ({"damp": 3}, "no parameter 'damp'; did you mean 'damping'. .the method is 'dls'."),
@@ -363,7 +363,7 @@ def test_what_is_no_target_is_refused(targets, arm):
 
 @pytest.mark.parametrize("locked", [None, 3, "bone1_x"])
 def test_locked_that_is_no_list_is_refused(locked, arm):
-    with pytest.raises(pinik.InputError, match="locked takes a list"):
+    with pytest.raises(pinik.InputError, match="locked must be a list"):
         arm.solve("tip", position=[0, 0, 1], locked=locked)
 
 

@@ -72,7 +72,7 @@ def test_options_are_part_of_the_question(solve):
 def test_true_is_not_one(solve):
     assert solve(restarts=1, limits=True)
     for wrong, words in (
-        ({"restarts": True}, "restarts is"),
+        ({"restarts": True}, "restarts must be"),
         ({"seed": False}, "seed"),
         ({"max_iterations": True}, "max"),
     ):
@@ -145,7 +145,7 @@ def test_every_axis_is_a_question_of_its_own(engine, panda):
 def test_a_position_is_no_matrix_however_often_it_is_asked_for(panda):
     panda.solve(TIP, position=[0.4, 0.1, 0.5])
     for wrong in (np.eye(4), pinocchio.SE3.Identity(), np.full(3, math.nan), np.array([0.4, math.nan, 0.5])):
-        with pytest.raises(pinik.InputError, match="position takes 3"):
+        with pytest.raises(pinik.InputError, match="position must be 3"):
             panda.solve(TIP, position=wrong)
 
 

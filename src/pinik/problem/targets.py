@@ -42,7 +42,7 @@ class Tolerance(NamedTuple):
             return cls()
         pair = as_vector(value, 2, "tolerance", "metres, radians")
         if (pair <= 0.0).any():
-            raise InputError(f"tolerance takes two positive numbers (metres, radians); got {pair.tolist()}")
+            raise InputError(f"tolerance must be two positive numbers (metres, radians); got {pair.tolist()}")
         return cls(float(pair[0]), float(pair[1]))
 
 
