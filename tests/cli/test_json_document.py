@@ -75,4 +75,4 @@ def test_every_field_is_documented_and_every_documented_field_exists(run, comman
 
 def test_every_keyword_of_a_target_is_documented():
     keywords = set(inspect.signature(pinik.Target).parameters)
-    assert documented("What goes in: `pinik solve --targets`") == keywords
+    assert documented("Input: `pinik solve --targets`") == keywords

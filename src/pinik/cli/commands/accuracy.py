@@ -68,9 +68,12 @@ def accuracy(
 ) -> ExitStatus:
     """Measure what each digit of accuracy costs, as in Welman's figures 4.4 and 4.5.
 
-    The robot is a planar chain of equal links without joint limits, and the methods run without restarts. Targets lie
-    half the chain's length away (near) or at the edge of reach, and must be met to 1, 2, … digits of that length. The
-    command also pulls a straight arm inwards (fig. 4.2) and measures each joint's share of the motion (§4.3).
+    The robot is a planar chain of equal links without joint limits, and the
+    methods run without restarts. Targets lie half the chain's length away (near)
+    or at the edge of reach, and must be met to 1, 2, … digits of that length.
+
+    The command also pulls a straight arm inwards (fig. 4.2) and measures each
+    joint's share of the motion (§4.3).
 
     Examples:
 

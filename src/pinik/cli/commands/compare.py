@@ -68,9 +68,9 @@ def compare(
 ) -> ExitStatus:
     """Compare the methods as Table 4.1 of the thesis does, next to the figures of the thesis.
 
-    All methods chase the same ball, on a curve (1, 3) or at random places (2, 4), with joint limits off (1, 2) or on
-    (3, 4). Each step starts where the last one ended. Comparisons 2b and 4b draw places from a box that is partly out
-    of reach.
+    All methods chase the same ball, on a curve (1, 3) or at random places
+    (2, 4), with joint limits off (1, 2) or on (3, 4). Each step starts where the
+    last one ended. In 2b and 4b the places come from a box, partly out of reach.
 
     Examples:
 
