@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import ast
-import dataclasses
 import hashlib
 import os
 import subprocess
@@ -21,6 +20,7 @@ import pinik
 from engines import REQUIRED, SANITIZED, WHY_NOT, needs_native
 from judge import assert_honest, plain_placement
 from pinik import Status, Target
+from pinik.solvers.parameter import parameters_of
 from pinik.solving.native import codec, constants, module
 
 METHODS = ["ccd", "jt", "pinv", "dls"]
@@ -140,9 +140,9 @@ def test_the_engine_knows_every_method_rule_kind_and_status_by_its_name():
     def names(enumeration):
         return {member.name for member in enumeration}
 
-    rule = next(field for field in dataclasses.fields(pinik.DampedLeastSquares) if field.name == "rule")
+    rule = next(p for p in parameters_of(pinik.DampedLeastSquares) if p.name == "rule")
     assert names(_native.Method) == set(METHODS) == {solver.name for solver in module.METHODS}
-    assert names(_native.DampingRule) == set(rule.metadata["choices"])
+    assert names(_native.DampingRule) == set(rule.choices)
     assert names(_native.JointKind) == {"revolute", "continuous", "prismatic", "floating", "planar"}
     assert names(_native.Status) == {status.name for status in Status} | {"RUNNING"}
 
