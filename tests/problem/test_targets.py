@@ -219,6 +219,57 @@ class TestArrays:
         with pytest.raises(AttributeError):
             Target("tip", (1, 2, 3)).frame = "nose"
 
+    def test_a_tool_is_copied_on_its_way_in_and_out(self):
+        tool = pinocchio.SE3(np.eye(3), np.array([0.0, 0.0, 0.1]))
+        target = Target("tip", (1, 2, 3), tool=tool)
+        tool.translation = target.tool.translation = np.array([0.0, 0.0, 0.2])
+        np.testing.assert_array_equal(target.tool.translation, [0, 0, 0.1])
+
+
+class TestEquality:
+    SAME: tuple[tuple[dict[str, Any], dict[str, Any]], ...] = (
+        ({"position": (1, 2, 3)}, {"position": np.array([1.0, 2.0, 3.0])}),
+        ({"position": (0.0, 1, 2)}, {"position": (-0.0, 1, 2)}),
+        ({"rpy": (0, 0, 0)}, {"quat_wxyz": (1, 0, 0, 0)}),
+        ({"placement": np.eye(4)}, {"position": (0, 0, 0), "rotation": np.eye(3)}),
+        ({"axis": "x", "direction": (0, 0, 2)}, {"axis": (1, 0, 0), "direction": (0, 0, 1)}),
+        (
+            {"position": (1, 2, 3), "tool": (0, 0, 1)},
+            {"position": (1, 2, 3), "tool": homogeneous(np.eye(3), (0, 0, 1))},
+        ),
+    )
+    OTHERS: tuple[dict[str, Any], ...] = (
+        {"position": (1, 2, 3)},
+        {"position": (1, 2, 3.5)},
+        {"position": (1, 2, 3), "weight": 2},
+        {"position": (1, 2, 3), "relative_to": "base"},
+        {"position": (1, 2, 3), "tool": (0, 0, 0.1)},
+        {"position": (1, 2, 3), "tool": (0, 0, 0.2)},
+        {"position": (1, 2, 3), "rpy": (0, 0, 0)},
+        {"position": (1, 2, 3), "rpy": (0, 0, 1)},
+        {"axis": "x", "direction": (1, 2, 3)},
+        {"axis": "y", "direction": (1, 2, 3)},
+        {"axis": "x", "at": (1, 2, 3)},
+    )
+
+    @pytest.mark.parametrize("pair", SAME, ids=str)
+    def test_the_same_question_asked_otherwise_is_equal_and_hashes_equal(self, pair):
+        one, other = (Target("tip", **fields) for fields in pair)
+        assert one == other
+        assert hash(one) == hash(other)
+        assert Target("nose", **pair[0]) != one
+
+    def test_whatever_differs_makes_another_target(self):
+        targets = [Target("tip", **fields) for fields in self.OTHERS]
+        assert len(set(targets)) == len(targets)
+        assert all((a == b) is (a is b) for a in targets for b in targets)
+        assert targets[0] != "tip"
+
+    def test_a_target_that_was_moved_is_equal_to_one_made_there(self):
+        target = Target("tip", (1, 2, 3))
+        assert hash(target) != hash(target.moved_to((3, 2, 1)))
+        assert target.moved_to((3, 2, 1)) == Target("tip", (3, 2, 1)) != target
+
 
 class TestJson:
     rng = np.random.default_rng(4)

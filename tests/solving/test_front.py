@@ -374,6 +374,40 @@ def test_what_is_no_target_is_refused(targets, arm):
         states.send(targets if targets is not None else 3)
 
 
+def test_every_front_takes_the_name_of_a_frame_with_a_targets_keywords(arm):
+    wanted = arm.placement("tip", arm.poses["reach"])
+    asked = {"position": wanted.translation, "axis": "z", "direction": wanted.rotation[:, 2], "tool": (0, 0, 0.1)}
+    target = Target("tip", **asked)
+    expected = pinik.solve(arm, target, "pinv", engine="python")
+    for s in (
+        arm.solve("tip", method="pinv", engine="python", **asked),
+        pinik.solve(arm, "tip", "pinv", engine="python", **asked),
+        pinik.prepare(arm, "tip", "pinv", engine="python", **asked)(),
+    ):
+        assert s.targets == (target,)
+        np.testing.assert_array_equal(s.q, expected.q)
+    *_, last = pinik.iterate(arm, "tip", "pinv", **asked)
+    *_, same = pinik.iterate(arm, target, method="pinv")
+    np.testing.assert_array_equal(last.q, same.q)
+
+
+def test_iterates_old_keyword_still_works_and_warns(arm):
+    target = Target("tip", [0.4, 0.2, 0.8])
+    with pytest.warns(DeprecationWarning, match=r"solver= is called method="):
+        old = pinik.iterate(arm, target, solver="ccd")
+    assert [state.q.tolist() for state in old] == [state.q.tolist() for state in pinik.iterate(arm, target, "ccd")]
+
+
+def test_the_last_run_of_a_failed_solve_has_a_number_of_its_own(panda):
+    opposed = [Target("panda_hand_tcp", [0.4, y, 0.5]) for y in (-0.2, 0.2)]
+    s = pinik.solve(panda, opposed, restarts=3, max_iterations=5, trace=True, engine="python")
+    assert not s.success
+    assert s.restarts == 3
+    begun = [state for state in s.trace if state.iteration == 0]
+    assert [state.attempt for state in begun] == [0, 1, 2, 3, 4]
+    assert [state.attempt for state in s.trace] == sorted(state.attempt for state in s.trace)
+
+
 def test_the_name_of_a_frame_says_nothing_of_its_place(arm):
     for front in (pinik.solve, pinik.prepare, pinik.iterate):
         with pytest.raises(pinik.InputError, match="target 'tip': nothing is asked for; give position="):
@@ -409,7 +443,7 @@ def test_targets_that_are_none_are_refused(arm):
         arm.solve([])
     with pytest.raises(pinik.InputError, match="targets must be Target objects"):
         arm.solve([[0.1, 0.2, 0.3]])
-    with pytest.raises(pinik.InputError, match=r"belongs into Target\(...\)"):
+    with pytest.raises(pinik.InputError, match=r"rpy= goes with the name of a frame.*belongs in Target\(\.\.\.\)"):
         arm.solve([Target("tip", [0, 0, 1])], rpy=[0, 0, 0])
 
 

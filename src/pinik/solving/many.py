@@ -182,9 +182,7 @@ def _questions(
 ) -> tuple[tuple[Target, ...], Array]:
     """(a pattern of what is asked each time, or an empty one; the numbers that say where (N, targets, 18))."""
     if not isinstance(targets, str) and (tool is not None or relative_to is not None):
-        raise InputError(
-            "tool= and relative_to= go with the name of a frame; with targets they belong into Target(...)"
-        )
+        raise InputError("tool= and relative_to= go with the name of a frame; with targets they belong in Target(...)")
     if places is None:
         return _listed(targets)
     rotations, points = _read_places(places)

@@ -66,5 +66,5 @@ def asked_targets(
         word for word, value in zip(PLACE_WORDS, wanted, strict=True) if value is not None and value is not UNWEIGHTED
     ]
     if given:
-        raise InputError(f"{given[0]}= goes with the name of a frame; with Target objects it belongs into Target(...)")
+        raise InputError(f"{given[0]}= goes with the name of a frame; with Target objects it belongs in Target(...)")
     return as_targets(targets)

@@ -280,7 +280,7 @@ BAD_TARGETS = {
     "another object": ('{"frame": "tip"}', "'frame'"),
     "no list": ('{"targets": 3}', "got 3"),
     "no object": ("[1]", "target 0: "),
-    "no frame": ('[{"position": [0, 0, 1]}]', "target 0: a target names its frame"),
+    "no frame": ('[{"position": [0, 0, 1]}]', "target 0: a target must name its frame"),
     "a misspelt key": ('[{"frame": "tip", "postion": [0, 0, 1]}]', "target 0: no target keyword 'postion'"),
     "NaN": ('[{"frame": "tip", "position": [0, 0, NaN]}]', "target 0: target 'tip': position"),
     "a word": ('[{"frame": "tip", "position": "x"}]', "target 0: target 'tip': position"),
