@@ -17,7 +17,6 @@ from rich.text import Text
 
 import pinik
 
-POSITION, ORIENTATION = 1e-4, 1e-3  # [m], [rad]: pinik's own default tolerance
 # Title → width: fits into 80 columns, and all tables line up.
 COLUMNS = {
     "method": 6,
@@ -79,32 +78,6 @@ def answers(question: Question) -> list[pinik.Solution]:
     return [question.robot.solve(question.targets, method=name, q0=question.start) for name in pinik.SOLVERS]
 
 
-def check(solution: pinik.Solution) -> None:
-    """Check a success with Pinocchio's forward kinematics, without pinik.
-
-    Raises:
-        RuntimeError: The solution misses a target although it reports success.
-    """
-    model = solution.robot.model
-    data = model.createData()
-    pinocchio.framesForwardKinematics(model, data, solution.q)
-    for target in solution.targets:
-        placement = data.oMf[model.getFrameId(target.frame, pinocchio.FrameType.BODY)]
-        off, angle = 0.0, 0.0
-        if target.position is not None:
-            off = np.linalg.norm(placement.translation - target.position)
-        if target.rotation is not None:
-            angle = np.linalg.norm(pinocchio.log3(placement.rotation.T @ target.rotation))
-        if target.at is not None:
-            line = target.at - placement.translation
-            facing = placement.rotation @ target.axis
-            angle = math.atan2(np.linalg.norm(np.cross(facing, line)), facing @ line)
-        if solution.success and (off > POSITION or angle > ORIENTATION):
-            raise RuntimeError(
-                f"{solution.method} reports success, but {target.frame} is {off:.2g} m and {angle:.2g} rad off"
-            )
-
-
 def show(question: Question, solutions: list[pinik.Solution], console: Console) -> None:
     """Print a problem and its answers."""
     console.print(Text.assemble((question.robot.name, "bold cyan"), ": ", question.words))
@@ -130,12 +103,8 @@ def show(question: Question, solutions: list[pinik.Solution], console: Console) 
     console.print()
 
 
-def main() -> int:
-    """Run the tour.
-
-    Returns:
-        The exit status, 0 if every success was confirmed.
-    """
+def main() -> None:
+    """Run the tour."""
     sys.stdout.reconfigure(errors="replace")
     console = Console(highlight=False, markup=False)
     if not console.is_terminal:
@@ -144,16 +113,11 @@ def main() -> int:
     console.print(f"pinik {pinik.__version__} on Pinocchio {pinocchio.__version__}\n")
     asked = questions()
     for question in asked:
-        solutions = answers(question)
-        for solution in solutions:
-            check(solution)
-        show(question, solutions, console)
+        show(question, answers(question), console)
     console.print(
-        f"{len(asked)} problems, {len(pinik.SOLVERS)} methods, {time.perf_counter() - began:.1f} s including loading.\n"
-        "Pinocchio's own forward kinematics confirms every success."
+        f"{len(asked)} problems, {len(pinik.SOLVERS)} methods, {time.perf_counter() - began:.1f} s including loading."
     )
-    return 0
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    main()

@@ -68,6 +68,16 @@ def test_a_reference_on_another_branch_adds_that_branch_and_the_gap():
     assert length(arm(), "tip", relative_to="base") == pytest.approx(0.7)
 
 
+def test_the_offsets_go_from_joint_to_joint_and_on_to_the_tool():
+    robot, lance = arm(), pinocchio.SE3(np.eye(3), np.array([0.0, 0.0, 0.6]))
+    frames = {name: robot.frame_id(name) for name in ("base", "a", "tip", "hand")}
+    chain = chain_of(robot.model, robot.joints, frames["tip"], tool=lance)
+    np.testing.assert_allclose(chain.offsets, [(0.3, 0.0, 0.0), (0.0, 0.4, 0.6)])
+    for reference, expected in ((frames["a"], [(0.0, 0.4, 0.0)]), (frames["hand"], [(0.3, 0.0, 0.0), (0.0, 0.4, 0.0)])):
+        np.testing.assert_allclose(chain_of(robot.model, robot.joints, frames["tip"], reference).offsets, expected)
+    assert chain_of(robot.model, robot.joints, frames["base"]).offsets == ()
+
+
 def test_where_nothing_has_a_length_it_is_one():
     robot = arm()
     assert length(robot, "base") == 0.0

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+import pinik
 from judge import assert_good, plain_placement
 from pinik.model.home import home_configuration
 from pinik.motion.figures import StepFigures
@@ -44,6 +45,15 @@ def test_two_hinges_about_one_point_are_one_bone(arm, two_link):
 
 def test_the_arm_is_as_long_as_its_bones(arm):
     assert chain_length(arm, "tip") == pytest.approx(0.28 + 0.25 + 0.21 + 0.17 + 0.13 + 0.16)
+
+
+def test_a_link_that_no_joint_moves_has_a_chain_without_length():
+    mast = pinik.load(
+        """<robot name="mast"><link name="base"/><link name="top"/>
+        <joint name="weld" type="fixed"><parent link="base"/><child link="top"/><origin xyz="0 0 2"/></joint></robot>"""
+    )
+    assert bones(mast, "top") == (0, 0)
+    assert chain_length(mast, "top") == 0.0
 
 
 def test_every_random_place_can_be_reached_inside_the_limits(arm):

@@ -10,6 +10,7 @@ import pinocchio
 from numpy.typing import NDArray
 
 from ..errors import InputError
+from ..model.chains import Chain, chain_of
 from ..model.joint import Joint
 from ..model.robot_model import RobotModel
 
@@ -58,10 +59,10 @@ def recognise(robot: RobotModel, frame: str, tool: pinocchio.SE3 | None, relativ
         UnknownNameError: No such frame.
         InputError: The frame is not moved by two parallel hinges alone; the message says why.
     """
-    first, second = joints = _two_hinges(robot, frame, relative_to)
-    shank = robot.model.jointPlacements[second.id]
-    end = robot.model.frames[robot.frame_id(frame)].placement
-    end = end.translation if tool is None else end.act(tool.translation)
+    moved, reference = robot.frame_id(frame), None if relative_to is None else robot.frame_id(relative_to)
+    chain = chain_of(robot.model, robot.joints, moved, reference, tool)
+    first, second = joints = _two_hinges(chain, frame, relative_to)
+    shank, end = robot.model.jointPlacements[second.id], chain.frame_placement.translation
     axis, own_axis = np.array(first.axis), np.array(second.axis)
     sense, tilt = _alignment(axis, shank.rotation @ own_axis)
     if tilt > _LARGEST_TILT:
@@ -75,8 +76,8 @@ def recognise(robot: RobotModel, frame: str, tool: pinocchio.SE3 | None, relativ
     x = bone / l1
     y = np.cross(axis, x)
     base = robot.model.jointPlacements[first.id]
-    if relative_to is not None:
-        base = robot.model.frames[robot.frame_id(relative_to)].placement.actInv(base)
+    if chain.reference_placement is not None:
+        base = chain.reference_placement.actInv(base)
     rise = float(axis @ shank.translation) + sense * float(own_axis @ end)
     return Bones(
         joints,
@@ -96,20 +97,16 @@ def _alignment(axis: Array, other: Array) -> tuple[float, float]:
     return math.copysign(1.0, along), math.atan2(float(np.linalg.norm(np.cross(axis, other))), abs(along))
 
 
-def _two_hinges(robot: RobotModel, frame: str, relative_to: str | None) -> tuple[Joint, Joint]:
-    """The two hinges that move a frame, base first.
+def _two_hinges(chain: Chain, frame: str, relative_to: str | None) -> tuple[Joint, Joint]:
+    """The two hinges of the chain that moves a frame, base first.
 
     Raises:
         InputError: Other joints move it, or none does; the message names them.
     """
-    model = robot.model
-    carriers = [model.frames[robot.frame_id(frame)].parentJoint]
-    carriers.append(0 if relative_to is None else model.frames[robot.frame_id(relative_to)].parentJoint)
-    moving, still = (set(model.supports[carrier]) for carrier in carriers)
+    movers = chain.joints
     seen = "" if relative_to is None else f" relative to {relative_to!r}"
-    if not still <= moving:
+    if not chain.is_one_branch:
         raise _refusal(frame, f"{relative_to!r} is moved by joints that do not move {frame!r}")
-    movers = [joint for joint in robot.joints if joint.id in moving - still]
     names = ", ".join(f"{joint.name!r} ({joint.kind})" for joint in movers[:_MOST_NAMED])
     if len(movers) > _MOST_NAMED:
         names += f" and {len(movers) - _MOST_NAMED} more"

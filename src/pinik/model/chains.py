@@ -2,15 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable
+from collections.abc import Collection, Iterable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 import pinocchio
+from numpy.typing import NDArray
 
 from .joint import Joint
 
 __all__ = ["Chain", "chain_of"]
+
+Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)
@@ -42,6 +45,14 @@ class Chain:
         """Whether the reference does not move: the chain goes from its first joint straight to the frame."""
         return not any(joint.id in self.reference_support for joint in self.joints)
 
+    @property
+    def offsets(self) -> tuple[Array, ...]:
+        """The steps along the frame's branch, each (3,) in the frame of the joint where it begins [m].
+
+        They go from joint to joint and from the last joint to the frame, its tool included; there is one per joint.
+        """
+        return self._offsets([joint for joint in self.joints if joint.id in self.frame_support], self.frame_placement)
+
     def length(self, still: Collection[int] = ()) -> float:
         """The length of what moves [m]: the distances from joint to joint up to the frame, its tool included.
 
@@ -67,9 +78,13 @@ class Chain:
             joints = joints[1:]
         if not joints:
             return 0.0
-        offsets = [self.model.jointPlacements[joint.id].translation for joint in joints[1:]]
-        ways = sum(float(np.linalg.norm(offset)) for offset in (*offsets, end.translation))
+        ways = sum(float(np.linalg.norm(offset)) for offset in self._offsets(joints, end))
         return ways + sum(_travel(joint) for joint in joints if joint.kind == "prismatic" and joint.id not in still)
+
+    def _offsets(self, joints: Sequence[Joint], end: pinocchio.SE3) -> tuple[Array, ...]:
+        if not joints:
+            return ()
+        return (*(self.model.jointPlacements[joint.id].translation for joint in joints[1:]), end.translation)
 
 
 def chain_of(

@@ -140,9 +140,8 @@ def _spans(chain: Chain, limits: Limits) -> list[_Span]:
     """The spans of a chain, in the order of their ends."""
     joints = chain.joints
     placements = [chain.model.jointPlacements[joint.id] for joint in joints]
-    translations: list[Vector] = [placement.translation.tolist() for placement in placements]
-    translations[0] = [0.0, 0.0, 0.0]  # the chain begins where its first joint sits
-    translations.append(chain.frame_placement.translation.tolist())
+    # The chain begins where its first joint sits.
+    translations: list[Vector] = [[0.0, 0.0, 0.0], *(offset.tolist() for offset in chain.offsets)]
     spans = []
     for k, offset in enumerate(translations):
         joint = joints[k] if k < len(joints) else None

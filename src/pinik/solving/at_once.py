@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from ..problem.targets import TargetError
 from ..solvers.two_bone import TwoBoneSolver
-from .native.answers import Answers
+from .attempts import Outcomes
 from .native.codec import targets_of
 from .question import Question
 from .run import AT_REST
@@ -31,7 +31,7 @@ def lands_at_once(question: Question) -> bool:
     return isinstance(solver, TwoBoneSolver) and solver.lands_at_once and unhurried
 
 
-def attempt_at_once(question: Question, goals: Array, starts: Array) -> Answers:
+def attempt_at_once(question: Question, goals: Array, starts: Array) -> Outcomes:
     """What `Attempts` would find for goals (N, 1, 18) from starts (N or 1, nq), one after another."""
     began = time.perf_counter()
     count, positions, limits = len(goals), goals[:, 0, :3], question.limits
@@ -46,7 +46,7 @@ def attempt_at_once(question: Question, goals: Array, starts: Array) -> Answers:
     iterations = np.where((status == Status.CONVERGED) | rests, 1, 2) * question.problem.free.any()
     none = np.zeros(count, dtype=np.int64)
     seconds = np.full(count, (time.perf_counter() - began) / count)
-    return Answers(q, status, missed, np.full(count, math.nan), iterations, none, none.copy(), seconds)
+    return Outcomes(q, status, missed, np.full(count, math.nan), iterations, none, none.copy(), seconds)
 
 
 def _answered(question: Question, positions: Array, starts: Array) -> tuple[Array, Array, NDArray[np.bool_]]:

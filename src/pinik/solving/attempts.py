@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import time
+from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
@@ -18,7 +19,7 @@ from .starts import Starts
 from .state import State, Status
 from .verdict import judge
 
-__all__ = ["Attempts", "Outcome"]
+__all__ = ["Attempts", "Outcome", "Outcomes"]
 
 Array = NDArray[np.float64]
 
@@ -53,6 +54,20 @@ class Outcome(NamedTuple):
     targets: tuple[Target, ...]
     time: float
     engine: str = "python"
+
+
+@dataclass(frozen=True, eq=False)
+class Outcomes:
+    """What N solves came to, one entry each; `many.Solutions` describes the fields."""
+
+    q: Array
+    status: NDArray[np.object_]
+    position_error: Array
+    orientation_error: Array
+    iterations: NDArray[np.int64]
+    joint_updates: NDArray[np.int64]
+    restarts: NDArray[np.int64]
+    time: Array
 
 
 class Attempts:

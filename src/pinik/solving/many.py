@@ -19,9 +19,9 @@ from ..problem.reach import shortfall
 from ..problem.targets import Target, Tolerance, as_targets, largest_of
 from ..solvers.registry import Method
 from .at_once import attempt_at_once, lands_at_once
-from .attempts import Outcome
-from .native.answers import Answers, attempt_many
+from .attempts import Outcome, Outcomes
 from .native.codec import goals_of, targets_of
+from .native.outcomes import attempt_many
 from .options import Options
 from .prepared import Prepared, is_nearest
 from .solution import Solution
@@ -93,11 +93,11 @@ def solve_many(
     pattern, goals = _questions(robot, targets, places, tool, relative_to)
     starts = _starts(robot, None if is_nearest(q0) else q0, len(goals))
     prepared = Prepared(robot, pattern, options) if pattern else None
-    answers = _nothing(robot) if prepared is None else _answers(prepared, goals, starts, is_nearest(q0), count)
-    return Solutions(**vars(answers), total_time=time.perf_counter() - began, prepared=prepared, _goals=goals)
+    outcomes = _nothing(robot) if prepared is None else _outcomes(prepared, goals, starts, is_nearest(q0), count)
+    return Solutions(**vars(outcomes), total_time=time.perf_counter() - began, prepared=prepared, _goals=goals)
 
 
-def _answers(prepared: Prepared, goals: Array, starts: Array, nearest: bool, threads: int) -> Answers:
+def _outcomes(prepared: Prepared, goals: Array, starts: Array, nearest: bool, threads: int) -> Outcomes:
     if prepared.native is not None:
         return attempt_many(prepared.native, goals, starts, nearest, threads)
     if lands_at_once(prepared.question) and not nearest:
@@ -105,15 +105,15 @@ def _answers(prepared: Prepared, goals: Array, starts: Array, nearest: bool, thr
     return _attempt_one_by_one(prepared, goals, starts, nearest)
 
 
-def _nothing(robot: RobotModel) -> Answers:
-    """The answers to no questions."""
+def _nothing(robot: RobotModel) -> Outcomes:
+    """What no solves came to."""
     none, counts = np.zeros(0), np.zeros(0, dtype=np.int64)
     status = np.zeros(0, dtype=object)
-    return Answers(np.zeros((0, robot.model.nq)), status, none, none, counts, counts, counts, none)
+    return Outcomes(np.zeros((0, robot.model.nq)), status, none, none, counts, counts, counts, none)
 
 
 @dataclass(frozen=True, eq=False)
-class Solutions(Answers):
+class Solutions(Outcomes):
     """The answers to N questions, each checked by plain Pinocchio. `solutions[i]` is what `pinik.solve` returns.
 
     Any thread may read it.
@@ -256,7 +256,7 @@ def _starts(robot: RobotModel, q0: ArrayLike | None, count: int) -> Array:
     return starts
 
 
-def _attempt_one_by_one(prepared: Prepared, goals: Array, starts: Array, nearest: bool) -> Answers:
+def _attempt_one_by_one(prepared: Prepared, goals: Array, starts: Array, nearest: bool) -> Outcomes:
     attempts, pattern = prepared.attempts, prepared.targets
     outcomes = [
         attempts(targets_of(pattern, goal), starts[number % len(starts)], number=number, nearest=nearest)
@@ -264,7 +264,7 @@ def _attempt_one_by_one(prepared: Prepared, goals: Array, starts: Array, nearest
     ]
     largest = np.array([largest_of(outcome.errors) for outcome in outcomes], dtype=np.float64)  # None becomes NaN
     largest = largest.reshape(-1, 2)
-    return Answers(
+    return Outcomes(
         np.array([outcome.q for outcome in outcomes]).reshape(-1, prepared.robot.model.nq),
         np.array([outcome.status for outcome in outcomes], dtype=object),
         largest[:, 0],

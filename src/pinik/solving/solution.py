@@ -16,8 +16,8 @@ from ..model.robot_model import RobotModel
 from ..problem.targets import Target, TargetError, largest_of
 from .attempts import Outcome
 from .message import explain
-from .native.answers import Answer
 from .native.module import why_not
+from .native.outcomes import NativeOutcome
 from .question import Question
 from .state import State, Status
 from .verdict import Verdict
@@ -43,9 +43,9 @@ class Solution:
         self._question = question
 
     @property
-    def _outcome(self) -> Outcome | Answer:
+    def _outcome(self) -> Outcome | NativeOutcome:
         outcome = self._came_to
-        return outcome if isinstance(outcome, Outcome) else Answer(outcome, self._question.problem.targets)
+        return outcome if isinstance(outcome, Outcome) else NativeOutcome(outcome, self._question.problem.targets)
 
     def __getstate__(self) -> dict[str, Any]:
         """Words and numbers alone: what it was computed with is not pickled."""

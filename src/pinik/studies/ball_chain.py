@@ -11,6 +11,7 @@ import pinocchio
 from numpy.typing import NDArray
 
 from ..errors import InputError, UnknownNameError
+from ..model.chains import chain_of
 from ..motion.figures import StepFigures
 from ..robot import Robot
 from .steps import PROGRAM
@@ -49,25 +50,24 @@ class BallChain:
         model, neutral = robot.model, robot.neutral()
         data = model.createData()
         pinocchio.forwardKinematics(model, data, neutral)
-        chain = [id_ for id_ in model.supports[model.frames[robot.frame_id(frame)].parentJoint] if id_ > 0]
-        points = [data.oMi[id_].translation for id_ in chain]
-        joints = {joint.id: joint for joint in robot.joints}
-        hinges = [joints[id_].kind == "revolute" for id_ in chain]
+        joints = chain_of(model, robot.joints, robot.frame_id(frame)).joints
+        points = [data.oMi[joint.id].translation for joint in joints]
+        hinges = [joint.kind == "revolute" for joint in joints]
         paired = all(np.allclose(a, b) for a, b in zip(points[::2], points[1::2], strict=False))
-        if not chain or len(chain) % 2 or not all(hinges) or not paired:
+        if not joints or len(joints) % 2 or not all(hinges) or not paired:
             raise InputError(
                 f"the thesis's program needs bones of two hinges about one point each; {robot.name} has other joints"
             )
         ends = np.array([*points[::2], robot.placement(frame, neutral).translation]) / unit
         lengths = np.linalg.norm(np.diff(ends, axis=0), axis=1)
-        axes = np.array([data.oMi[id_].rotation @ np.array(joints[id_].axis) for id_ in chain])
+        axes = np.array([data.oMi[joint.id].rotation @ np.array(joint.axis) for joint in joints])
         standing = np.allclose(np.diff(ends, axis=0), lengths[:, None] * (0.0, 0.0, 1.0))
         if not standing or not np.allclose(axes, np.tile(np.eye(3)[[1, 0]], (len(lengths), 1))):
             raise InputError(
                 f"the thesis's program needs bones that point straight up at zero; those of {robot.name} do not"
             )
         made = cls(ends[0], lengths, swing)
-        angles = np.array([joints[id_].angle(q) for id_ in chain]).reshape(-1, 2)
+        angles = np.array([joint.angle(q) for joint in joints]).reshape(-1, 2)
         made.R = np.array([_about(1, first) @ _about(0, second) for first, second in angles])
         return made
 

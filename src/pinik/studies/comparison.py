@@ -9,6 +9,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from ..model.chains import chain_of
 from ..model.home import home_configuration
 from ..motion.figures import StepFigures
 from ..motion.tracks import lay_track, random_configuration
@@ -85,19 +86,18 @@ class Row(NamedTuple):
 
 def bones(robot: Robot, frame: str) -> tuple[int, int]:
     """(bones, joints) of the chain that moves a frame; joints at the same point form one bone."""
-    model = robot.model
-    chain = [joint for joint in model.supports[model.frames[robot.frame_id(frame)].parentJoint] if joint > 0]
-    apart = [joint for joint in chain[1:] if np.linalg.norm(model.jointPlacements[joint].translation) > 1e-9]
-    return len(apart) + bool(chain), len(chain)
+    chain = chain_of(robot.model, robot.joints, robot.frame_id(frame))
+    apart = [offset for offset in chain.offsets[:-1] if np.linalg.norm(offset) > 1e-9]
+    return len(apart) + bool(chain.joints), len(chain.joints)
 
 
 def chain_length(robot: Robot, frame: str) -> float:
-    """The length of the chain from the first joint that moves a frame, joint by joint, to the frame [m]."""
-    model = robot.model
-    at = model.frames[robot.frame_id(frame)]
-    chain = [joint for joint in model.supports[at.parentJoint] if joint > 0]
-    offsets = [*(model.jointPlacements[joint].translation for joint in chain[1:]), at.placement.translation]
-    return sum(float(np.linalg.norm(offset)) for offset in offsets)
+    """The length of the chain from the first joint that moves a frame, joint by joint, to the frame [m].
+
+    Sliding joints count as they are at zero, unlike in `Chain.length`.
+    """
+    chain = chain_of(robot.model, robot.joints, robot.frame_id(frame))
+    return float(sum(np.linalg.norm(offset) for offset in chain.offsets))
 
 
 def places(robot: Robot, frame: str, motion: str, steps: int, seed: int, lap: int = LAP) -> Array:

@@ -210,12 +210,12 @@ def test_the_closed_form_where_it_can_be_and_nowhere_else(arm, two_link):
 
 
 def test_what_all_instances_share(arm):
-    assert not after(arm, "limits", on=False).chase.limits
-    chase = after(arm, "iterations", until_reached=False, at_most=7).chase
-    assert (chase.until_reached, chase.at_most) == (False, 7)
+    assert not after(arm, "limits", on=False).settings.limits
+    settings = after(arm, "iterations", until_reached=False, at_most=7).settings
+    assert (settings.until_reached, settings.at_most) == (False, 7)
     shown = after(arm, "tolerance", position=0.25, orientation=1)
-    assert shown.chase.tolerance == (0.25, 1.0)
-    assert all(one.chase == shown.chase for one in shown.instances)
+    assert shown.settings.tolerance == (0.25, 1.0)
+    assert all(one.settings == shown.settings for one in shown.instances)
 
 
 def test_motion_and_time(arm):

@@ -119,7 +119,7 @@ def test_a_set_up_says_what_differs_from_the_beginning_in_plain_words(arm):
     shown.set_curve("knot")
     shown.motion.speed = 2.5
     shown.set_limits(False)
-    shown.set_chase(shown.chase.__class__(limits=False, until_reached=False, at_most=9))
+    shown.apply_settings(shown.settings.__class__(limits=False, until_reached=False, at_most=9))
     shown.set_tolerance(0.001, 0.01)
     shown.orient_ball(0, True, [0.1, 0.2, 0.3])
     shown.running = True
@@ -161,7 +161,7 @@ def test_numbers_are_kept_to_the_last_digit(arm):
     shown.set_parameter(3, "damping", 1 / 3)
     apply_setup(other, read_setup(write_setup(shown)))
     assert other.motion.speed == math.pi
-    assert other.chase == shown.chase
+    assert other.settings == shown.settings
     assert other.instances[3].solver == shown.instances[3].solver
 
 

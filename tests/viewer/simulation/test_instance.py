@@ -13,7 +13,7 @@ import pinik
 from judge import is_inside, plain_placement
 from pinik.model.home import home_configuration
 from pinik.solvers.registry import make_solver
-from pinik.viewer.simulation.instance import STATUSES, Chase, Instance
+from pinik.viewer.simulation.instance import STATUSES, Instance, StepSettings
 from robots import load_quietly
 from stand_ins import Clock
 
@@ -46,8 +46,8 @@ class Moody(pinik.JacobianSolver):
         return np.linalg.pinv(J) @ e
 
 
-def instance(robot, solver="dls", clock=None, **chase):
-    return Instance(robot, make_solver(solver), home_configuration(robot), Chase(**chase), clock or Clock())
+def instance(robot, solver="dls", clock=None, **settings):
+    return Instance(robot, make_solver(solver), home_configuration(robot), StepSettings(**settings), clock or Clock())
 
 
 def distance(robot, q, frame, position):
@@ -135,7 +135,7 @@ def test_before_the_first_step_it_says_so(arm):
     assert one.verdict() == ("IDLE", "no step was made yet", None, None, ())
     one.step([pinik.Target("tip", FAR)])
     assert one.verdict().status == "UNREACHABLE"
-    one.chase = Chase(limits=False)
+    one.settings = StepSettings(limits=False)
     assert (one.status, one.verdict().message) == ("IDLE", "no step was made yet")
 
 
@@ -143,7 +143,7 @@ def test_another_solver_empties_the_statistics_another_chase_does_not(arm):
     one = instance(arm)
     one.step([pinik.Target("tip", REACHABLE)])
     q = one.q
-    one.chase = Chase(until_reached=False)
+    one.settings = StepSettings(until_reached=False)
     assert one.statistics.summary().steps == 1
     one.solver = make_solver("ccd")
     assert one.statistics.summary().steps == 0
@@ -161,7 +161,7 @@ def test_limits_hold_when_they_are_on_and_only_then(arm):
         assert is_inside(arm, kept.q)
         left = left or not is_inside(arm, free.q)
     assert left
-    free.chase = Chase(limits=True)
+    free.settings = StepSettings(limits=True)
     free.step([target])
     assert is_inside(arm, free.q)
 

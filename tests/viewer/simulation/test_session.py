@@ -219,7 +219,7 @@ def test_statistics_count_what_happened(arm):
     """By plain forward kinematics and differences after every step."""
     clock = Clock(each=0.001)
     shown = session(arm, ["dls"], clock)
-    shown.set_chase(shown.chase.__class__(until_reached=False, at_most=1))
+    shown.apply_settings(shown.settings.__class__(until_reached=False, at_most=1))
     shown.set_motion("curve")
     errors, jumps = [], []
     for _ in range(30):
@@ -266,7 +266,7 @@ def test_a_value_that_is_there_already_changes_nothing(arm):
         for name, value in one.solver.parameters.items():
             shown.set_parameter(index, name, value)
     shown.set_limits(True)
-    shown.set_tolerance(*shown.chase.tolerance)
+    shown.set_tolerance(*shown.settings.tolerance)
     shown.set_motion("curve")
     shown.set_view(4)
     assert snapshot(shown) == before
@@ -327,7 +327,7 @@ def test_limits_keep_every_configuration_inside(arm):
 
 def test_the_tolerance_is_what_counts_as_reached(arm):
     shown = session(arm, ["dls"])
-    shown.set_chase(shown.chase.__class__(until_reached=False, at_most=1))
+    shown.apply_settings(shown.settings.__class__(until_reached=False, at_most=1))
     shown.set_tolerance(0.05, 0.1)
     shown.move_ball(0, ELSEWHERE)
     one = shown.instances[0]
@@ -551,11 +551,11 @@ def test_another_robot_keeps_the_settings_and_drops_joints_that_it_lacks(arm, pa
     other = shown.with_robot(panda)
     assert (other.robot, other.view, other.running, other.steps) == (panda, 2, True, 0)
     assert (other.motion.kind, other.motion.curve, other.motion.speed) == ("random", "knot", 2.5)
-    assert other.chase == shown.chase
+    assert other.settings == shown.settings
     assert other.methods == shown.methods
     assert [one.solver.name for one in other.instances] == [one.solver.name for one in shown.instances]
     assert (other.instances[0].solver.position_weight, dict(other.instances[0].solver.stiffness)) == (7.0, {})
-    assert all(one.chase == shown.chase for one in other.instances)
+    assert all(one.settings == shown.settings for one in other.instances)
     assert [ball.frame for ball in other.balls] == ["panda_hand_tcp"]
     other.step()
     fresh = session(panda, seed=4)

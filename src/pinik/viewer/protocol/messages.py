@@ -160,7 +160,7 @@ def _set_speed(session: Session, value: float) -> None:
 
 
 def _set_iterations(session: Session, until_reached: bool, at_most: int) -> None:
-    session.set_chase(dataclasses.replace(session.chase, until_reached=until_reached, at_most=at_most))
+    session.apply_settings(dataclasses.replace(session.settings, until_reached=until_reached, at_most=at_most))
 
 
 def _single_step(session: Session) -> None:

@@ -9,7 +9,7 @@ from urllib.parse import parse_qsl, quote, urlencode
 
 from ...errors import InputError, UnknownNameError
 from ...problem.targets import Tolerance
-from ..simulation.instance import Chase
+from ..simulation.instance import StepSettings
 from ..simulation.session import Session
 from .messages import apply, read_json
 from .parameters import changed_parameters, describe_parameters
@@ -25,7 +25,7 @@ _KEYS = ("robot", "root", "view", "methods", "parameters", "motion", "curve", "s
 
 def write_setup(session: Session) -> str:
     """Return the set-up as "name=value&…", mostly without settings that have their default value."""
-    chase, motion, default = session.chase, session.motion, Chase()
+    settings, motion, default = session.settings, session.motion, StepSettings()
     setup = {
         "robot": session.robot.name,
         "root": session.robot.root,
@@ -40,12 +40,12 @@ def write_setup(session: Session) -> str:
         setup["curve"] = motion.curve
     if motion.speed != 1.0:
         setup["speed"] = _short(motion.speed)
-    if chase.limits != default.limits:
+    if settings.limits != default.limits:
         setup["limits"] = "off"
-    if not chase.until_reached:
-        setup["iterations"] = str(chase.at_most)
-    if chase.tolerance != default.tolerance:
-        setup["tolerance"] = ",".join(map(_short, chase.tolerance))
+    if not settings.until_reached:
+        setup["iterations"] = str(settings.at_most)
+    if settings.tolerance != default.tolerance:
+        setup["tolerance"] = ",".join(map(_short, settings.tolerance))
     setup["balls"] = _compact([_ball(session, index) for index in range(len(session.balls))])
     setup["run"] = "on" if session.running else "off"
     return urlencode(setup, quote_via=quote, safe=",:[]{}")
@@ -123,12 +123,12 @@ def _messages(session: Session, setup: Setup) -> Iterator[dict[str, Any]]:
             defaults = {p["name"]: p["default"] for p in described if p["value"] != p["default"]}
             for name, value in (defaults | wanted).items():
                 yield {"type": "parameter", "instance": index, "name": name, "value": value}
-    chase = session.chase
+    settings = session.settings
     yield {"type": "limits", "on": _on("limits", setup.get("limits", "on"))}
     yield {
         "type": "iterations",
         "until_reached": "iterations" not in setup,
-        "at_most": _whole("iterations", setup["iterations"]) if "iterations" in setup else chase.at_most,
+        "at_most": _whole("iterations", setup["iterations"]) if "iterations" in setup else settings.at_most,
     }
     tolerance = _numbers("tolerance", setup["tolerance"], 2) if "tolerance" in setup else Tolerance()
     yield {"type": "tolerance", "position": tolerance[0], "orientation": tolerance[1]}

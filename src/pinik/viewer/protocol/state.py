@@ -44,7 +44,7 @@ def hello_message(version: str, methods: dict[str, type[Solver]], own_robots: li
 
 def session_state(session: Session) -> dict[str, Any]:
     """Return the `state` message without what the server adds: generation, pace, loading, set-up."""
-    chase, motion = session.chase, session.motion
+    settings, motion = session.settings, session.motion
     return {
         "type": "state",
         "schema": 1,
@@ -55,9 +55,9 @@ def session_state(session: Session) -> dict[str, Any]:
         "motion": motion.kind,
         "curve": motion.curve,
         "speed": motion.speed,
-        "limits": chase.limits,
-        "iterations": {"until_reached": chase.until_reached, "at_most": chase.at_most},
-        "tolerance": chase.tolerance._asdict(),
+        "limits": settings.limits,
+        "iterations": {"until_reached": settings.until_reached, "at_most": settings.at_most},
+        "tolerance": settings.tolerance._asdict(),
         "step": session.steps,
         "balls": [
             {

@@ -26,7 +26,7 @@ from ...solving.state import State, Status
 from ...solving.verdict import judge
 from .statistics import Statistics, StepFigures
 
-__all__ = ["STATUSES", "Chase", "Instance", "Standing"]
+__all__ = ["STATUSES", "Instance", "Standing", "StepSettings"]
 
 Array = NDArray[np.float64]
 
@@ -36,8 +36,8 @@ that the method cannot answer."""
 
 
 @dataclass(frozen=True)
-class Chase:
-    """What all instances of a session have in common.
+class StepSettings:
+    """How a step goes, the same for all instances of a session.
 
     Attributes:
         limits: Whether joint limits hold.
@@ -87,12 +87,17 @@ class Instance:
     """
 
     def __init__(
-        self, robot: Robot, solver: Solver, home: Array, chase: Chase, clock: Callable[[], float] = time.perf_counter
+        self,
+        robot: Robot,
+        solver: Solver,
+        home: Array,
+        settings: StepSettings,
+        clock: Callable[[], float] = time.perf_counter,
     ) -> None:
         self.robot = robot
         self.statistics = Statistics()
         self._solver = solver
-        self._chase = chase
+        self._settings = settings
         self._clock = clock
         self._all_limits = Limits.of(robot)
         self.put(home)
@@ -109,13 +114,13 @@ class Instance:
         self._forget_run()
 
     @property
-    def chase(self) -> Chase:
-        """What it has in common with the others."""
-        return self._chase
+    def settings(self) -> StepSettings:
+        """How its steps go."""
+        return self._settings
 
-    @chase.setter
-    def chase(self, chase: Chase) -> None:
-        self._chase = chase
+    @settings.setter
+    def settings(self, settings: StepSettings) -> None:
+        self._settings = settings
         self._forget_run()
 
     def put(self, q: Array) -> None:
@@ -189,14 +194,14 @@ class Instance:
         return state
 
     def _begin(self, targets: tuple[Target, ...]) -> States:
-        solver, chase = self._solver, self._chase
-        options = Options(solver, limits=chase.limits, tolerance=chase.tolerance)
+        solver, settings = self._solver, self._settings
+        options = Options(solver, limits=settings.limits, tolerance=settings.tolerance)
         try:
             self._question = Question.of(self.robot, targets, options)
         except InputError as error:
             raise _RefusedError(str(error)) from None
         limits, kinematics = self._question.limits, Kinematics.of(self._question.problem)
-        most = solver.max_iterations if chase.until_reached else chase.at_most
+        most = solver.max_iterations if settings.until_reached else settings.at_most
         return run(self._question, kinematics, limits.clip(limits.wrap(self.q)), Pace(most))
 
     def _fail(self, error: Exception, spent: float) -> None:

@@ -19,7 +19,7 @@ from ...solvers.base import Solver
 from ...solvers.registry import Method, known_methods, make_solver
 from ...solving.question import check_joint_names
 from .balls import MODES, Ball, Mode
-from .instance import Chase, Instance
+from .instance import Instance, StepSettings
 from .method_menu import check_balls, fitting, offered
 from .motion import MOTIONS, Motion
 from .statistics import Summary
@@ -102,12 +102,12 @@ class Session:
         self.steps = 0
         self.notes: list[str] = []
         self._offered: tuple[list[str], list[str]] = ([], [])  # for which frames, what
-        self.chase = Chase()
+        self.settings = StepSettings()
         self.motion = Motion(robot, seed)
         self._seed = seed
         self._clock = clock
         self._home = home_configuration(robot)
-        self.instances = [Instance(robot, s, self._home, self.chase, clock) for s in solvers]
+        self.instances = [Instance(robot, s, self._home, self.settings, clock) for s in solvers]
         self.balls: list[Ball] = []
         for frame in frames:
             self._place_ball(frame, "pinned" if self._is_planted(frame) else "off")
@@ -124,7 +124,7 @@ class Session:
         other.methods = self.methods
         other.notes = notes
         other.running = self.running
-        other.set_chase(self.chase)
+        other.apply_settings(self.settings)
         other.motion.kind, other.motion.curve = self.motion.kind, self.motion.curve
         other.motion.speed = self.motion.speed
         return other
@@ -205,21 +205,21 @@ class Session:
         solver = self._instance(index).solver
         self._set_solver(index, make_solver(type(solver), **(solver.parameters | {name: value})))
 
-    def set_chase(self, chase: Chase) -> None:
-        """What all instances have in common: limits, tolerance, how far a step goes."""
-        if chase == self.chase:
+    def apply_settings(self, settings: StepSettings) -> None:
+        """Set the limits, the tolerance and how far a step goes, for all instances."""
+        if settings == self.settings:
             return
-        self.chase = chase
+        self.settings = settings
         for instance in self.instances:
-            instance.chase = chase
+            instance.settings = settings
 
     def set_limits(self, on: bool) -> None:
         """Joint limits on or off."""
-        self.set_chase(dataclasses.replace(self.chase, limits=on))
+        self.apply_settings(dataclasses.replace(self.settings, limits=on))
 
     def set_tolerance(self, position: float, orientation: float) -> None:
         """What counts as reached [m], [rad]."""
-        self.set_chase(dataclasses.replace(self.chase, tolerance=Tolerance.of((position, orientation))))
+        self.apply_settings(dataclasses.replace(self.settings, tolerance=Tolerance.of((position, orientation))))
 
     def set_motion(self, kind: str) -> None:
         """How balls move: "hand", "curve" or "random"."""

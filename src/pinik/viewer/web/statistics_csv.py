@@ -19,7 +19,7 @@ def statistics_csv(session: Session) -> str:
     writer = csv.writer(table)
     writer.writerow(("instance", "robot", "method", "motion", "limits", *_FIGURES))
     for index, instance in enumerate(session.seen):
-        limits = "on" if session.chase.limits else "off"
+        limits = "on" if session.settings.limits else "off"
         setting = (index, session.robot.name, instance.solver.name, session.motion.kind, limits)
         writer.writerow((*setting, *instance.statistics.summary()))
     return table.getvalue()

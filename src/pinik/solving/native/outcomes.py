@@ -1,9 +1,8 @@
-"""What the compiled engine answers, as Python objects."""
+"""What the compiled engine's solves came to, as Python objects."""
 
 from __future__ import annotations
 
 import functools
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -11,11 +10,12 @@ from numpy.typing import NDArray
 
 from ...problem.reach import Shortfall
 from ...problem.targets import Target, TargetError
+from ..attempts import Outcomes
 from ..state import State, Status
 from .codec import targets_of
 from .module import load
 
-__all__ = ["Answer", "Answers", "attempt_many"]
+__all__ = ["NativeOutcome", "attempt_many"]
 
 if TYPE_CHECKING:
     from ... import _native
@@ -40,30 +40,16 @@ def _numbered() -> NDArray[np.object_]:
     return numbered
 
 
-@dataclass(frozen=True, eq=False)
-class Answers:
-    """The results of N solves, one entry each; `many.Solutions` describes the fields."""
-
-    q: Array
-    status: NDArray[np.object_]
-    position_error: Array
-    orientation_error: Array
-    iterations: NDArray[np.int64]
-    joint_updates: NDArray[np.int64]
-    restarts: NDArray[np.int64]
-    time: Array
-
-
-def attempt_many(engine: Engine, goals: Array, starts: Array, nearest: bool, threads: int) -> Answers:
+def attempt_many(engine: Engine, goals: Array, starts: Array, nearest: bool, threads: int) -> Outcomes:
     """Solve for goals (N, n, 18) from starts (N or 1, nq). The number of a question seeds its restarts."""
     q, status, position, orientation, iterations, updates, restarts, seconds = engine.solve_many(
         starts, goals, nearest, threads
     )
-    return Answers(q, _numbered()[status], position, orientation, iterations, updates, restarts, seconds)
+    return Outcomes(q, _numbered()[status], position, orientation, iterations, updates, restarts, seconds)
 
 
-class Answer:
-    """The result of a solve, with the attributes of `attempts.Outcome`; each is converted to Python when it is read.
+class NativeOutcome:
+    """An `attempts.Outcome` of the compiled engine: each attribute is converted to Python when it is read.
 
     Attributes:
         pattern: The targets of the prepared question, whose numbers this solve replaced.
