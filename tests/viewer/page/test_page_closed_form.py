@@ -55,7 +55,7 @@ def test_with_another_robot_it_makes_room_and_leaves_the_menu(open_panel):
     desk = open_panel("two_link", ("ccd", "two_bone"))
     desk.choose("robot", "arm")
     desk.until(lambda s: s["robot"] == "arm")
-    desk.expect(desk.toasts).to_contain_text("instance 2 goes on with dls: two_bone cannot chase a ball here")
+    desk.expect(desk.toasts).to_contain_text("instance 2 now uses dls: two_bone cannot chase a ball here")
     desk.expect("method-1").to_have_value("dls")
     assert offered(desk, 0) == offered(desk, 1) == list(METHODS)
     desk.choose("robot", "two_link")

@@ -181,7 +181,7 @@ def test_with_a_robot_that_it_cannot_move_it_makes_room_and_says_so(two_link, ar
     there = shown.with_robot(arm)
     assert [one.solver.name for one in there.instances] == ["ccd", "jt", "dls", "pinv"]
     (note,) = there.notes
-    assert note.startswith(f"instance 4 goes on with pinv: two_bone cannot chase a ball here: frame 'tip' {ALONE}: 12")
+    assert note.startswith(f"instance 4 now uses pinv: two_bone cannot chase a ball here: frame 'tip' {ALONE}: 12")
     steps(there, 2)
     assert all(one.status == "CONVERGED" for one in there.instances)
     back = there.with_robot(two_link)
