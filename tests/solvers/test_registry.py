@@ -53,7 +53,7 @@ def test_a_solver_whose_class_lacks_its_decorator_is_told_so(arm):
         def direction(self, J, e):
             return self.gain * J.T @ e
 
-    with pytest.raises(pinik.InputError, match="Bare: its class lacks @dataclass"):
+    with pytest.raises(pinik.InputError, match="Bare: the class must be decorated with @dataclass"):
         arm.solve("tip", position=[0, 0, 1], method=Bare)
 
 

@@ -44,7 +44,7 @@ def test_with_a_second_ball_it_waits_and_says_why(open_panel):
     desk.click("step")
     desk.expect("status-1").to_have_text("cannot do this")
     desk.expect("label-1").to_contain_text("cannot do this")
-    desk.expect("message-1").to_have_text("waiting: two_bone takes one target; got 2")
+    desk.expect("message-1").to_have_text("waiting: two_bone takes only one target; got 2")
     assert offered(desk, 1) == FITTING
     desk.choose("ball-mode-1", "off")
     desk.click("step")

@@ -138,7 +138,7 @@ class Session:
     @property
     def offered(self) -> list[str]:
         """Names of the methods that can chase one of the balls."""
-        if self._offered[0] != self._frames:  # kept, because every state message needs it and a check takes milliseconds
+        if self._offered[0] != self._frames:  # kept: every state message needs it, and a check takes milliseconds
             self._offered = self._frames, offered(self.methods, self.robot, self._frames)
         return self._offered[1]
 
