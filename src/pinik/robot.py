@@ -58,5 +58,5 @@ class Robot(RobotModel):
         wanted = (
             position, rotation, rpy, quat_xyzw, quat_wxyz, placement, axis, direction, at, tool, relative_to, weight,
         )  # fmt: skip
-        said = (limits, locked, restarts, seed, max_iterations, tolerance, time_limit, engine, trace)
-        return answer(self, targets, method, wanted, q0, said, solver_parameters)
+        given = (limits, locked, restarts, seed, max_iterations, tolerance, time_limit, engine, trace)
+        return answer(self, targets, method, wanted, q0, given, solver_parameters)
