@@ -1,4 +1,4 @@
-"""What the compiled engine answers, as Python objects."""
+"""The compiled engine's answers as Python objects."""
 
 from __future__ import annotations
 
@@ -55,7 +55,7 @@ class Answers:
 
 
 def attempt_many(engine: Engine, goals: Array, starts: Array, nearest: bool, threads: int) -> Answers:
-    """Solve for goals (N, n, 18) from starts (N or 1, nq). The number of a question seeds its restarts."""
+    """Solve for goals (N, n, 18) from starts (N or 1, nq). The index of each problem seeds its restarts."""
     q, status, position, orientation, iterations, updates, restarts, seconds = engine.solve_many(
         starts, goals, nearest, threads
     )
@@ -66,7 +66,7 @@ class Answer:
     """The result of a solve, with the attributes of `attempts.Outcome`; each is converted to Python when it is read.
 
     Attributes:
-        pattern: The targets of the prepared question, whose numbers this solve replaced.
+        pattern: The targets of the prepared problem, whose numbers this solve replaced.
     """
 
     __slots__ = ("_answer", "pattern")
