@@ -1,4 +1,4 @@
-"""`load`: a robot from a catalogue name, a path or URDF text."""
+"""`load`: makes a robot from a catalogue name, a path or URDF text."""
 
 from __future__ import annotations
 
@@ -34,8 +34,7 @@ def load(
     Raises:
         RobotLoadError: The description is faulty; the message names the element and the cause.
         UnknownNameError: The catalogue has no robot of that name.
-        InputError: An unknown root, a source that is neither a name, a path nor text, or a single folder instead of a
-            list.
+        InputError: The root is unknown, the source is not a name, a path or text, or `package_dirs` is not a list.
 
     Warns:
         UrdfWarning: pinik repaired or ignored something, or did not find a mesh.
@@ -74,12 +73,12 @@ def load_in_silence(
 
 
 def locate(source: str | os.PathLike[str]) -> tuple[str | None, Path | None, str | Path]:
-    """(catalogue name or None, SRDF or None, path or text) of a source.
+    """Find a robot's source: (catalogue name or None, SRDF path or None, URDF path or text).
 
     Raises:
         UnknownNameError: The catalogue has no robot of that name.
-        RobotLoadError: There is no such file, but a robot of that name in the catalogue.
-        InputError: The source is neither a name, a path nor text.
+        RobotLoadError: There is no such file, but the catalogue has a robot of that name.
+        InputError: The source is not a name, a path or text.
     """
     if not isinstance(source, (str, os.PathLike)):
         raise InputError(f"a robot must be a catalogue name, a path or URDF text; got {source!r}")

@@ -1,4 +1,4 @@
-"""`Robot`: a robot that answers both questions, where its frames are and which joint values put them elsewhere."""
+"""`Robot`: a robot with forward and inverse kinematics."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ __all__ = ["Robot"]
 
 
 class Robot(RobotModel):
-    """A robot as `pinik.load` returns it: everything of `RobotModel`, and `solve`."""
+    """A robot as returned by `pinik.load`: a `RobotModel` with the method `solve`."""
 
     def solve(
         self,
@@ -50,13 +50,13 @@ class Robot(RobotModel):
         trace: bool = False,
         **solver_parameters: Any,
     ) -> Solution:
-        """Find joint values that put frames where the targets want them.
+        """Find joint values that move frames of the robot to their targets.
 
-        The arguments, the answer and the errors are those of `pinik.solve`, which explains each. A question that was
-        asked before is not compiled again.
+        `pinik.solve` explains the arguments, the solution and the errors. Problems of the same kind are compiled only
+        once.
         """
         wanted = (
             position, rotation, rpy, quat_xyzw, quat_wxyz, placement, axis, direction, at, tool, relative_to, weight,
         )  # fmt: skip
-        said = (limits, locked, restarts, seed, max_iterations, tolerance, time_limit, engine, trace)
-        return answer(self, targets, method, wanted, q0, said, solver_parameters)
+        given = (limits, locked, restarts, seed, max_iterations, tolerance, time_limit, engine, trace)
+        return answer(self, targets, method, wanted, q0, given, solver_parameters)

@@ -355,9 +355,9 @@ class TestAsAMethod:
     @pytest.mark.parametrize(
         ("targets", "words"),
         [
-            (Target("tip", [0.5, 0.1, 0.0], rpy=[0.0, 0.0, 1.0]), "a position alone; target 'tip' asks for an orient"),
-            (Target("tip", axis="x", direction=[1.0, 0.0, 0.0]), "a position alone"),
-            ([Target("tip", [0.5, 0.1, 0.0]), Target("link2", [0.5, 0.0, 0.0])], "takes one target; got 2"),
+            (Target("tip", [0.5, 0.1, 0.0], rpy=[0.0, 0.0, 1.0]), "only a position; target 'tip' has an orient"),
+            (Target("tip", axis="x", direction=[1.0, 0.0, 0.0]), "only a position"),
+            ([Target("tip", [0.5, 0.1, 0.0]), Target("link2", [0.5, 0.0, 0.0])], "takes only one target; got 2"),
             (Target("link1", [0.5, 0.1, 0.0]), "not moved by two parallel hinges alone: only one joint moves it"),
         ],
     )

@@ -443,7 +443,7 @@ def test_targets_that_are_none_are_refused(arm):
         arm.solve([])
     with pytest.raises(pinik.InputError, match="targets must be Target objects"):
         arm.solve([[0.1, 0.2, 0.3]])
-    with pytest.raises(pinik.InputError, match=r"rpy= goes with the name of a frame.*belongs in Target\(\.\.\.\)"):
+    with pytest.raises(pinik.InputError, match=r"pass it to Target\(...\)"):
         arm.solve([Target("tip", [0, 0, 1])], rpy=[0, 0, 0])
 
 

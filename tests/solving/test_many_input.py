@@ -46,12 +46,12 @@ BAD = {
     "a number": ((3,), "targets"),
     "None": ((None,), "targets"),
     "no sequence of targets": (([POINT, 3],), "targets must be Target objects"),
-    "mixed kinds": (([POINT, POINT, Target(TIP, placement=np.eye(4))],), r"targets\[2\] asks for something other than"),
-    "mixed frames": (([POINT, Target("panda_link5", [0, 0, 1])],), r"targets\[1\] asks for something other than"),
-    "mixed numbers": (([[POINT], [POINT, POINT]],), r"targets\[1\] asks for something other than"),
+    "mixed kinds": (([POINT, POINT, Target(TIP, placement=np.eye(4))],), r"targets\[2\] must be of the same kind as"),
+    "mixed frames": (([POINT, Target("panda_link5", [0, 0, 1])],), r"targets\[1\] must be of the same kind as"),
+    "mixed numbers": (([[POINT], [POINT, POINT]],), r"targets\[1\] must be of the same kind as"),
     "several patterns": (([POINT], EYES), "a frame's name or one Target"),
-    "an axis": ((Target(TIP, axis="x", direction=[0, 0, 1]), EYES), "say less than the target asks for"),
-    "a pose by points": ((Target(TIP, placement=np.eye(4)), [[0, 0, 1]]), "say less than the target asks for"),
+    "an axis": ((Target(TIP, axis="x", direction=[0, 0, 1]), EYES), "do not specify all that"),
+    "a pose by points": ((Target(TIP, placement=np.eye(4)), [[0, 0, 1]]), "do not specify all that"),
     "an unknown frame": (("nowhere", EYES), "no frame 'nowhere'"),
 }
 

@@ -110,7 +110,7 @@ def test_every_front_takes_a_frames_name_and_targets_alike(front, arm):
 
 def test_a_targets_keywords_do_not_go_with_target_objects(arm):
     for front in (pinik.solve, pinik.prepare, pinik.iterate, pinik.Robot.solve):
-        with pytest.raises(InputError, match="position= goes with the name of a frame"):
+        with pytest.raises(InputError, match="position= needs the name of a frame"):
             front(arm, Target("tip", [0, 0, 1]), position=[0.0, 0.0, 1.0])
 
 

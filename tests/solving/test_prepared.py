@@ -80,9 +80,9 @@ def test_what_it_was_not_prepared_for_is_refused_in_words(engine, panda, lion):
     two = pinik.prepare(lion, [Target("nose", [0, 0, 1]), Target("tail_tip", [0, 0, 1])], engine=engine)
     for ask, place, words in (
         (pose, [0.1, 0.2, 0.3], "asks for an orientation too"),
-        (pose, Target(TIP, [0, 0, 1]), "prepared for other targets"),
-        (pose, Target("panda_link5", placement=np.eye(4)), "prepared for other targets"),
-        (pose, Target(TIP, placement=np.eye(4), weight=2.0), "prepared for other targets"),
+        (pose, Target(TIP, [0, 0, 1]), "targets must be of the same kinds"),
+        (pose, Target("panda_link5", placement=np.eye(4)), "targets must be of the same kinds"),
+        (pose, Target(TIP, placement=np.eye(4), weight=2.0), "targets must be of the same kinds"),
         (pose, np.full((4, 4), math.nan), "SE3 or a homogeneous matrix"),
         (pose, np.eye(3), "SE3 or a homogeneous matrix"),
         (pose, np.diag([1.0, 1.0, -1.0, 1.0]), "must be a rotation matrix"),
@@ -93,8 +93,8 @@ def test_what_it_was_not_prepared_for_is_refused_in_words(engine, panda, lion):
         (point, np.array([1e10, 0, 0]), "must be a point within"),
         (point, [0.1, 0.2], "SE3 or a homogeneous matrix"),
         (axis, np.eye(4), "asks for an axis's direction"),
-        (two, np.eye(4), "prepared for 2 targets"),
-        (two, Target("nose", [0, 0, 1]), "prepared for other targets"),
+        (two, np.eye(4), "targets must be 2 Target objects"),
+        (two, Target("nose", [0, 0, 1]), "targets must be of the same kinds"),
     ):
         with pytest.raises(pinik.InputError, match=words):
             ask(place)

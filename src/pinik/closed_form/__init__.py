@@ -1,1 +1,1 @@
-"""Two bones solved exactly."""
+"""Exact solutions for arms of two bones."""

@@ -1,4 +1,4 @@
-"""Two hinges in a plane, with ranges: both elbows for any number of points, and the nearest point inside the ranges."""
+"""Two hinges in a plane, with ranges: both solutions, and the nearest point inside the ranges, for many targets."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Recognise two parallel hinges of a robot as two bones in a plane."""
+"""The recognition of two parallel hinges of a robot as two bones in a plane."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Two bones of a robot: the closed form in terms of its configurations."""
+"""The closed form for two bones of a robot, in terms of its configurations."""
 
 from __future__ import annotations
 

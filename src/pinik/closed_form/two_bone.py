@@ -1,4 +1,4 @@
-"""Two bones in closed form: both elbows for any number of targets in one vectorised call."""
+"""Two bones in closed form: both solutions for any number of targets in one vectorised call."""
 
 from __future__ import annotations
 

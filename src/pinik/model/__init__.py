@@ -1,1 +1,1 @@
-"""Pinocchio's model with names: joints, limits, poses, chains."""
+"""A Pinocchio model with names: joints, limits, poses, chains."""

@@ -1,4 +1,4 @@
-"""The chain of joints that moves a frame: which joints, from where to where, and how long it is."""
+"""The chain of joints that moves a frame: its joints, its two ends and its length."""
 
 from __future__ import annotations
 
@@ -20,15 +20,15 @@ Array = NDArray[np.float64]
 class Chain:
     """The joints that move a frame relative to a reference.
 
-    Where the reference hangs on another branch, the chain goes down that branch and up the frame's own.
+    If the reference is on another branch, the chain goes down that branch and up the branch of the frame.
 
     Attributes:
-        joints: These joints, followers included, base first.
-        frame_joint, reference_joint: The joints that carry the frame and the reference (0: the world).
-        frame_placement: Where the frame, or the tool in it, sits on its joint.
-        reference_placement: Where the reference sits on its joint; None for the world.
-        frame_support, reference_support: The ids of all joints between the world and each of the two.
-        model: The model.
+        joints: The joints of the chain, mimic joints included, base first.
+        frame_joint, reference_joint: The ids of the joints that carry the frame and the reference (0: the world).
+        frame_placement: The placement of the frame, or of the tool in it, relative to its joint.
+        reference_placement: The placement of the reference relative to its joint; None for the world.
+        frame_support, reference_support: The ids of all joints between the world and the frame or the reference.
+        model: The Pinocchio model.
     """
 
     joints: tuple[Joint, ...]
@@ -42,7 +42,7 @@ class Chain:
 
     @property
     def is_one_branch(self) -> bool:
-        """Whether the reference does not move: the chain goes from its first joint straight to the frame."""
+        """Whether no joint of the chain moves the reference, so that the chain leads from base to frame directly."""
         return not any(joint.id in self.reference_support for joint in self.joints)
 
     @property
@@ -54,13 +54,13 @@ class Chain:
         return self._offsets([joint for joint in self.joints if joint.id in self.frame_support], self.frame_placement)
 
     def length(self, still: Collection[int] = ()) -> float:
-        """The length of what moves [m]: the distances from joint to joint up to the frame, its tool included.
+        """The length of the moving part [m]: the sum of the distances from joint to joint up to the frame or its tool.
 
-        Sliding joints count fully drawn out. The way to the first joint that moves does not count, so a chain is as
-        long wherever it is mounted.
+        Prismatic joints count at full extension. The distance from the base to the first moving joint does not count,
+        so the length does not depend on where the chain is mounted.
 
         Args:
-            still: Ids of joints that hold still.
+            still: Ids of joints that do not move.
         """
         own = [joint for joint in self.joints if joint.id in self.frame_support]
         other = [joint for joint in self.joints if joint.id not in self.frame_support]
@@ -100,8 +100,8 @@ def chain_of(
         model: The model.
         joints: Its joints.
         frame: The frame's index.
-        reference: The index of the frame that it moves relative to; the world when None.
-        tool: The point meant, in the frame.
+        reference: The index of the reference frame; the world when None.
+        tool: The placement of the tool in the frame; the frame itself when None.
     """
     at = model.frames[frame]
     base = None if reference is None else model.frames[reference]
@@ -122,5 +122,5 @@ def chain_of(
 
 
 def _travel(joint: Joint) -> float:
-    """How far a sliding joint can be drawn out from zero [m]."""
+    """The largest distance of a prismatic joint from zero [m]."""
     return max(map(abs, joint.range_to_draw_from(joint.lower, joint.upper)))

@@ -1,4 +1,4 @@
-"""Where a robot stands when nothing was said, its ground and its size."""
+"""A robot's home configuration, its ground level and its size."""
 
 from __future__ import annotations
 
@@ -14,13 +14,13 @@ __all__ = ["home_configuration", "lowest_point", "robot_size"]
 
 Array = NDArray[np.float64]
 
-# Poses that robots rest in, by the names that SRDF files give them.
+# Names that SRDF files commonly give to a resting pose, in order of preference.
 _HOME_POSES = ("relaxed", "home", "standing", "default", "half_sitting")
-_BEND = 0.4  # [rad] what hinges of a robot without poses are bent by, so that it does not stand stretched out
+_BEND = 0.4  # [rad] hinge angle for a robot without named poses, so that it is not fully stretched
 
 
 def home_configuration(robot: RobotModel) -> Array:
-    """Where a robot stands when nothing was said (nq,): in its resting pose, else slightly bent, inside the limits."""
+    """The default configuration (nq,), inside the limits: the resting pose, or slightly bent if there is no pose."""
     poses = robot.poses
     limits = Limits.of(robot)
     for name in (*_HOME_POSES, *poses):
@@ -36,14 +36,14 @@ def home_configuration(robot: RobotModel) -> Array:
 
 
 def lowest_point(robot: RobotModel, q: Array) -> float:
-    """The height [m] of the lowest frame at `q` (nq,): about where a robot's ground is."""
+    """The height [m] of the lowest frame at `q` (nq,), which approximates the ground level."""
     data = robot.model.createData()
     pinocchio.framesForwardKinematics(robot.model, data, q)
     return float(min(placement.translation[2] for placement in data.oMf))
 
 
 def robot_size(robot: RobotModel) -> float:
-    """The length of a robot's longest chain [m]; where nothing moves, how far its links lie apart; 1 if that is 0."""
+    """The length of a robot's longest chain [m]; the extent of its links if no joint moves; 1 if that is 0 too."""
     model = robot.model
     links = [robot.frame_id(name) for name in robot.description.links]
     longest = max(chain_of(model, robot.joints, link).length() for link in links)

@@ -24,9 +24,9 @@ class Limits:
 
     Attributes:
         robot: The robot.
-        enabled: Whether the limits hold.
-        lower, upper: Limits of the entries of q (nq,) [rad or m], infinite where there are none.
-        entry: For each tangent coordinate (nv,), the entry of q that has its limits, or −1.
+        enabled: Whether the limits are enforced.
+        lower, upper: Limits of the entries of q (nq,) [rad or m]; infinite for entries without limits.
+        entry: For each tangent coordinate (nv,), the index of the entry of q that carries its limits, or −1.
         turning: For each entry of q (nq,), whether it is the angle of a hinge that no joint mimics, for which angles 2π
             apart are equivalent.
     """
@@ -54,7 +54,7 @@ class Limits:
         return cls(robot, False, np.full(robot.model.nq, -np.inf), np.full(robot.model.nq, np.inf), entry, turning)
 
     def loosened(self) -> Limits:
-        """The same without limits, except for those of joints that have a single value."""
+        """A copy without limits, except for joints whose lower and upper limits are equal."""
         single = self.lower == self.upper
         if not single.any():
             return Limits.of(self.robot, False)
@@ -70,7 +70,7 @@ class Limits:
         return bool(((q >= self.lower) & (q <= self.upper)).all())
 
     def wrap(self, q: Array) -> Array:
-        """`q` (…, nq), where hinges outside their limits are moved by whole turns, as near to them as possible."""
+        """`q` (…, nq), with hinges outside their limits moved by whole turns, as near to the limits as possible."""
         outside = self.turning & ((q < self.lower) | (q > self.upper))
         if not outside.any():
             return q
@@ -82,9 +82,9 @@ class Limits:
         return wrapped
 
     def blocked(self, q: Array, wanted: Array, inside: Array) -> NDArray[np.bool_]:
-        """Which tangent coordinates (nv,) are at a limit at `q` and would cross it on the way to `wanted`.
+        """Whether each tangent coordinate (nv,) is at a limit at `q` and would cross it in a step to `wanted`.
 
-        `inside` is `wanted`, clipped to the limits.
+        `inside` is `wanted` clipped to the limits.
         """
         entries: NDArray[np.bool_] = (inside != wanted) & (inside == q)
         return np.asarray(entries[self.entry] & (self.entry >= 0))

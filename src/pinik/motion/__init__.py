@@ -1,1 +1,1 @@
-"""How balls and frames travel."""
+"""Paths of balls, and the frames that chase the balls."""

@@ -56,7 +56,7 @@ def _knot(phase: float) -> tuple[float, float, float]:
 
 
 def _wave(phase: float) -> tuple[float, float, float]:
-    """A curve that is a circle seen from above, and rises and falls four times."""
+    """A curve that looks like a circle from above, and rises and falls four times."""
     t = 2.0 * math.pi * phase
     return 0.9 * math.cos(t), 0.35 * math.sin(4.0 * t), 0.9 * math.sin(t)
 
@@ -72,6 +72,6 @@ CURVES: dict[str, Curve] = {
 
 
 def polyline(curve: Curve, center: Array, axes: Array, count: int = 128) -> Array:
-    """Points (count, 3) [m] on a curve about `center` (3,) [m]; the rows of `axes` (3, 3) [m] are u, v and w."""
+    """Points (count, 3) [m] on a curve around `center` (3,) [m]; the rows of `axes` (3, 3) [m] are u, v and w."""
     unit = np.array([curve.point(k / count) for k in range(count)])
     return np.asarray(center + unit @ axes)

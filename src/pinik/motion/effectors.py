@@ -1,4 +1,4 @@
-"""Which frames of a robot are worth a ball."""
+"""The principal end effectors of a robot, found by the names and chains of its links."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from ..robot import Robot
 
 __all__ = ["principal_frames"]
 
-# What people call a robot's ends; the first that fits counts most.
+# Common names of end effectors, in order of rank.
 _NAMES_OF_ENDS = (
     r"tcp|tool|^tip$|_ee$|^ee_|end_?effector|eef|paw",
     r"grip|hand|palm|wrist|foot|sole|nose|flange",
@@ -22,13 +22,14 @@ _NO_ENDS = (
     r"imu|gyro|cam|optic|depth|laser|sensor|fsr|rotor|motor_|collision|visual|shape|shoulder|wheel|hole|_itb|_dh_"
 )
 _MOST = 6
-_APART = 0.12  # of the robot's size: ends nearer to each other than this are fingers of one hand
+_APART = 0.12  # of the longest chain: ends closer to each other than this belong to one hand
 
 
 def principal_frames(robot: Robot) -> list[str]:
-    """The frames that most deserve a ball, best first, at most six: the ends of arms, legs, head and tail.
+    """The principal end effectors, best first, at most six: the ends of arms, legs, head and tail.
 
-    Of ends close to each other, such as the fingers of a hand, only the best named and longest chain counts.
+    Of ends close to each other, such as the fingers of a hand, only the one with the best name and the longest chain
+    is listed.
     """
     carriers = {joint.parent for joint in robot.description.joints}
     ends = [link for link in robot.description.links if link not in carriers]

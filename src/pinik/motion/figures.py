@@ -1,4 +1,4 @@
-"""What a method did in one step of a chase."""
+"""The figures of one step in which a method chases a target."""
 
 from __future__ import annotations
 
@@ -8,15 +8,15 @@ __all__ = ["StepFigures"]
 
 
 class StepFigures(NamedTuple):
-    """One step of one method.
+    """The figures of one step of one method.
 
     Attributes:
-        time: Seconds that the solver took.
-        iterations: Iterations taken; sweeps for CCD.
-        joint_updates: Single joints updated, for CCD.
+        time: Computing time of the solver [s].
+        iterations: The number of iterations; sweeps for CCD.
+        joint_updates: The number of single-joint updates, for CCD.
         reached: Whether every target was within tolerance at the end.
-        error: The largest position error at the end [m]; None if no target asked for a position.
-        jump: The largest change of one joint [rad or m].
+        error: The largest position error at the end [m]; None if no target has a position.
+        jump: The largest change of any joint [rad or m].
     """
 
     time: float

@@ -1,4 +1,4 @@
-"""The ways that a ball takes about a robot: a curve that its frame can follow, and places that it can reach."""
+"""Paths for a ball around a robot: a curve that its frame can follow, and random positions that it can reach."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ Array = NDArray[np.float64]
 
 
 class Track(NamedTuple):
-    """One ball's curve: its center (3,), the rows u, v, w of its axes (3, 3) and its points (n, 3), all in [m]."""
+    """The curve of one ball: its center (3,), its axes (3, 3) with rows u, v, w, and its points (n, 3), all in [m]."""
 
     curve: Curve
     center: Array
@@ -34,7 +34,7 @@ class Track(NamedTuple):
 
 
 def lay_track(robot: Robot, frame: str, name: str, start: Array) -> Track:
-    """The curve of that name about `start` (3,) [m], raised until nothing dips into the ground."""
+    """The named curve around `start` (3,) [m], raised if necessary so that all of it is above the ground."""
     curve, home = CURVES[name], home_configuration(robot)
     axes = curve_axes(robot, frame, home, start, curve)
     lowest = float(polyline(curve, start, axes)[:, 2].min())
@@ -43,7 +43,7 @@ def lay_track(robot: Robot, frame: str, name: str, start: Array) -> Track:
 
 
 def random_configuration(robot: Robot, home: Array, rng: np.random.Generator) -> Array:
-    """All one-axis joints drawn anew inside their limits, the rest as in `home` (nq,): its places can be reached."""
+    """A reachable configuration: one-axis joints drawn at random inside their limits, the others as in `home` (nq,)."""
     q = home.copy()
     drawn = robot.random(rng)
     for name in robot.joint_names:
@@ -54,10 +54,10 @@ def random_configuration(robot: Robot, home: Array, rng: np.random.Generator) ->
 
 
 def curve_axes(robot: Robot, frame: str, q: Array, center: Array, curve: Curve) -> Array:
-    """The rows u, v, w (3, 3) [m] that a curve about `center` is drawn along, as large as the chain follows well.
+    """The axes u, v, w of a curve around `center`, as rows (3, 3) [m], scaled so that the chain can follow the curve.
 
-    To the side is the world's y, up its z, towards the viewer its x; a chain that moves in a plane gets the plane's
-    own axes. The size starts at a quarter of the chain's length and shrinks while the chain cannot follow.
+    u is along the world's y axis, v along z and w along x; for a chain that moves in a plane, u and v lie in that
+    plane. The size starts at a quarter of the chain's length and shrinks until the chain can follow.
     """
     kinematics = Kinematics(robot, Target(frame, center))
     size = 0.25 * kinematics.problem.size_of_chain
@@ -73,7 +73,7 @@ def curve_axes(robot: Robot, frame: str, q: Array, center: Array, curve: Curve) 
 
 
 def _plane(kinematics: Kinematics, robot: Robot, q: Array) -> Array | None:
-    """Rows u, v and a zero (3, 3) for a chain whose frame keeps to a plane, u as level as it gets; else None."""
+    """Rows u, v and zero (3, 3) for a chain whose frame moves in a plane, with u horizontal if possible; else None."""
     rng = np.random.default_rng(0)
     columns = [kinematics.linearize(robot.random(rng) if k else q).J[:3] for k in range(6)]
     left, sigma, _ = np.linalg.svd(np.hstack(columns))

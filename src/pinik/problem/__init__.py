@@ -1,1 +1,1 @@
-"""What is asked, as numbers: residuals and Jacobians."""
+"""Targets, and their residuals and Jacobians."""

@@ -1,4 +1,4 @@
-"""One degree of freedom at a time: what moves with it, about which line, and how far it may go."""
+"""Single degrees of freedom: the joints that move with each one, its axis and its range."""
 
 from __future__ import annotations
 
@@ -23,12 +23,12 @@ _UNIT_VECTORS = np.eye(3)
 
 @dataclass(frozen=True)
 class Coordinate:
-    """One tangent coordinate of a joint, which turns or slides that joint and whatever mimics it.
+    """One tangent coordinate of a joint, which moves that joint and the joints that mimic it.
 
     Attributes:
         joint: The joint that owns the coordinate.
-        index: Which of the joint's tangent coordinates, from 0.
-        movers: (joint, multiplier) of the joint and its followers, as far as they move a target.
+        index: The index among the joint's tangent coordinates, from 0.
+        movers: (joint, multiplier) for those of the joint and its mimic joints that move a target frame.
     """
 
     joint: Joint
@@ -37,19 +37,19 @@ class Coordinate:
 
     @cached_property
     def slides(self) -> bool:
-        """Whether the first mover slides along its line instead of turning about it."""
+        """Whether the first mover translates along its axis instead of rotating about it."""
         kind = self.movers[0][0].kind
         return kind == "prismatic" or (kind == "floating" and self.index < 3) or (kind == "planar" and self.index < 2)
 
     def line(self, data: Any) -> tuple[Array, Array]:
-        """(unit axis (3,), a point on it (3,)) of the first mover in the world, from `data.oMi`."""
+        """(unit axis (3,), a point on it (3,) [m]) of the first mover in the world, from `data.oMi`."""
         mover = self.movers[0][0]
         placement = data.oMi[mover.id]
         axis: Any = mover.axis if mover.has_one_axis else _UNIT_VECTORS[self.index % 3]
         return placement.rotation.dot(axis), placement.translation
 
     def room(self, q: Array, limits: Limits) -> tuple[float, float]:
-        """How far the coordinate may change downwards (≤ 0) and upwards (≥ 0) [rad or m]."""
+        """The largest changes allowed by the limits, downwards (≤ 0) and upwards (≥ 0) [rad or m]."""
         entry = limits.entry[self.joint.idx_v + self.index]
         if entry < 0:
             return -math.inf, math.inf
@@ -57,7 +57,7 @@ class Coordinate:
         return min(float(limits.lower[entry] - value), 0.0), max(float(limits.upper[entry] - value), 0.0)
 
     def advance(self, q: Array, change: float, model: pinocchio.Model, limits: Limits) -> None:
-        """Change the coordinate by `change` (rad or m), in place, and stay inside the limits to the last bit."""
+        """Change the coordinate by `change` [rad or m] in place; the result is clipped exactly to the limits."""
         joint = self.joint
         if joint.nq == 1:
             value = q[joint.idx_q] + change

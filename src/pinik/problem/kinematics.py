@@ -1,4 +1,4 @@
-"""Residual and Jacobian of some targets at one configuration."""
+"""Residual and Jacobian of the targets at one configuration."""
 
 from __future__ import annotations
 
@@ -20,15 +20,15 @@ Array = NDArray[np.float64]
 
 
 class Linearization(NamedTuple):
-    """The targets seen from one configuration.
+    """Residual, Jacobian and errors at one configuration.
 
     Attributes:
         q: The configuration (nq,).
-        e: Weighted residual (m,) [m]. Rows of an orientation are radians times the chain's length.
+        e: Weighted residual (m,) [m]. Orientation rows are radians times the chain's length.
         J: Weighted Jacobian (m, nv), zero in the columns that are not free.
-        errors: Each target's error, unweighted.
-        residual: The norm of e before anything shortens it [m].
-        distance: How far off all targets are together, weighted [m]; a radian counts as 0.3 of the chain's length.
+        errors: The error of each target, unweighted.
+        residual: The norm of e, before D_max shortens it [m].
+        distance: The weighted norm of all errors [m]; a radian counts as 0.3 of the chain's length.
         free: (nv,) whether the solver may move a tangent coordinate.
     """
 
@@ -42,17 +42,17 @@ class Linearization(NamedTuple):
 
 
 class Kinematics:
-    """Some targets of a robot, ready to be evaluated many times.
+    """The targets of a robot, ready to be evaluated at many configurations.
 
-    It holds a `pinocchio.Data` of its own, so each thread needs its own.
+    An instance owns a `pinocchio.Data`, so each thread needs its own instance.
 
     Attributes:
         problem: The targets, compiled; see `Problem`. Any thread may read it.
-        robot, model: The problem's.
+        robot, model: The robot and the model of the problem.
         data: The `pinocchio.Data` of the last evaluation.
-        targets: What is asked for at the moment.
-        rows: Each target's rows of e and J.
-        evaluations: How often a residual was computed.
+        targets: The current targets.
+        rows: The rows of e and J for each target.
+        evaluations: The number of residual evaluations so far.
     """
 
     def __init__(
@@ -68,7 +68,7 @@ class Kinematics:
 
     @classmethod
     def of(cls, problem: Problem) -> Kinematics:
-        """The kinematics of a problem that is compiled already."""
+        """The kinematics of a compiled problem."""
         made = cls.__new__(cls)
         made._begin(problem)
         return made
@@ -87,7 +87,7 @@ class Kinematics:
         ]
 
     def retarget(self, targets: Target | Sequence[Target]) -> None:
-        """Ask for other targets. Where they differ only in the places wanted, nothing is compiled again."""
+        """Replace the targets. If they are of the same kinds, nothing is compiled again."""
         asked = as_targets(targets)
         problem = self.problem
         if [target.shape for target in asked] != problem.kinds:
@@ -124,7 +124,7 @@ class Kinematics:
         return math.sqrt(squared)
 
     def shortened(self, e: Array, longest: float) -> Array:
-        """The residual with each position part cut to `longest` [m], its direction kept: the thesis's ClampMag."""
+        """The residual with each position part shortened to at most `longest` [m] (ClampMag in the thesis)."""
         e = e.copy()
         row = 0
         for term in self.problem.terms:

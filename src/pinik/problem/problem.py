@@ -1,4 +1,4 @@
-"""Some targets of a robot, compiled: everything that does not change from one configuration to the next."""
+"""The targets of a solve, compiled: everything that does not depend on the configuration."""
 
 from __future__ import annotations
 
@@ -19,26 +19,26 @@ from .term import Term
 __all__ = ["RADIAN", "Problem"]
 
 RADIAN = 0.3
-"""How much an error of one radian counts in a distance, as a part of the chain's length."""
+"""The weight of an orientation error of one radian in a distance, relative to the chain's length."""
 
 
 class Problem:
-    """What is asked of which frames of a robot. Never changed once it is made, so any thread may read it.
+    """The targets for frames of a robot, compiled. A problem never changes, so any thread may read it.
 
     Attributes:
         robot: The robot.
-        model: Its model, or a copy with one more frame for each target's tool.
-        targets: The targets that it was made for; others of the same kinds can be solved with it.
+        model: The robot's model, or a copy with an additional frame for each target that has a tool.
+        targets: The targets that it was compiled from; it serves for all targets of the same kinds.
         terms: The targets, compiled.
-        locked: The joints that hold still.
+        locked: The joints that must not move.
         target_jacobian: Whether Jacobians are taken at the target instead of the effector (thesis, eq. 3.9).
-        free: (nv,) whether a tangent coordinate moves a target and is not locked.
-        coordinates: The free coordinates one by one, distal joints first, which is CCD's order.
+        free: (nv,) whether a tangent coordinate moves a target frame and is not locked.
+        coordinates: The free coordinates one by one, distal joints first, in the order of CCD.
         size: The number of residual rows m.
-        size_of_chain: The length of the longest chain [m]; 1 where nothing has a length.
+        size_of_chain: The length of the longest chain [m]; 1 if all lengths are 0.
         lightest: The smallest weight divided by the largest.
-        held_entries: The entries of q that stay, where nq and nv differ; else None.
-        columns_to_clear: The columns of J that are not free and may hold something; None where there are none.
+        held_entries: The indices of the entries of q that must not change, if nq and nv differ; else None.
+        columns_to_clear: The columns of J that are not free but may be nonzero; None if there are none.
     """
 
     def __init__(
@@ -54,12 +54,12 @@ class Problem:
         Args:
             robot: The robot.
             targets: At least one.
-            locked: Names of joints that hold still; their followers hold still with them.
+            locked: Names of joints that must not move; the joints that mimic them do not move either.
             target_jacobian: Whether to take Jacobians at the target.
 
         Raises:
             UnknownNameError: There is no such frame or joint.
-            InputError: There is no target, or a locked joint follows another one.
+            InputError: There is no target, or a locked joint mimics another one.
         """
         self.robot = robot
         self.targets = as_targets(targets)
@@ -74,7 +74,7 @@ class Problem:
         self.free = self._free(joint for chain in chains for joint in chain.joints)
         still = {joint.id for joint in robot.joints if not self._moves(joint)}
         self.size_of_chain = max(chain.length(still) for chain in chains) or 1.0
-        # Only the ratios of the weights matter; with the heaviest at 1, numbers keep their size.
+        # Only the ratios of the weights matter; the largest is scaled to 1 so that residuals keep their magnitude.
         heaviest = max(target.weight for target in self.targets)
         self.lightest = min(target.weight for target in self.targets) / heaviest
         self.terms = tuple(
@@ -82,7 +82,8 @@ class Problem:
             for target, chain, own in zip(self.targets, chains, ids, strict=True)
         )
         self.size = sum(term.size for term in self.terms)
-        # Without a reference the other columns are zero anyway; with one, what moves both cancels only to rounding.
+        # Without a reference, the other columns are exactly zero. With one, the columns of joints that move both frames
+        # cancel only up to rounding.
         relative = any(target.relative_to is not None for target in self.targets)
         self.columns_to_clear = np.flatnonzero(~self.free) if relative or self.locked else None
         self.coordinates = self._coordinates()
@@ -90,16 +91,16 @@ class Problem:
 
     @property
     def kinds(self) -> list[tuple[object, ...]]:
-        """What is asked of which frames, without where."""
+        """The kinds of the targets: frames and what is constrained, without numbers."""
         return [target.shape for target in self.targets]
 
     @property
     def squared_metres_per_radian(self) -> float:
-        """How much a squared error of orientation [rad²] counts in a squared distance [m²]."""
+        """The weight of a squared orientation error [rad²] in a squared distance [m²]."""
         return (RADIAN * self.size_of_chain) ** 2
 
     def _frame(self, target: Target) -> int:
-        """The index of the target's frame, or of a new one at its tool."""
+        """The index of the target's frame, or of a new frame at its tool."""
         frame_id = self.robot.frame_id(target.frame)
         if target.tool is None:
             return frame_id
@@ -127,7 +128,7 @@ class Problem:
         return joint.multiplier != 0.0 and bool(self.free[owner.idx_v : owner.idx_v + owner.nv].any())
 
     def _held_entries(self) -> NDArray[np.intp] | None:
-        """The entries of q that belong to no free coordinate; integrating by 0 could change their last bits."""
+        """The entries of q without a free coordinate, which integrating a zero step could change by rounding."""
         if self.model.nq == self.model.nv:
             return None
         held = np.ones(self.model.nq, dtype=bool)
@@ -148,5 +149,5 @@ class Problem:
             for index in range(joint.nv):
                 if moved and self.free[joint.idx_v + index]:
                     coordinates.append(Coordinate(joint, index, tuple(moved)))
-        # By the most distal mover: a follower may lie beyond joints that come after its leader.
+        # Sorted by the most distal mover, because a mimic joint may be more distal than joints after its leader.
         return tuple(sorted(coordinates, key=lambda c: max(mover.id for mover, _ in c.movers), reverse=True))

@@ -1,4 +1,4 @@
-"""How far a chain can possibly reach: a bound that proves some targets unreachable."""
+"""Bounds on a chain's reach, which prove some targets unreachable."""
 
 from __future__ import annotations
 
@@ -18,18 +18,18 @@ from .term import Term
 
 __all__ = ["Bounds", "Shortfall", "bounds_of", "reach_bounds", "shortfall"]
 
-Vector = Sequence[float]  # three plain numbers: every solve asks, and numpy is slow with so few
+Vector = Sequence[float]  # three plain numbers, because numpy is slow for so few
 
-ROUNDING = 1e-12  # of the lengths that enter: what rounding in the placements of a chain may amount to
+ROUNDING = 1e-12  # relative to the lengths involved: allowance for rounding in the placements of a chain
 
 
 class Shortfall(NamedTuple):
     """A proof that a target cannot be reached.
 
     Attributes:
-        target: Its index.
-        distance: How far it lies outside the bound [m].
-        bound: The bound [m]: the largest distance, or with `inner` the smallest, from the chain's first joint.
+        target: The index of the target.
+        distance: How far the target lies outside the bound [m].
+        bound: The largest possible distance of the frame from the chain's first joint, or the smallest if `inner` [m].
         inner: Whether the target is too near instead of too far.
     """
 
@@ -40,16 +40,16 @@ class Shortfall(NamedTuple):
 
 
 class _Range(NamedTuple):
-    """The least and the largest distance between two points [m]."""
+    """The smallest and the largest distance between two points [m]."""
 
     low: float
     high: float
 
 
 class _Span(NamedTuple):
-    """A part of a chain, from one of its points to another, and the distances between these.
+    """A part of a chain between two of its points, and the range of the distance between them.
 
-    The points are the base (0), the joints' origins (1, 2, …) and the frame.
+    The points are the origin of the first joint (0), the origins of the other joints (1, 2, …) and the frame.
     """
 
     start: int
@@ -58,12 +58,12 @@ class _Span(NamedTuple):
 
 
 def shortfall(targets: Sequence[Target], bounds: Sequence[Bounds | None], slack: float = 0.0) -> Shortfall | None:
-    """The target that lies furthest outside its chain's reach, if one does by more than `slack` [m].
+    """The target that lies farthest outside its chain's reach, if the distance exceeds `slack`; else None.
 
     Args:
-        targets: What is asked for.
-        bounds: Each target's, from `bounds_of`.
-        slack: What still counts as reached [m].
+        targets: The targets.
+        bounds: The bounds for each target, from `bounds_of`.
+        slack: The position tolerance [m].
     """
     worst = None
     for index, (target, own) in enumerate(zip(targets, bounds, strict=True)):
@@ -88,12 +88,12 @@ def _shortfall(index: int, target: Target, bounds: Bounds | None) -> Shortfall |
 
 
 class Bounds(NamedTuple):
-    """Where a chain's frame can be at all.
+    """Bounds on the position of a chain's frame.
 
     Attributes:
-        base: The chain's first joint (3,) [m], in the reference's axes where the target has one.
-        reach: The frame is never farther from it [m].
-        hole: Nor nearer [m].
+        base: The origin of the chain's first joint (3,) [m], in the reference frame if the target has one.
+        reach: The frame is never farther than this from `base` [m].
+        hole: The frame is never nearer than this to `base` [m].
     """
 
     base: NDArray[np.float64]
@@ -102,17 +102,17 @@ class Bounds(NamedTuple):
 
 
 def bounds_of(problem: Problem, limits: Limits) -> list[Bounds | None]:
-    """The bounds of every target's chain; they hold for any values of the joints, wherever the targets are.
+    """The bounds for the chain of each target; they hold for all joint values and all positions of the targets.
 
-    A chain is cut into spans: from one joint's origin to the next, or to the one after it while the joint between them
-    turns through its limits. The largest lengths of the spans add up to a bound on the reach. The smallest length of
-    one span, less the largest of all others folded back, is a bound on how near the frame can come.
+    The chain is divided into spans. A span goes from one joint's origin to the next, or to the one after that, with the
+    hinge in between anywhere in its range. The sum of the largest lengths of the spans bounds the reach from above. The
+    smallest length of one span, minus the largest lengths of all others, bounds the distance from below.
     """
     return [reach_bounds(term, limits) for term in problem.terms]
 
 
 def reach_bounds(term: Term, limits: Limits) -> Bounds | None:
-    """The bounds of a target's chain; None where it has none."""
+    """The bounds for a target's chain; None if the chain has none."""
     chain = term.chain
     if not chain.joints or not chain.is_one_branch:
         return None
@@ -126,7 +126,7 @@ def reach_bounds(term: Term, limits: Limits) -> Bounds | None:
 
 
 def _bounds(spans: list[_Span], end: int) -> tuple[float, float]:
-    """The largest and the least distance between the points 0 and `end`, over all ways to cut the chain."""
+    """Bounds (upper, lower) on the distance from point 0 to point `end`, the best of all divisions into spans."""
     before = [0.0] + [math.inf] * end  # the reach from 0 to each point
     for span in spans:
         before[span.end] = min(before[span.end], before[span.start] + span.distance.high)
@@ -137,7 +137,7 @@ def _bounds(spans: list[_Span], end: int) -> tuple[float, float]:
 
 
 def _spans(chain: Chain, limits: Limits) -> list[_Span]:
-    """The spans of a chain, in the order of their ends."""
+    """The spans of a chain, ordered by their end points."""
     joints = chain.joints
     placements = [chain.model.jointPlacements[joint.id] for joint in joints]
     # The chain begins where its first joint sits.
@@ -162,7 +162,7 @@ def _turns(joint: Joint) -> bool:
 
 
 def _over_slide(before: Vector, joint: Joint, limits: Limits) -> _Range:
-    """Distance from the origin before a slide, `before` away from it at 0 and in its axes, to its own."""
+    """The distance from the previous origin to a prismatic joint; `before` is the offset at 0, in the joint's axes."""
     low, high = _joint_range(joint, limits)
     if not (math.isfinite(low) and math.isfinite(high)):
         return _Range(0.0, math.inf)
@@ -173,7 +173,7 @@ def _over_slide(before: Vector, joint: Joint, limits: Limits) -> _Range:
 
 
 def _over_hinge(before: Vector, joint: Joint, after: Vector, limits: Limits) -> _Range:
-    """Distance over a hinge: from the origin before it to the origin after it, both parts as seen at its angle 0."""
+    """The distance between the origins before and after a hinge; both offsets are in its axes at angle 0."""
     axis = joint.axis
     rise_before, rise_after = _dot(before, axis), _dot(after, axis)
     u, v = _across(before, axis, rise_before), _across(after, axis, rise_after)
@@ -197,12 +197,12 @@ def _dot(a: Vector, b: Vector) -> float:
 
 
 def _across(vector: Vector, axis: Vector, along: float) -> tuple[float, float, float]:
-    """What is left of a vector without its part along an axis."""
+    """The component of a vector perpendicular to an axis, given its component `along` the axis."""
     return vector[0] - along * axis[0], vector[1] - along * axis[1], vector[2] - along * axis[2]
 
 
 def _meets(angle: float, low: float, high: float) -> bool:
-    """Whether the angle, or one that is whole turns away, lies in [low, high]."""
+    """Whether the angle lies in [low, high], if need be after whole turns."""
     if not (math.isfinite(low) and math.isfinite(high)):
         return True
     return (angle - low) % (2.0 * math.pi) <= high - low

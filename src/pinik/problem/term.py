@@ -1,4 +1,4 @@
-"""One target, compiled: what is asked of which frame, and the chain that moves it."""
+"""One target, compiled: its frame, its constraints and the chain that moves it."""
 
 from __future__ import annotations
 
@@ -12,14 +12,14 @@ __all__ = ["Term"]
 
 @dataclass(frozen=True, eq=False)
 class Term:
-    """One target without the numbers that say where: the same for all targets of one kind.
+    """One target without its position and orientation: the same for all targets of one kind.
 
     Attributes:
         pattern: A target of this kind.
         chain: The joints that move its frame.
-        frame, reference: Indices of the frames in the problem's model; None for the world.
+        frame, reference: Indices of the frames in the problem's model; a reference of None is the world.
         weight: The factor on its position rows, at most 1.
-        turn_weight: The factor on its orientation rows [m]: `weight` times the length of the problem's chains.
+        turn_weight: The factor on its orientation rows [m]: `weight` times the problem's `size_of_chain`.
     """
 
     pattern: Target
@@ -31,5 +31,5 @@ class Term:
 
     @property
     def size(self) -> int:
-        """The number of its rows: 3 for a position, 3 for an orientation or an axis."""
+        """The number of residual rows: 3 for a position plus 3 for an orientation or an axis."""
         return 3 * ((self.pattern.position is not None) + self.pattern.asks_orientation)

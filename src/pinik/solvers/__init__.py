@@ -1,1 +1,1 @@
-"""The methods: frozen parameters and one rule for the next step."""
+"""The methods: each has fixed parameters and a rule for the next step."""

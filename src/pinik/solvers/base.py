@@ -1,4 +1,4 @@
-"""What a solver is: a frozen set of checked parameters and one rule for the next step."""
+"""The base classes of solvers: checked parameters and a rule for the next step."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ Array = NDArray[np.float64]
 
 
 def without_motion(stiffness: Mapping[str, float]) -> tuple[str, ...]:
-    """The joints of stiffness 0, which restarts leave alone as well."""
+    """The joints of stiffness 0, which restarts do not move either."""
     return tuple(name for name, part in stiffness.items() if part == 0.0)
 
 
@@ -40,7 +40,7 @@ def field_names(solver: type[Solver]) -> list[str]:
 
 @dataclass(frozen=True)
 class Patience:
-    """A run has stalled when the residual fell by less than the share `progress` within `iterations`."""
+    """A run has stalled if the residual fell by less than the fraction `progress` within `iterations` iterations."""
 
     iterations: int
     progress: float
@@ -50,27 +50,27 @@ class Patience:
 class Solver:
     """Parameters of an iterative method.
 
-    Instances are immutable, comparable and hashable; state lives in the loop. Subclass `JacobianSolver` or
-    `SweepingSolver`.
+    Instances are immutable, comparable and hashable; they hold no state of a run. To write a new method, derive it from
+    `JacobianSolver` or `SweepingSolver`.
     """
 
     name: ClassVar[str] = ""
     """The short name used in tables, on the command line and in `pinik.SOLVERS`."""
     title: ClassVar[str] = ""
-    """The full name; the short one where a class gives none."""
+    """The full name; the short name if a class defines none."""
     about: ClassVar[str] = ""
-    """What the method is good for, in one line."""
+    """The strengths and weaknesses of the method, in one line."""
     max_iterations: ClassVar[int] = 100
-    """Iterations of one attempt, unless `solve` is told otherwise."""
+    """The default maximum number of iterations per attempt."""
     restarts: ClassVar[int] = 30
-    """Fresh starts after the first attempt, unless `solve` is told otherwise."""
+    """The default maximum number of restarts after the first attempt."""
     patience: ClassVar[Patience] = Patience(5, 0.05)
-    """When an attempt counts as stalled."""
+    """The condition under which an attempt counts as stalled."""
 
     max_step: float = max_step_parameter(math.inf)
     max_residual: float = parameter(
         math.inf,
-        "D_max: longest position residual that one step works on",
+        "D_max: longest position residual that a step uses",
         unit="m",
         low=1e-6,
         slider=(0.01, 1.0),
@@ -78,7 +78,7 @@ class Solver:
     )
 
     def __init_subclass__(cls) -> None:
-        """Name a class that has no name of its own after its Python name."""
+        """Give a class without a `name` the name of the Python class."""
         super().__init_subclass__()
         if not cls.name and "name" not in vars(cls):
             cls.name = cls.__name__
@@ -89,7 +89,7 @@ class Solver:
         """Check every parameter against its range.
 
         Raises:
-            InputError: A parameter has the wrong kind or lies outside its range.
+            InputError: A parameter has the wrong type or is out of range.
         """
         for own in parameters_of(type(self)):
             value = getattr(self, own.name)
@@ -102,7 +102,7 @@ class Solver:
 
         Raises:
             UnknownNameError: The method has no such parameter.
-            InputError: A value has the wrong kind or lies outside its range.
+            InputError: A value has the wrong type or is out of range.
         """
         names = field_names(cls)
         for name in parameters:
@@ -123,49 +123,49 @@ class Solver:
         """
 
     def off_plane(self, robot: RobotModel, targets: Sequence[Target]) -> OffPlane | None:
-        """How far the target lies off the plane that its frame cannot leave, where the method knows such a plane."""
+        """How far the target lies off the plane in which its frame moves; None if the method knows no such plane."""
         return None
 
     @property
     def exact(self) -> bool:
-        """Whether the method comes to rest only at the nearest point that there is, to 1e-5 of the chain's length."""
+        """Whether the method stops only at the nearest reachable point, to within 1e-5 of the chain's length."""
         return False
 
     @property
     def held(self) -> tuple[str, ...]:
-        """The joints that this method never moves, by name."""
+        """The names of the joints that this method never moves."""
         return ()
 
 
 @dataclass(frozen=True, kw_only=True)
 class JacobianSolver(Solver, ABC):
-    r"""A method whose step is a function of the Jacobian and the residual. A subclass needs only `direction`.
+    r"""A method whose step is a function of the Jacobian and the residual. A subclass must define only `direction`.
 
-    With stiffness weights, $W = \operatorname{diag}(w_i)$ scaled so that the largest is 1, the loop takes
-    $\sqrt W\,\text{direction}(J\sqrt W, e)$: the transpose becomes $\alpha W J^\top e$, and the other two minimise
-    each joint's squared change divided by $w_i$.
+    With stiffness weights, $W = \operatorname{diag}(w_i)$ scaled so that the largest is 1, the step is
+    $\sqrt W\,\text{direction}(J\sqrt W, e)$. For the transpose this is $\alpha W J^\top e$; the other two methods then
+    minimise the sum of the squared joint changes divided by $w_i$.
     """
 
     name = ""
 
     stiffness: Mapping[str, float] = stiffness_parameter(
-        "w_i: how willingly a joint moves compared with the others; 1 for joints not named"
+        "w_i: weight of a joint's motion, from 0 (fixed) to 1; 1 for joints not named"
     )
     step_size: float = parameter(
-        1.0, "factor on the step, after its clamp (the thesis's α)", low=1e-6, high=2.0, slider=(0.01, 2.0)
+        1.0, "factor on the clamped step (α in the thesis)", low=1e-6, high=2.0, slider=(0.01, 2.0)
     )
-    target_jacobian: bool = parameter(False, "take the Jacobian at the target instead of the effector (eq. 3.9)")
+    target_jacobian: bool = parameter(False, "compute the Jacobian at the target instead of the effector (eq. 3.9)")
 
     @abstractmethod
     def direction(self, J: Array, e: Array) -> Array:
         """The step dq (nv,) for a Jacobian J (m, nv) and a residual e (m,) with J dq ≈ e.
 
-        All rows are in metres: those of an orientation are radians times the chain's length, so that a robot of
-        another size takes the same steps.
+        All rows are in metres; orientation rows are radians times the chain's length, so that the steps do not depend
+        on the size of the robot.
         """
 
     def step(self, at: Linearization, kinematics: Kinematics) -> Array:
-        """`direction` at a configuration. A method that needs more than J and e overrides this."""
+        """The step at a configuration: `direction(J, e)`. A method that needs more than J and e overrides this."""
         return self.direction(at.J, at.e)
 
     @property
@@ -174,7 +174,7 @@ class JacobianSolver(Solver, ABC):
         return without_motion(self.stiffness)
 
     def roots(self, problem: Problem) -> Array | None:
-        """√w_i of every tangent coordinate (nv,), scaled so that the largest free one is 1; None without weights."""
+        """√w_i for every tangent coordinate (nv,), scaled so that the largest free one is 1; None without weights."""
         if not self.stiffness:
             return None
         weights = np.ones(problem.model.nv)
@@ -192,8 +192,8 @@ class SweepingSolver(Solver, ABC):
 
     @abstractmethod
     def sweep(self, q: Array, kinematics: Kinematics, limits: Limits, tolerance: Tolerance) -> tuple[Array, int]:
-        """One pass over the joints. It ends as soon as every target is within tolerance.
+        """Make one pass over the joints, and stop early once every target is within tolerance.
 
         Returns:
-            The new configuration, inside the limits, and the number of joints that were updated.
+            The new configuration (nq,), inside the limits, and the number of joints that were updated.
         """

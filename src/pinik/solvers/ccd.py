@@ -24,9 +24,9 @@ if TYPE_CHECKING:
 
 __all__ = ["CCD"]
 
-ROUNDING = 1e-14  # relative error of points and unit axes at the end of a chain; a joint does not move for less
-SUSPECT = 1e-6  # what lies across a joint's axis, as a part of what lies along it, may be rounding alone below this
-NO_COLUMN = 1e-12  # length of a Jacobian's column, as a part of the chain's length
+ROUNDING = 1e-14  # relative rounding error of points and unit axes at the end of a chain; smaller changes are ignored
+SUSPECT = 1e-6  # below this ratio, the component across a joint's axis relative to that along it may be mere rounding
+NO_COLUMN = 1e-12  # relative to the chain's length: a shorter Jacobian column counts as zero
 HALVINGS = 12
 _NOTHING = np.zeros((3, 3))
 _RELAXATION_OF_POSES = 1.7
@@ -34,48 +34,48 @@ _RELAXATION_OF_POSES = 1.7
 
 @dataclass(frozen=True, kw_only=True)
 class CCD(SweepingSolver):
-    r"""Joint after joint, tip to base, each one-dimensional problem solved exactly.
+    r"""Cyclic coordinate descent: solves the one-dimensional problem of each joint exactly, from tip to base.
 
     A hinge with unit axis a turns by the φ that maximises
     $g(\varphi) = k_1(1 - \cos\varphi) + k_2\cos\varphi + k_3\sin\varphi$, that is $\varphi = \operatorname{atan2}(k_3,
-    k_2 - k_1)$, where with $P_c, P_d$ the effector's and the target's points seen from the joint and $u_c, u_d$ the
-    axes of their frames $k_1 = w_p(P_d \cdot a)(P_c \cdot a) + w_o\sum(u_d \cdot a)(u_c \cdot a)$,
+    k_2 - k_1)$. Let $P_c, P_d$ be the points of effector and target relative to the joint, and $u_c, u_d$ the axes of
+    their frames; then $k_1 = w_p(P_d \cdot a)(P_c \cdot a) + w_o\sum(u_d \cdot a)(u_c \cdot a)$,
     $k_2 = w_p P_d \cdot P_c + w_o\sum u_d \cdot u_c$ and $k_3 = a \cdot (w_p P_c \times P_d + w_o\sum u_c \times u_d)$.
-    A slide moves by $(P_d - P_c) \cdot a$. Weights: $w_o = 1$, $w_p = \alpha(1 + \rho)$ with
-    $\rho = \min(\|P_d\|, \|P_c\|) / \max(\|P_d\|, \|P_c\|)$ and $\alpha = k/W^2$, W the chain's length.
+    A prismatic joint moves by $(P_d - P_c) \cdot a$. Weights: $w_o = 1$, $w_p = \alpha(1 + \rho)$ with
+    $\rho = \min(\|P_d\|, \|P_c\|) / \max(\|P_d\|, \|P_c\|)$ and $\alpha = k/W^2$, where W is the chain's length.
 
-    Above 1 the relaxation overshoots, as successive over-relaxation does (Young 1954); below 2, g never falls. Welman's
-    own form is 1. Positions need nothing else; poses lie in narrow valleys, where 1.7 needs a tenth of the sweeps.
+    A relaxation above 1 overshoots, like successive over-relaxation (Young 1954); below 2, g never decreases. Welman
+    uses 1, which suffices for positions. Poses lie in narrow valleys, where 1.7 needs a tenth of the sweeps.
 
-    An axis that should point at a point is treated as a ray: its point at the distance of the goal is drawn there.
+    For an axis that should point at a point, the step moves the point on the axis at the goal's distance to the goal.
 
     Source: Welman 1993, §4.2, eqs. 4.16–4.24, after Wang and Chen 1991.
     """
 
     name = "ccd"
     title = "Cyclic coordinate descent"
-    about = "joint after joint, each to its own optimum; leaves straight arms that stop the others"
+    about = "moves one joint at a time to its optimum; can leave straight arms, where the others get stuck"
     max_iterations = 2000
     restarts = 30
     patience = Patience(30, 0.05)
 
     stiffness: Mapping[str, float] = stiffness_parameter(
-        "w_i: the part of its best change that a joint makes; 1 where none is named"
+        "w_i: fraction of its optimal change that a joint makes; 1 for joints not named"
     )
     relaxation: float | None = parameter(
         None,
-        "ω: factor on every joint's best change; of itself 1, and 1.7 for poses",
+        "ω: factor on the optimal change of every joint; automatic is 1 for positions and 1.7 for poses",
         low=0.01,
         high=1.99,
         slider=(0.1, 1.99),
         optional=True,
     )
     position_weight: float = parameter(
-        15.0, "k: weight of position against orientation", low=1e-6, high=1e6, slider=(0.1, 1e3)
+        15.0, "k: weight of position relative to orientation", low=1e-6, high=1e6, slider=(0.1, 1e3)
     )
     scaling: str = parameter(
         "area",
-        "α = k/W² (area), so that scale does not matter, or k/W (printed)",
+        "α = k/W² (area), independent of scale, or k/W (printed)",
         choices=("area", "printed"),
     )
 
@@ -102,7 +102,7 @@ class CCD(SweepingSolver):
             coordinate.advance(q, change, model, limits)
             if coordinate.joint.nv == 1:
                 _carry(chasers, coordinate, axis, origin, change)
-            else:  # the joint's other coordinates turned with it
+            else:  # the axes of the joint's other coordinates have moved too
                 chasers = self._chasers(q, kinematics)
         return q, updates
 
@@ -115,11 +115,11 @@ class CCD(SweepingSolver):
 
     @property
     def held(self) -> tuple[str, ...]:
-        """Joints of stiffness 0."""
+        """The joints of stiffness 0."""
         return without_motion(self.stiffness)
 
     def relaxation_for(self, problem: Problem) -> float:
-        """The relaxation; where it is None, the default for what is asked."""
+        """The relaxation; if it is None, the default for the kinds of the targets."""
         if self.relaxation is not None:
             return self.relaxation
         return _RELAXATION_OF_POSES if any(target.asks_orientation for target in problem.targets) else 1.0
@@ -134,7 +134,7 @@ class CCD(SweepingSolver):
         high: float,
         scale: float,
     ) -> float:
-        """The exact solution of the coordinate's own problem, scaled, inside its room [rad or m]."""
+        """The exact solution of the coordinate's one-dimensional problem, scaled and inside its limits [rad or m]."""
         mover, multiplier = coordinate.movers[0]
         chasers = [chaser for chaser in chasers if chaser.moved_by(mover)]
         if multiplier != 1.0:
@@ -148,17 +148,17 @@ class CCD(SweepingSolver):
                 cosine, sine = _measured_across(axis, origin, mover, chasers)
             change = _best_turn(cosine, sine, low, high, shortest=scale < 1.0 or self.max_step < math.pi)
         if scale > 1.0 and not coordinate.slides and abs(change) > math.pi:
-            scale = 1.0  # the long way round to a goal has none of its own to overshoot into
+            scale = 1.0  # no overshoot if the joint turns the long way round
         change = min(max(scale * change, low), high) / multiplier
         return min(max(change, -self.max_step), self.max_step)
 
     def _downhill_change(
         self, coordinate: Coordinate, q: Array, kinematics: Kinematics, limits: Limits, part: float
     ) -> float:
-        """A change that lowers the residual, for a leader whose followers move the targets as well.
+        """A change that lowers the residual, for a coordinate whose mimic joints also move the target frames.
 
-        Such a coordinate turns about several lines at once and has no closed form: a Gauss-Newton step along its
-        Jacobian column, halved until the residual's norm falls.
+        Such a coordinate moves about several axes at once and has no closed form. It takes a Gauss-Newton step along
+        its Jacobian column, halved until the norm of the residual decreases.
         """
         column = coordinate.joint.idx_v
         at = kinematics.linearize(q)
@@ -167,7 +167,7 @@ class CCD(SweepingSolver):
         problem = kinematics.problem
         if (
             squared <= (NO_COLUMN * problem.lightest * problem.size_of_chain) ** 2
-        ):  # its followers cancel it to rounding
+        ):  # its mimic joints cancel its motion up to rounding
             return 0.0
         low, high = coordinate.room(q, limits)
         change = min(max(part * float(J.dot(at.e)) / squared, low, -self.max_step), high, self.max_step)
@@ -203,7 +203,7 @@ def _best_slide(axis: Array, origin: Array, mover: Joint, chasers: list[Chaser])
 
 
 def _coefficients(M: Array, axis: Array) -> tuple[float, float, float]:
-    """k₂ − k₁ and k₃ of g (eq. 4.19) for M = Σ w c dᵀ, and the size of what they are the differences of."""
+    """(k₂ − k₁, k₃, |k₁| + |k₂|) of g (eq. 4.19) for M = Σ w c dᵀ."""
     x, y, z = axis.tolist()
     (xx, xy, xz), (yx, yy, yz), (zx, zy, zz) = M.tolist()
     k1 = x * (xx * x + xy * y + xz * z) + y * (yx * x + yy * y + yz * z) + z * (zx * x + zy * y + zz * z)
@@ -212,18 +212,18 @@ def _coefficients(M: Array, axis: Array) -> tuple[float, float, float]:
 
 
 def _measured_across(axis: Array, origin: Array, mover: Joint, chasers: list[Chaser]) -> tuple[float, float]:
-    """k₂ − k₁ and k₃ without a difference of large numbers; nothing where rounding alone may make as much of them.
+    """k₂ − k₁ and k₃, computed without a difference of large numbers; zeros if both may be mere rounding.
 
-    So it is where the effector lies on the joint's axis, or the axis that it should turn is the joint's own.
+    That is the case if the effector lies on the joint's axis, or if the axis to be turned is parallel to it.
     """
     cosine, sine, blur = (sum(parts) for parts in zip(*(c.across(axis, origin, mover) for c in chasers), strict=True))
     return (cosine, sine) if math.hypot(cosine, sine) > ROUNDING * blur else (0.0, 0.0)
 
 
 def _best_turn(cosine: float, sine: float, low: float, high: float, *, shortest: bool) -> float:
-    """The φ in [low, high] that maximises g [rad], which is as cosine · cos φ + sine · sin φ.
+    """The φ in [low, high] that maximises cosine · cos φ + sine · sin φ [rad], and so maximises g.
 
-    Where a limit blocks the best φ, the other way round to it counts as well, unless `shortest`.
+    If a limit blocks the best φ, turning the other way to the same angle is allowed too, unless `shortest`.
     """
     if cosine == 0.0 == sine:
         return 0.0

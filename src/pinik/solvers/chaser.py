@@ -20,10 +20,11 @@ __all__ = ["Chaser"]
 
 
 class Chaser:
-    """One target during a sweep: effector and goal, carried along without a forward kinematics.
+    """One target during a sweep: effector and goal, updated joint by joint without forward kinematics.
 
-    `p` (3,) is the effector's point, `U` (3, k) the axes of its frame that matter; `goal` (3,) and `V` (3, k) are
-    where they should be, None where that is free, and `at` (3,) is the point that U's only column should point at.
+    `p` (3,) [m] is the effector's point and `U` (3, k) the constrained axes of its frame. `goal` (3,) [m] and `V`
+    (3, k) are their desired values, None if unconstrained. `at` (3,) [m] is the point at which the only column of U
+    should point.
     """
 
     def __init__(self, rows: Rows, alpha: float, max_residual: float) -> None:
@@ -44,19 +45,19 @@ class Chaser:
         self._max_residual = max_residual
 
     def moved_by(self, mover: Joint) -> bool:
-        """Whether the mover moves effector and goal against each other."""
+        """Whether the mover moves the effector relative to the goal."""
         return self.moves_frame(mover) != self.moves_reference(mover)
 
     def moves_frame(self, mover: Joint) -> bool:
-        """Whether the mover carries the effector."""
+        """Whether the mover moves the effector."""
         return mover.id in self._chain.frame_support
 
     def moves_reference(self, mover: Joint) -> bool:
-        """Whether the mover carries the frame in which the goal is given."""
+        """Whether the mover moves the frame in which the goal is expressed."""
         return mover.id in self._chain.reference_support
 
     def within(self, tolerance: Tolerance) -> bool:
-        """Whether effector and goal agree."""
+        """Whether the effector is at its goal, within tolerance."""
         if self.goal is not None:
             left = self.goal - self.p
             if float(left.dot(left)) > tolerance.position * tolerance.position:
@@ -73,7 +74,7 @@ class Chaser:
         return float(np.linalg.norm(pinocchio.log3(V.dot(U.T))))
 
     def point_pairs(self, origin: Array) -> list[tuple[Array, Array, float]]:
-        """(effector's point, its goal, weight), both points (3,) in the world; `origin` is the joint's."""
+        """Triples (effector's point, its goal, weight), with points (3,) [m] in the world; `origin` is the joint's."""
         pairs = []
         if self.goal is not None:
             goal, w = self._drawn_goal(), self.alpha
@@ -91,7 +92,7 @@ class Chaser:
         return pairs
 
     def correlation(self, mover: Joint, origin: Array) -> Array:
-        """Σ w c dᵀ (3, 3) of what the mover carries (c) and where it should go (d), seen from `origin`."""
+        """Σ w c dᵀ (3, 3) over what the mover moves (c) and where it should go (d), relative to `origin`."""
         M = np.zeros((3, 3)) if self.V is None or self.U is None else self.U.dot(self.V.T)
         for c, d, w in self.point_pairs(origin):
             M += (w * (c - origin))[:, None] * (d - origin)
@@ -100,9 +101,9 @@ class Chaser:
         return M if self.moves_frame(mover) else M.T
 
     def across(self, axis: Array, origin: Array, mover: Joint) -> tuple[float, float, float]:
-        """What `correlation` holds across a joint's axis: Σ w c·d, Σ w a·(c × d), and how exact they are.
+        """The sums Σ w c·d and Σ w a·(c × d) over the parts across a joint's axis a, and their error scale.
 
-        The last is what a relative error of 1 in every coordinate would make of the other two.
+        The error scale times the relative rounding error of the coordinates bounds the error of the two sums.
         """
 
         def part(vector: Array) -> Array:
@@ -128,7 +129,7 @@ class Chaser:
         return self.weight * cosine, self.weight * sign * sine, self.weight * blur
 
     def carry(self, mover: Joint, origin: Array, R: Array | None, shift: Array) -> None:
-        """Turn by R (3, 3) about `origin`, or else by `shift` (3,), what the mover moves: effector, goal, or both."""
+        """Move what the mover moves (effector, goal or both): rotate it by R (3, 3) about `origin`, or shift it."""
 
         def moved(point: Array) -> Array:
             return point + shift if R is None else origin + R.dot(point - origin)
@@ -144,7 +145,7 @@ class Chaser:
                 self.V = R.dot(self.V)
 
     def _drawn_goal(self) -> Array:
-        """The goal, or the point on the way to it that D_max allows."""
+        """The goal, or the point at distance D_max on the way to it if the goal is farther away."""
         assert self.goal is not None
         if self._max_residual == math.inf:
             return self.goal
@@ -153,7 +154,7 @@ class Chaser:
         return self.goal if length <= self._max_residual else self.p + e * (self._max_residual / length)
 
     def _facing(self) -> Array:
-        """The direction (3, 1) of the point to look at; the axis itself where that has none."""
+        """The direction (3, 1) towards the point `at`; the axis itself if the effector is at that point."""
         assert self.at is not None
         assert self.U is not None
         line = self.at - self.p

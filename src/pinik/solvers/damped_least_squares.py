@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 __all__ = ["SMALLEST_DAMPING_SQUARED", "DampedLeastSquares"]
 
 SMALLEST_DAMPING_SQUARED = 1e-15
-"""Of the trace of JJᵀ: keeps JJᵀ + λ²I positive definite where rows depend on each other and the damping has faded."""
+"""Relative to the trace of JJᵀ: keeps JJᵀ + λ²I positive definite if J lacks full row rank and λ is close to zero."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -29,37 +29,37 @@ class DampedLeastSquares(JacobianSolver):
     Minimises $\|J\Delta q - e\|^2 + \lambda^2\|\Delta q\|^2$. With λ the `damping`, the rules are:
 
     * "constant": λ² = damping².
-    * "residual" (Chan and Lawrence 1988): λ² = damping² ‖e‖²: bold near the target, careful far from it.
+    * "residual" (Chan and Lawrence 1988): λ² = damping² ‖e‖², so that the damping vanishes at the target.
     * "sugihara" (Sugihara 2011): λ² = ½‖e‖² + damping².
-    * "manipulability" (Nakamura and Hanafusa 1986): λ² = damping² (1 − w/w₀)² where w = √det JJᵀ is below w₀; that
-      is everywhere where rows of J always depend on each other, as those of a planar chain do.
+    * "manipulability" (Nakamura and Hanafusa 1986): λ² = damping² (1 − w/w₀)² if w = √det JJᵀ is below w₀, else 0. If
+      J never has full row rank, as for a planar chain with a target in space, w is always 0.
 
-    In a solve, `Linearization.distance` takes the place of ‖e‖; there a radian counts as 0.3 of the chain's length. An
-    attempt that others can follow uses only √0.1 of it: it takes bolder steps, as another start is cheap.
+    `solve` replaces ‖e‖ by `Linearization.distance`, in which a radian counts as 0.3 of the chain's length. Attempts
+    that may be followed by a restart multiply the distance by √0.1, for larger steps.
 
     Source: thesis, §3.3–3.4, eqs. 3.3.6 and 3.4.9 (Wampler 1986; Nakamura and Hanafusa 1986).
     """
 
     name = "dls"
     title = "Damped least squares"
-    about = "the default; careful near singular configurations"
+    about = "the default; robust near singular configurations"
     max_iterations = 200
     restarts = 100
     patience = Patience(3, 0.2)
 
     damping: float = parameter(
-        math.sqrt(0.5), "λ, or the number from which the rule computes λ", low=1e-9, high=100.0, slider=(1e-3, 10.0)
+        math.sqrt(0.5), "λ, or the factor from which the rule computes λ", low=1e-9, high=100.0, slider=(1e-3, 10.0)
     )
     rule: str = parameter(
         "residual",
-        "how λ is chosen in each step",
+        "rule that computes λ in each step",
         choices=("constant", "residual", "sugihara", "manipulability"),
     )
     manipulability: float = parameter(0.05, "w₀ of the manipulability rule", low=1e-9, slider=(1e-3, 1.0))
-    factorization: str = parameter("ldlt", "how the system is solved", choices=("ldlt", "svd"))
+    factorization: str = parameter("ldlt", "factorization that solves the linear system", choices=("ldlt", "svd"))
 
     def direction(self, J: Array, e: Array, residual: float | None = None) -> Array:
-        """Jᵀ(JJᵀ + λ²I)⁻¹e. The rules use `residual` [m] in place of ‖e‖ where it is given."""
+        """Jᵀ(JJᵀ + λ²I)⁻¹e. If `residual` [m] is given, the rules use it instead of ‖e‖."""
         damping_squared = self.damping_squared(J, math.sqrt(e.dot(e)) if residual is None else residual)
         if self.factorization == "svd":
             left, sigma, right = np.linalg.svd(J, full_matrices=False)
@@ -69,7 +69,7 @@ class DampedLeastSquares(JacobianSolver):
         return np.array(J.T.dot(eigenpy.LDLT(A).solve(e)))
 
     def damping_squared(self, J: Array, residual: float) -> float:
-        """λ² [m²] by the rule, for a Jacobian and a norm of the residual [m]."""
+        """λ² [m²] by the rule, for a Jacobian (m, nv) and the norm of the residual [m]."""
         squared = self.damping * self.damping
         if self.rule == "residual":
             squared *= residual * residual
@@ -82,5 +82,5 @@ class DampedLeastSquares(JacobianSolver):
         return squared + SMALLEST_DAMPING_SQUARED * float(entries.dot(entries))
 
     def step(self, at: Linearization, kinematics: Kinematics) -> Array:
-        """`direction`, damped by the whole distance even where D_max shortens the residual."""
+        """The step, with damping by the full distance even if D_max shortens the residual."""
         return self.direction(at.J, at.e, at.distance)

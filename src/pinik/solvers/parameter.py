@@ -1,4 +1,4 @@
-"""A solver's parameter: its range, unit and meaning, from which checks, help texts and sliders are made."""
+"""The parameters of solvers: range, unit and meaning, used for checks, help texts and sliders."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ __all__ = ["JointValues", "Parameter", "max_step_parameter", "parameter", "param
 
 
 class JointValues(Mapping[str, float]):
-    """Joint name → number, immutable and hashable. It equals any mapping with the same items."""
+    """An immutable, hashable mapping from joint names to numbers, equal to any mapping with the same items."""
 
     __slots__ = ("_hash", "_values")
 
@@ -53,15 +53,15 @@ class Parameter:
     """One parameter of a solver.
 
     Attributes:
-        default: The value that it has unless told otherwise.
-        help: What it means, in one line.
-        unit: Such as "rad".
-        low, high: The range, ends included; None where it is open.
-        slider: The part of the range that a slider offers; the whole range when None.
-        choices: The words allowed, for a choice.
-        optional: Whether None is allowed and means something of its own.
-        unbounded: Whether infinity is allowed. None stands for it, because JSON has no infinity.
-        name: The field's name.
+        default: The default value.
+        help: The meaning, in one line.
+        unit: The unit, such as "rad".
+        low, high: The range, ends included; None for no bound.
+        slider: The part of the range that a slider covers; the whole range when None.
+        choices: The allowed strings, for a choice.
+        optional: Whether None is allowed as a value with its own meaning.
+        unbounded: Whether infinity is allowed; None stands for it too, because JSON has no infinity.
+        name: The name of the dataclass field.
     """
 
     default: Any
@@ -85,10 +85,10 @@ class Parameter:
         return "joints" if isinstance(self.default, JointValues) else "number"
 
     def check(self, value: Any, method: str) -> Any:
-        """`value` as the parameter of a method keeps it: immutable, and inside its range.
+        """Check a value for a method's parameter, and return it in its immutable form.
 
         Raises:
-            InputError: The value has the wrong kind or lies outside the range.
+            InputError: The value has the wrong type or is out of range.
         """
         what = f"{method}: {self.name}"
         if value is None and self.optional:
@@ -113,7 +113,7 @@ class Parameter:
 
     @property
     def is_whole(self) -> bool:
-        """Whether its numbers are whole ones."""
+        """Whether the values are whole numbers."""
         return isinstance(self.default, int) and not isinstance(self.default, bool)
 
     def _number(self, value: Any, what: str) -> float:
@@ -135,19 +135,19 @@ class Parameter:
         return number
 
     def plain(self, value: Any) -> Any:
-        """A value as JSON has it: infinity becomes None, a mapping a dict."""
+        """A value in its JSON form: infinity becomes None, and a mapping becomes a dict."""
         if isinstance(value, float) and not math.isfinite(value):
             return None
         return dict(value) if isinstance(value, Mapping) else value
 
     @property
     def none_means(self) -> str | None:
-        """What None stands for, in words; None where it is not allowed."""
+        """The meaning of None, in words; None if None is not allowed."""
         return "automatic" if self.optional else "no limit" if self.unbounded else None
 
     @property
     def range_in_words(self) -> str:
-        """The values allowed, such as "0.01 to 1.99 rad"; empty where any number is."""
+        """The allowed values, such as "0.01 to 1.99 rad"; without a range, only the unit."""
         if self.choices:
             return " | ".join(self.choices)
         if self.kind == "truth":
@@ -161,7 +161,7 @@ class Parameter:
 
     @property
     def default_in_words(self) -> str:
-        """The default as the command line takes it."""
+        """The default in the syntax of the command line."""
         if isinstance(self.default, float):
             return f"{self.default:.4g}"
         return "null" if self.default is None else str(self.default).lower()
@@ -179,14 +179,14 @@ def parameter(
     optional: bool = False,
     unbounded: bool = False,
 ) -> Any:
-    """A field of a solver's dataclass that knows its range, unit and meaning; see `Parameter` for the arguments."""
+    """A dataclass field for a solver's parameter; the arguments are those of `Parameter`."""
     own = JointValues(default) if isinstance(default, Mapping) else default
     described = Parameter(own, help, unit, low, high, slider, tuple(choices), optional, unbounded)
     return dataclasses.field(default=own, metadata={"parameter": described})
 
 
 def parameters_of(solver: type[Any]) -> tuple[Parameter, ...]:
-    """The parameters of a solver's class, in the order of its fields; fields made without `parameter` are left out."""
+    """The parameters of a solver class, in field order; fields that were not made by `parameter` are left out."""
     known: tuple[Parameter, ...] | None = vars(solver).get("_parameters")
     if known is None:
         known = tuple(
@@ -199,11 +199,11 @@ def parameters_of(solver: type[Any]) -> tuple[Parameter, ...]:
 
 
 def max_step_parameter(default: float) -> Any:
-    """The clamp on a step, whose default differs between methods."""
+    """The parameter that limits a step; its default differs between methods."""
     help_ = "largest change of one joint in one step"
     return parameter(default, help_, unit="rad or m", low=1e-6, slider=(0.01, 3.2), unbounded=True)
 
 
 def stiffness_parameter(help: str) -> Any:
-    """How willingly each joint moves, from 0 to 1."""
+    """The parameter with a weight from 0 to 1 for the motion of each joint."""
     return parameter({}, help, low=0.0, high=1.0)

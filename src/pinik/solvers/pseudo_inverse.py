@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 __all__ = ["SMALLEST_CUTOFF", "PseudoInverse"]
 
 SMALLEST_CUTOFF = 1e-12
-"""Of the largest singular value; what is smaller is rounding."""
+"""Relative to the largest singular value; anything smaller is rounding."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -26,28 +26,28 @@ class PseudoInverse(JacobianSolver):
     r"""$\Delta q = J^\dagger e + (I - J^\dagger J)\,\varphi$ with
     $J^\dagger = \sum_{\sigma_i > \tau} \sigma_i^{-1} v_i u_i^\top$.
 
-    The shortest step that solves the linearised problem best. Singular values below τ = cutoff · σ₁ are dropped; φ
-    pulls towards a rest posture inside the null space, where it does not move the effector.
+    This is the shortest step that minimises the linearised residual. Singular values below τ = cutoff · σ₁ are dropped.
+    φ pulls towards a rest posture in the null space, without moving the effector.
 
     Source: thesis, §3.2, eqs. 3.2.2 and 3.4.5 (Whitney 1969; Liégeois 1977).
     """
 
     name = "pinv"
     title = "Pseudo-inverse"
-    about = "few steps away from singular configurations, wild near them"
+    about = "needs few steps away from singular configurations, but is unstable near them"
     max_iterations = 200
     restarts = 100
     patience = Patience(6, 0.05)
 
     max_step: float = max_step_parameter(0.5)
     cutoff: float = parameter(
-        1e-3, "singular values below this share of the largest are dropped", low=0.0, high=0.5, slider=(0.0, 0.2)
+        1e-3, "singular values below this fraction of the largest are dropped", low=0.0, high=0.5, slider=(0.0, 0.2)
     )
     rest_posture: Mapping[str, float] = parameter({}, "joint angles to move towards in the null space", unit="rad or m")
-    rest_gain: float = parameter(0.1, "share of the way to the rest posture taken in one step", low=0.0, high=1.0)
+    rest_gain: float = parameter(0.1, "fraction of the way to the rest posture covered per step", low=0.0, high=1.0)
 
     def direction(self, J: Array, e: Array, pull: Array | None = None, lightest: float = 1.0) -> Array:
-        """J†e, plus (I − J†J)·pull for a pull (nv,); `lightest` is the smallest weight of a row over the largest."""
+        """J†e, plus (I − J†J)·pull for a pull (nv,); `lightest` is the smallest row weight divided by the largest."""
         left, sigma, right = np.linalg.svd(J, full_matrices=False)
         rank = int((sigma > max(self.cutoff * lightest, SMALLEST_CUTOFF) * sigma[:1].sum()).sum())
         basis = right[:rank]  # (rank, nv): the row space
@@ -55,7 +55,7 @@ class PseudoInverse(JacobianSolver):
         return dq if pull is None else dq + pull - basis.T.dot(basis.dot(pull))
 
     def step(self, at: Linearization, kinematics: Kinematics) -> Array:
-        """`direction`, with the pull towards the rest posture where one is set."""
+        """The step, with the pull towards the rest posture if one is set."""
         problem = kinematics.problem
         if not self.rest_posture:
             return self.direction(at.J, at.e, None, problem.lightest)

@@ -1,4 +1,4 @@
-"""The solvers, and how one is found by name."""
+"""The registry of solvers, and their look-up by name."""
 
 from __future__ import annotations
 
@@ -18,24 +18,24 @@ from .two_bone import TwoBoneSolver
 __all__ = ["CLOSED_FORMS", "SOLVERS", "Method", "known_methods", "make_solver", "meant_by"]
 
 Method = str | type[Solver] | Solver
-"""A method as people name it: a short name or "module:Class", a class, or an instance with its parameters."""
+"""How users give a method: a short name or "module:Class", a class, or an instance with its parameters."""
 
 SOLVERS: dict[str, type[Solver]] = {
     solver.name: solver for solver in (CCD, JacobianTranspose, PseudoInverse, DampedLeastSquares)
 }
-"""Short name → class. A class that you add here is known to every front of pinik."""
+"""Short name → class. A class that you add here is available everywhere in pinik."""
 
 CLOSED_FORMS: dict[str, type[Solver]] = {TwoBoneSolver.name: TwoBoneSolver}
-"""Short name → class of the methods that solve only some robots; they refuse the others with a reason."""
+"""Short name → class of the methods that suit only some robots; for others they raise an error with the reason."""
 
 
 def known_methods() -> dict[str, type[Solver]]:
-    """Short name → class of every method: those for any robot, then the closed forms."""
+    """Short name → class of every method: first those for any robot, then the closed forms."""
     return SOLVERS | {name: solver for name, solver in CLOSED_FORMS.items() if name not in SOLVERS}
 
 
 def meant_by(method: Method) -> type[Solver] | Solver:
-    """The class or instance that a method names; a class or an instance is returned as it is.
+    """The class that a method's name refers to; a class or an instance is returned unchanged.
 
     Raises:
         UnknownNameError: There is no such method.
@@ -46,15 +46,15 @@ def meant_by(method: Method) -> type[Solver] | Solver:
 
 
 def make_solver(method: Method, **parameters: Any) -> Solver:
-    """The solver that a method names, with these parameters.
+    """Make a solver from a method and its parameters.
 
     Args:
         method: A name in `SOLVERS` or `CLOSED_FORMS`, "module:Class" for a class to import, a class, or an instance.
-        **parameters: The solver's parameters; they replace an instance's own.
+        **parameters: The solver's parameters; they replace those of an instance.
 
     Raises:
-        UnknownNameError: No such method or parameter.
-        InputError: A value out of its range, or something that is no solver.
+        UnknownNameError: There is no such method or parameter.
+        InputError: A value is out of range, or `method` is not a solver.
     """
     if isinstance(method, Solver) and _is_complete(type(method)):
         return type(method).make(**(method.parameters | parameters)) if parameters else method
@@ -62,12 +62,12 @@ def make_solver(method: Method, **parameters: Any) -> Solver:
     if not _is_complete(method):
         raise InputError(f"method must be a name ({', '.join(SOLVERS)}), a Solver class or an instance; got {method!r}")
     if any(isinstance(value, dataclasses.Field) for value in vars(method).values()):
-        raise InputError(f"{method.name}: its class lacks @dataclass(frozen=True, kw_only=True)")
+        raise InputError(f"{method.name}: the class must be decorated with @dataclass(frozen=True, kw_only=True)")
     return method.make(**parameters)
 
 
 def _is_complete(method: object) -> TypeGuard[type[Solver]]:
-    """Whether it is a class with all that the loop needs of a solver."""
+    """Whether it is a solver class that defines all required methods."""
     bases = (JacobianSolver, SweepingSolver)
     return isinstance(method, type) and issubclass(method, bases) and not inspect.isabstract(method)
 

@@ -16,22 +16,22 @@ __all__ = ["JacobianTranspose"]
 class JacobianTranspose(JacobianSolver):
     r"""$\Delta q = \alpha J^\top e$ with $\alpha = \langle e, JJ^\top e\rangle / \langle JJ^\top e, JJ^\top e\rangle$.
 
-    That α minimises the linearised residual $\|e - \alpha JJ^\top e\|$ along the direction. Stuck where
-    $J^\top e = 0$, as a straight arm pulled inwards is.
+    This α minimises the linearised residual $\|e - \alpha JJ^\top e\|$. The method gets stuck where $J^\top e = 0$, for
+    example when the target lies inwards along a straight arm.
 
     Source: thesis, §3.1, eq. 3.1.2 (Buss 2004; Wolovich and Elliott 1984).
     """
 
     name = "jt"
     title = "Jacobian transpose"
-    about = "the cheapest step, no system to solve; needs many of them"
+    about = "the cheapest step, without a linear system; needs many steps"
     max_iterations = 1000
     restarts = 20
     patience = Patience(50, 0.02)
 
     max_step: float = max_step_parameter(0.5)
     alpha: float | None = parameter(
-        None, "α; None takes the optimal one in every step", low=1e-6, high=1e3, slider=(1e-2, 10.0), optional=True
+        None, "α; automatic is the optimal value in every step", low=1e-6, high=1e3, slider=(1e-2, 10.0), optional=True
     )
 
     def direction(self, J: Array, e: Array) -> Array:

@@ -1,4 +1,4 @@
-"""Two bones in closed form, as a method of `solve`."""
+"""The closed form for two bones, as a method of `solve`."""
 
 from __future__ import annotations
 
@@ -32,41 +32,41 @@ _KNOWN: WeakKeyDictionary[RobotModel, dict[tuple[str, str | None], TwoBone]] = W
 class TwoBoneSolver(SweepingSolver):
     r"""$\theta_1 = \varphi \pm \alpha,\ \theta_2 = \mp\beta'$: see `pinik.two_bone`.
 
-    One sweep, and the frame is at its target, or as near to it as the joints' limits let it come. Only for one
+    One sweep moves the frame to its target, or as near as the joint limits allow. The method solves only for a single
     position of a frame that two parallel hinges move (`pinik.TwoBone`).
     """
 
     name = "two_bone"
     title = "Two bones, closed form"
-    about = "exact and at once; for one position of a frame that two parallel hinges move"
+    about = "exact, in one step; only for one position of a frame that two parallel hinges move"
     restarts = 0
 
     elbow: str = parameter(
-        "nearest", "which of two answers inside the limits is taken", choices=("nearest", "up", "down")
+        "nearest", "which of two solutions inside the limits to take", choices=("nearest", "up", "down")
     )
 
     def check(self, problem: Problem) -> None:
-        """See that one position is asked of a frame that two parallel hinges move.
+        """Check that the only target is a position of a frame that two parallel hinges move.
 
         Raises:
-            InputError: It is not so; the message says why.
+            InputError: It is not; the message says why.
         """
         _bones(problem.robot, problem.targets)
 
     @property
     def exact(self) -> bool:
-        """Yes, unless it looks at a part of the way alone, which limits may bar where there is a way around."""
+        """Whether `max_residual` is infinite. With partial steps, limits may block one way although another is free."""
         return self.max_residual == math.inf
 
     @property
     def lands_at_once(self) -> bool:
-        """Whether the first sweep goes all the way."""
+        """Whether the first sweep reaches the final configuration."""
         return self.exact and self.max_step == math.inf
 
     def answers(self, positions: Array, q: Array, problem: Problem, limits: Limits) -> Array:
         """The configurations (N, nq) inside the limits that come nearest to N positions (N, 3) [m], from `q` (N, nq).
 
-        Locked joints stay, as if their limits were where they stand.
+        Locked joints keep their values.
         """
         bones, _ = _bones(problem.robot, problem.targets)
         ranges = np.tile(bones.ranges(limits), (len(q), 1, 1))
@@ -76,7 +76,7 @@ class TwoBoneSolver(SweepingSolver):
         return limits.clip(bones.nearest(positions, q, ranges, self.elbow))
 
     def sweep(self, q: Array, kinematics: Kinematics, limits: Limits, tolerance: Tolerance) -> tuple[Array, int]:
-        """Both joints at once, which is a whole step and counts no joint by itself."""
+        """Move both joints at once; this counts as no single-joint update."""
         bones, wanted = _bones(kinematics.robot, kinematics.targets)
         if self.max_residual < math.inf:
             here = bones.position(q)
@@ -94,18 +94,18 @@ class TwoBoneSolver(SweepingSolver):
         return there, 0
 
     def off_plane(self, robot: RobotModel, targets: Sequence[Target]) -> OffPlane:
-        """What the target lies beside the plane in which the two bones move."""
+        """How far the target lies off the plane in which the two bones move."""
         bones, wanted = _bones(robot, targets)
         return bones.off_plane(wanted)
 
 
 def _bones(robot: RobotModel, targets: Sequence[Target]) -> tuple[TwoBone, Array]:
-    """The two bones that are asked for, and where their end should be (3,) [m]."""
+    """The two bones that move the target's frame, and the target position (3,) [m]."""
     target = targets[0]
     if len(targets) > 1:
-        raise InputError(f"two_bone takes one target; got {len(targets)}")
+        raise InputError(f"two_bone takes only one target; got {len(targets)}")
     if target.position is None or target.asks_orientation:
-        raise InputError(f"two_bone takes a position alone; target {target.frame!r} asks for an orientation")
+        raise InputError(f"two_bone takes only a position; target {target.frame!r} has an orientation")
     if target.tool is not None:
         return TwoBone.of(robot, target.frame, tool=target.tool, relative_to=target.relative_to), target.position
     known = _KNOWN.setdefault(robot, {})

@@ -1,1 +1,1 @@
-"""From a question to a solution."""
+"""Solve: from targets and options to a solution."""

@@ -1,4 +1,4 @@
-"""Many questions that a closed form answers all at once, each answer checked by plain Pinocchio."""
+"""Vectorised solution of many targets by a closed form; plain Pinocchio checks each answer."""
 
 from __future__ import annotations
 
@@ -21,11 +21,11 @@ __all__ = ["attempt_at_once", "lands_at_once"]
 
 Array = NDArray[np.float64]
 
-_BLOCK = 8192  # questions worked on at once: their numbers stay in the processor's cache
+_BLOCK = 8192  # targets per pass, so that their numbers stay in the processor's cache
 
 
 def lands_at_once(question: Question) -> bool:
-    """Whether one step of the method is its answer, and it has the time for another one to find that it rests."""
+    """Whether the first step of the method is final, and the options allow the second step that confirms it."""
     solver, options = question.solver, question.options
     unhurried = options.iterations_at_most > 1 and options.time_limit == math.inf
     return isinstance(solver, TwoBoneSolver) and solver.lands_at_once and unhurried
@@ -50,7 +50,7 @@ def attempt_at_once(question: Question, goals: Array, starts: Array) -> Outcomes
 
 
 def _answered(question: Question, positions: Array, starts: Array) -> tuple[Array, Array, NDArray[np.bool_]]:
-    """(the nearest configurations (N, nq), what they miss (N,) [m], whether they are where the starts were (N,))."""
+    """(nearest configurations (N, nq), their position errors (N,) [m], whether they equal their starts (N,))."""
     solver, problem = question.solver, question.problem
     assert isinstance(solver, TwoBoneSolver)
     q = solver.answers(positions, starts, problem, question.limits)
@@ -60,6 +60,6 @@ def _answered(question: Question, positions: Array, starts: Array) -> tuple[Arra
 
 
 def _status(question: Question, goal: Array, missed: float) -> Status:
-    """Why a target was missed by so much [m]."""
+    """The status of a miss by this distance [m]."""
     targets = targets_of(question.problem.targets, goal)
     return verdict(question, targets, (TargetError(missed, None),), Status.STALLED).status

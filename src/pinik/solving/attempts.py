@@ -1,4 +1,4 @@
-"""The attempts of one solve: restarts, and the best configuration so far."""
+"""The attempts of one solve, with restarts, and the best configuration so far."""
 
 from __future__ import annotations
 
@@ -24,23 +24,23 @@ __all__ = ["Attempts", "Outcome", "Outcomes"]
 Array = NDArray[np.float64]
 
 RESTARTS_WHEN_UNREACHABLE = 8
-"""Restarts that a target provably out of reach still gets: the search for the nearest point has local minima too."""
+"""The maximum number of restarts for a target provably out of reach: the distance to it can have local minima too."""
 
 
 class Outcome(NamedTuple):
-    """What a solve came to.
+    """The result of a solve.
 
     Attributes:
         status: The verdict on `q`.
         q: The best configuration (nq,), inside the limits.
-        errors: Each target's error there, by plain forward kinematics.
+        errors: The error of each target at `q`, by plain forward kinematics.
         iterations, joint_updates: Totals over all attempts.
-        restarts: Fresh starts used.
-        proof: Why a target is out of reach, where one provably is.
-        states: Every state of every attempt, where a trace is wanted.
-        targets: What was asked for.
-        time: Seconds.
-        engine: The engine that solved it: "python" or "native".
+        restarts: The number of restarts used.
+        proof: The proof that a target is out of reach, if there is one.
+        states: Every state of every attempt, if a trace was requested.
+        targets: The targets.
+        time: The duration of the solve [s].
+        engine: The engine that was used: "python" or "native".
     """
 
     status: Status
@@ -71,11 +71,11 @@ class Outcomes:
 
 
 class Attempts:
-    """Solves one question after another, in Python; each thread needs its own.
+    """The Python engine for one kind of question; each thread needs its own instance.
 
     Attributes:
-        question: What to solve, and how.
-        kinematics: The targets at the moment.
+        question: The kinds of the targets, and the options.
+        kinematics: The kinematics of the current targets.
     """
 
     def __init__(self, question: Question) -> None:
@@ -92,37 +92,37 @@ class Attempts:
         nearest: bool = False,
         began: float | None = None,
     ) -> Outcome:
-        """Make attempts until one reaches the targets: the first from `start`, the others from drawn starts.
+        """Make attempts until one reaches the targets: the first from `start`, the others from other starts.
 
         Args:
-            targets: What to reach, of the question's kinds.
-            start: Where the first attempt starts (nq,); it is put inside the limits.
-            number: This problem's number among many, which is a key of the drawn starts.
-            nearest: Whether the first attempt starts near the targets as well; what is not drawn is then as in `start`.
-            began: When the solve began, on `time.perf_counter`'s clock [s].
+            targets: The targets, of the question's kinds.
+            start: The start of the first attempt (nq,); it is moved inside the limits first.
+            number: The index of this problem among many, which is one of the keys of the random starts.
+            nearest: Whether the first attempt too starts near the targets; other joints stay as in `start`.
+            began: The time at which the solve began, from `time.perf_counter` [s]; now when None.
         """
         self.kinematics.retarget(targets)
         limits = self.question.limits
         return _Search(self, limits.clip(limits.wrap(start)), number, nearest, began).outcome()
 
     def start(self, given: Array, attempt: int, number: int) -> Array:
-        """Where an attempt starts: as given, or where the table or the draw says."""
+        """The start of an attempt: as given for attempt 0, otherwise from the table or drawn at random."""
         return self._starts.next(given, target=number, number=attempt) if attempt else given
 
     @property
     def draws(self) -> bool:
-        """Whether fresh starts differ from each other."""
+        """Whether restarts begin at different configurations."""
         return self._starts.draws
 
 
 class _Search:
-    """The attempts at one problem under way.
+    """The attempts for one set of targets, in progress.
 
     Attributes:
         iterations, joint_updates: Totals over the attempts so far.
-        restarts: Fresh starts used so far.
+        restarts: The number of restarts so far.
         best: The state inside the limits with the smallest residual so far.
-        states: Every state so far, where a trace is wanted.
+        states: Every state so far, if a trace was requested.
     """
 
     def __init__(self, attempts: Attempts, start: Array, number: int, nearest: bool, began: float | None) -> None:
@@ -137,12 +137,12 @@ class _Search:
         self.states: list[State] = []
 
     def outcome(self) -> Outcome:
-        """Make the attempts and judge the best."""
+        """Make the attempts and judge the best configuration."""
         options = self.question.options
         if not self.question.problem.free.any():
             self._attempt(self._start(), Pace(0))
             status = Status.STALLED
-        elif options.restarts_at_most == 0 or options.method.exact:  # the bare method, as `iterate` runs it
+        elif options.restarts_at_most == 0 or options.method.exact:  # the method alone, as in `iterate`
             status = self._attempt(self._start(), Pace(options.iterations_at_most))
         else:
             status = self._attempt_and_restart()
@@ -188,14 +188,14 @@ class _Search:
         return status
 
     def _consider_inside(self, state: State) -> None:
-        """Move a state that lies outside the limits inside, and keep it if it is the best there."""
+        """Move a state from outside the limits to the inside, and keep it if it is the best so far."""
         limits = self.question.limits
         at = self.kinematics.linearize(limits.clip(limits.wrap(state.q)))
         if self.best is None or at.residual < self.best.residual:
             self.best = state._replace(q=at.q, errors=tuple(at.errors), residual=at.residual)
 
     def _judged(self, ended: Status) -> Outcome:
-        """The best state, judged by plain forward kinematics."""
+        """The outcome with the best state, judged by plain forward kinematics."""
         assert self.best is not None
         q, targets = self.best.q.copy(), self.kinematics.targets
         status, errors, proof = judge(self.question, targets, q, ended)

@@ -1,4 +1,4 @@
-"""`solve`, `prepare` and `iterate`: the fronts of the one loop, the same for every solver."""
+"""The functions `solve`, `prepare` and `iterate`, the same for every solver."""
 
 from __future__ import annotations
 
@@ -57,54 +57,55 @@ def solve(
     trace: bool = False,
     **solver_parameters: Any,
 ) -> Solution:
-    """Find joint values that put frames where the targets want them.
+    """Find joint values that move frames of the robot to their targets.
 
-    A missed target is not an exception: the solution says how far off it is and why. Joints that move none of the
-    frames stay where `q0` has them.
+    A missed target raises no exception: the solution reports the remaining errors and the reason. Joints that move none
+    of the frames keep their values in `q0`.
 
     Args:
         robot: The robot.
-        targets: The name of a frame, with its place in the keywords from `position` to `weight`; or one Target, or
-            several.
+        targets: The name of a frame, with its target in the keywords from `position` to `weight`; or one or several
+            Target objects.
         method: "ccd", "jt", "pinv", "dls", another name in `pinik.SOLVERS`, a Solver class or an instance; "two_bone"
-            where two parallel hinges move the frame.
-        position: Where the frame's origin should be (3,) [m]; this and the next eleven are explained at `Target`.
-        rotation, rpy, quat_xyzw, quat_wxyz: The orientation wanted.
-        placement: Position and orientation at once.
-        axis, direction, at: An axis of the frame, and where it should point.
-        tool: The point meant, in the frame.
+            if two parallel hinges move the frame.
+        position: Target position of the frame's origin (3,) [m]; `Target` explains this and the next eleven keywords.
+        rotation, rpy, quat_xyzw, quat_wxyz: Target orientation.
+        placement: Target position and orientation together.
+        axis, direction, at: An axis of the frame, and the direction or the point at which it should point.
+        tool: The point of the frame that should reach the target, or its placement in the frame.
         relative_to: The frame in which the target is expressed.
         weight: A factor on the target's residual in the step.
-        q0: Start (nq,); neutral when None; "nearest" for a start near the targets, from a table. With limits it is put
-            inside them first, joint by joint, joints that move nothing and locked ones included.
-        limits: Whether the answer keeps inside the joints' limits.
-        locked: Names of joints that hold still, floating and planar ones included.
-        restarts: Fresh starts, drawn from `seed`, after a failed attempt; the solver's own number when None; 0 for the
-            bare method, as `iterate` runs it.
-        seed: The seed of the fresh starts.
-        max_iterations: Iterations of one attempt at most; the solver's own number when None.
+        q0: Start configuration (nq,); neutral when None; "nearest" for a start near the targets, from a table. With
+            limits, all joints of the start are moved inside them first, including joints that move no target frame and
+            locked ones.
+        limits: Whether to enforce the joint limits.
+        locked: Names of joints that must not move; floating and planar joints can be locked too.
+        restarts: The maximum number of restarts, from starts drawn with `seed`, after a failed attempt; the solver's
+            default when None; 0 for the method alone, as in `iterate`.
+        seed: The seed of the random starts.
+        max_iterations: The maximum number of iterations per attempt; the solver's default when None.
         tolerance: The errors that count as reached (metres, radians); 1e-4 m and 1e-3 rad when None.
-        time_limit: Seconds; checked between iterations.
+        time_limit: Time limit [s], checked between iterations; no limit when None.
         engine: "auto", "python" or "native".
-        trace: Whether to keep every state. With restarts, attempts of Jacobian methods may leave the limits on their
-            way; the answer does not.
-        **solver_parameters: The solver's own parameters, such as `damping=0.1`.
+        trace: Whether to keep every state. With restarts, attempts of Jacobian methods may leave the limits in between;
+            the answer does not.
+        **solver_parameters: Parameters of the solver, such as `damping=0.1`.
 
     Returns:
-        The solution, with its errors computed anew by plain Pinocchio.
+        The solution, with its errors recomputed by plain Pinocchio.
 
     Raises:
-        UnknownNameError: A frame, joint, method or keyword that does not exist.
-        InputError: An argument of the wrong shape, kind or range.
-        EngineError: The engine asked for is not available.
+        UnknownNameError: A frame, joint, method or keyword does not exist.
+        InputError: An argument has the wrong shape, type or range.
+        EngineError: The requested engine is not available.
     """
     if not isinstance(robot, RobotModel):
         raise InputError(f"robot must be what pinik.load returns; got {robot!r}")
     wanted = (
         position, rotation, rpy, quat_xyzw, quat_wxyz, placement, axis, direction, at, tool, relative_to, weight,
     )  # fmt: skip
-    said = (limits, locked, restarts, seed, max_iterations, tolerance, time_limit, engine, trace)
-    return answer(robot, targets, method, wanted, q0, said, solver_parameters)
+    given = (limits, locked, restarts, seed, max_iterations, tolerance, time_limit, engine, trace)
+    return answer(robot, targets, method, wanted, q0, given, solver_parameters)
 
 
 def prepare(
@@ -135,10 +136,10 @@ def prepare(
     trace: bool = False,
     **solver_parameters: Any,
 ) -> Prepared:
-    """Check and compile a kind of question once, to ask it many times with other places and starts.
+    """Check and compile a problem once, to solve it many times for other target positions and starts.
 
-    The arguments and errors are those of `solve`. What is asked of which frames is fixed; where they should be may
-    differ from call to call.
+    The arguments and errors are those of `solve`. The frames and the kinds of their targets are fixed; the target
+    positions and orientations may differ from call to call.
     """
     wanted = (
         position, rotation, rpy, quat_xyzw, quat_wxyz, placement, axis, direction, at, tool, relative_to, weight,
@@ -175,32 +176,32 @@ def iterate(
     tolerance: Tolerance | ArrayLike | None = None,
     **solver_parameters: Any,
 ) -> States:
-    """Run one solver from one start and yield a State per iteration, the start first.
+    """Run one solver from one start, and yield a State per iteration, beginning with the start.
 
-    The run ends with the state whose `status` is set: converged, stalled or out of iterations. There are three ways to
-    use it: drain it until the targets are reached; take `max_iterations=1` per simulation step, from the last q; or
-    take a few iterations per step. `states.send(targets)` moves the targets while it runs, starts the count of
-    iterations anew, takes the next step and returns its state; it works after the last state as well.
+    The run ends with a state whose `status` is set: converged, stalled or out of iterations. There are three ways to
+    use it: iterate until it ends; run it with `max_iterations=1` per simulation step, each time from the last q; or
+    take a few iterations per step. `states.send(targets)` moves the targets during the run, resets the iteration limit,
+    takes the next step and returns its state; it also works after the last state.
 
     Args:
         robot: The robot.
-        targets: The name of a frame, with its place in the keywords from `position` to `weight`; or one Target, or
-            several.
+        targets: The name of a frame, with its target in the keywords from `position` to `weight`; or one or several
+            Target objects.
         method: A solver's name, class or instance.
-        q0: Start (nq,), put inside the limits; neutral when None.
+        q0: Start configuration (nq,), moved inside the limits first; neutral when None.
         position, rotation, rpy, quat_xyzw, quat_wxyz, placement, axis, direction, at, tool, relative_to, weight: As for
             `Target`.
-        limits: Whether every q yielded keeps inside the joints' limits.
-        locked: Names of joints that hold still.
-        max_iterations: Iterations at most; the solver's own number when None.
-        tolerance: The errors that count as reached (metres, radians).
-        **solver_parameters: The solver's own parameters.
+        limits: Whether to enforce the joint limits in every state.
+        locked: Names of joints that must not move.
+        max_iterations: The maximum number of iterations; the solver's default when None.
+        tolerance: The errors that count as reached (metres, radians); 1e-4 m and 1e-3 rad when None.
+        **solver_parameters: Parameters of the solver.
 
     Raises:
         UnknownNameError, InputError: As for `solve`.
     """
     if "solver" in solver_parameters:
-        warnings.warn("iterate's solver= is called method=, as everywhere", DeprecationWarning, stacklevel=2)
+        warnings.warn("iterate(solver=...) is deprecated; use method= instead", DeprecationWarning, stacklevel=2)
         method = solver_parameters.pop("solver")
     wanted = (
         position, rotation, rpy, quat_xyzw, quat_wxyz, placement, axis, direction, at, tool, relative_to, weight,
@@ -221,10 +222,10 @@ def answer(
     method: Method,
     wanted: Wanted,
     q0: ArrayLike | str | None,
-    said: tuple[Any, ...],
+    given: tuple[Any, ...],
     parameters: dict[str, Any],
 ) -> Solution:
-    """Solve. What was compiled for the same words, or for the same question in other words, is used again.
+    """Solve, and reuse the compiled problem of an earlier call with equal arguments or an equal meaning.
 
     Args:
         robot: The robot.
@@ -232,30 +233,30 @@ def answer(
         method: The method.
         wanted: The values of a target's keywords, in the order of `PLACE_WORDS`.
         q0: The start.
-        said: The options, in the order of `OPTION_NAMES`.
+        given: The values of the options, in the order of `OPTION_NAMES`.
         parameters: The solver's parameters.
     """
     kept = kept_of(robot)
-    words, prepared = None, None
+    key, prepared = None, None
     if type(targets) is str and _is_plain(wanted):
         position = wanted[0]
-        words = _words((targets, position is None), method, said, parameters)
-        prepared = _said(kept, words)
+        key = _key((targets, position is None), method, given, parameters)
+        prepared = _found(kept, key)
         if prepared is not None:
             quick = prepared.at(wanted[5] if position is None else _as_point(position), q0)
             if quick is not None:
                 return quick
     asked = asked_targets(targets, wanted, method, parameters)
-    if words is None:
-        words = _words(tuple([target.shape for target in asked]), method, said, parameters)
-        prepared = _said(kept, words)
+    if key is None:
+        key = _key(tuple([target.shape for target in asked]), method, given, parameters)
+        prepared = _found(kept, key)
     if prepared is None:
-        prepared = kept.prepared(robot, asked, _options(method, said, parameters), words)
+        prepared = kept.prepared(robot, asked, _options(method, given, parameters), key)
     return prepared.answer(asked, q0)
 
 
 def _is_plain(wanted: Wanted) -> bool:
-    """Whether a position alone is wanted, or a placement alone."""
+    """Whether only a position or only a placement is given."""
     (position, rotation, rpy, quat_xyzw, quat_wxyz, placement, axis, direction, at, tool, relative_to, weight) = wanted
     return (
         (position is None) is not (placement is None)
@@ -272,25 +273,25 @@ def _is_plain(wanted: Wanted) -> bool:
     )
 
 
-def _words(what: object, method: Method, said: tuple[Any, ...], parameters: dict[str, Any]) -> Key | None:
-    """The words of a question as a key; None for words that have to be checked each time.
+def _key(what: object, method: Method, given: tuple[Any, ...], parameters: dict[str, Any]) -> Key | None:
+    """The arguments of a call as a key; None for arguments that must be checked in every call.
 
-    Types are a part of it: equality alone would confuse `True` with 1.
+    The key includes their types, because `True == 1`.
     """
     meant: object = SOLVERS.get(method) if type(method) is str else method
     if meant is None:
         return None
-    if said[1] != () or said[5] is not None:
-        plain = _plain_options(*said)
+    if given[1] != () or given[5] is not None:
+        plain = _plain_options(*given)
         if plain is None:
             return None
-        said = plain
+        given = plain
     own = tuple([(name, type(value), _as_key(value)) for name, value in parameters.items()]) if parameters else ()
-    return what, meant, said, tuple(map(type, said)), own
+    return what, meant, given, tuple(map(type, given)), own
 
 
 def _plain_options(limits: object, locked: Any, *between: Any) -> tuple[Any, ...] | None:
-    """The options with names and tolerances in tuples; None where they are given in another way."""
+    """The options, with the locked joints and the tolerance as tuples; None if these have other types."""
     restarts, seed, max_iterations, tolerance, *rest = between
     if locked != () and type(locked) not in (tuple, list):
         return None
@@ -306,15 +307,15 @@ def _as_key(value: object) -> object:
     return tuple([(name, type(x), x) for name, x in value.items()]) if type(value) is dict else value
 
 
-def _said(kept: Kept, words: Key | None) -> Prepared | None:
+def _found(kept: Kept, key: Key | None) -> Prepared | None:
     try:
-        return None if words is None else kept.said(words)
-    except TypeError:  # something in them cannot be a key
+        return None if key is None else kept.found(key)
+    except TypeError:  # an argument is not hashable
         return None
 
 
-def _options(method: Method, said: tuple[Any, ...], parameters: dict[str, Any]) -> Options:
-    limits, locked, restarts, seed, max_iterations, tolerance, time_limit, engine, trace = said
+def _options(method: Method, given: tuple[Any, ...], parameters: dict[str, Any]) -> Options:
+    limits, locked, restarts, seed, max_iterations, tolerance, time_limit, engine, trace = given
     return Options.of(
         method, parameters, limits=limits, locked=locked, restarts=restarts, seed=seed,
         max_iterations=max_iterations, tolerance=tolerance, time_limit=time_limit, engine=engine, trace=trace,
@@ -322,7 +323,7 @@ def _options(method: Method, said: tuple[Any, ...], parameters: dict[str, Any]) 
 
 
 def _as_point(position: ArrayLike) -> object:
-    """Three plain numbers as an array; None for what a check has to judge."""
+    """Three floats as an array, or a vector unchanged; None for anything that must be checked first."""
     if isinstance(position, (list, tuple)) and [type(x) for x in position] == [float, float, float]:
         return np.array(position)
     return position if isinstance(position, np.ndarray) and position.ndim == 1 else None

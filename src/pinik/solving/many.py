@@ -1,4 +1,4 @@
-"""Many targets at once: arrays in, arrays out, over all cores."""
+"""Many targets in one call, as arrays, on all processor cores."""
 
 from __future__ import annotations
 
@@ -56,28 +56,28 @@ def solve_many(
     engine: str = "auto",
     **solver_parameters: Any,
 ) -> Solutions:
-    """Solve N questions of the same kind, each by itself.
+    """Solve N problems of the same kind, independently of each other.
 
-    The answers do not depend on `threads`: what is drawn depends only on the seed and on each question's number. Ctrl-C
-    stops it at once.
+    The answers do not depend on `threads`: random starts depend only on the seed and on the index of each problem.
+    Ctrl-C stops the call at once.
 
     Args:
         robot: The robot.
-        targets: The name of a frame, or one Target as a pattern, whose places are in `places`; or N targets of the same
-            kind; or N sequences of the same number of targets of the same kinds.
+        targets: The name of a frame, or one Target as a pattern, with the N targets in `places`; or N targets of the
+            same kind; or N sequences with the same number of targets of the same kinds.
         places: (N, 4, 4) homogeneous matrices or N SE3, for positions and rotations; or positions (N, 3) [m].
         method: As for `pinik.solve`.
-        tool, relative_to: As for `Target`, with the name of a frame.
-        q0: One start (nq,), or N of them (N, nq); neutral when None; "nearest" for starts near each target, from a
+        tool, relative_to: As for `Target`; only with the name of a frame.
+        q0: One start (nq,) or N starts (N, nq); neutral when None; "nearest" for a start near each target, from a
             table.
-        threads: How many threads share the work; one for each processor available to this process when None. The Python
-            engine uses one.
+        threads: The number of threads; one for each processor available to this process when None. The Python engine
+            uses one thread.
         limits, locked, restarts, seed, max_iterations, tolerance, engine: As for `pinik.solve`.
-        time_limit: Seconds for each question.
-        **solver_parameters: The solver's own parameters.
+        time_limit: Time limit for each problem [s].
+        **solver_parameters: Parameters of the solver.
 
     Raises:
-        UnknownNameError, InputError, EngineError: As for `pinik.solve`, with the number of the first faulty target.
+        UnknownNameError, InputError, EngineError: As for `pinik.solve`, with the index of the first faulty target.
     """
     if not isinstance(robot, RobotModel):
         raise InputError(f"robot must be what pinik.load returns; got {robot!r}")
@@ -120,13 +120,13 @@ class Solutions(Outcomes):
 
     Attributes:
         q: The best configurations (N, nq).
-        status: Why each solve ended: an array of `Status`.
-        position_error: The largest of each question's targets [m]; NaN where none was asked for.
-        orientation_error: The same [rad].
-        iterations, joint_updates, restarts: Of each question, as in `Solution`.
-        time: Seconds that each one took; an equal share of them where all were answered at once.
-        total_time: Seconds from call to answer.
-        prepared: The kind of question; None where `solve_many` was given no target at all.
+        status: The reason why each solve ended: an array (N,) of `Status`.
+        position_error: The largest position error of each problem's targets (N,) [m]; NaN if there are no positions.
+        orientation_error: The largest orientation error, likewise (N,) [rad].
+        iterations, joint_updates, restarts: As in `Solution`, for each problem (N,).
+        time: The duration of each solve (N,) [s]; equal shares of the total if one vectorised call solved all.
+        total_time: The duration of the call [s].
+        prepared: The compiled problem; None if `solve_many` was called without any targets.
     """
 
     total_time: float
@@ -140,7 +140,7 @@ class Solutions(Outcomes):
 
     @property
     def engine(self) -> str:
-        """The engine that solved them: "python" or "native"."""
+        """The engine that was used: "python" or "native"."""
         return "python" if self.prepared is None else self.prepared.engine
 
     def __len__(self) -> int:
@@ -154,7 +154,7 @@ class Solutions(Outcomes):
 
     def __getitem__(self, index: int) -> Solution:
         if not isinstance(index, (int, np.integer)):
-            raise TypeError(f"solutions are indexed by whole numbers, their arrays by slices as well; got {index!r}")
+            raise TypeError(f"index must be a whole number; slice the arrays of the solutions instead; got {index!r}")
         if not -len(self) <= index < len(self) or self.prepared is None:
             raise IndexError(f"there are {len(self)} solutions; got index {index}")
         question = self.prepared.question
@@ -180,9 +180,11 @@ class Solutions(Outcomes):
 def _questions(
     robot: RobotModel, targets: Any, places: Any, tool: Any, relative_to: str | None
 ) -> tuple[tuple[Target, ...], Array]:
-    """(a pattern of what is asked each time, or an empty one; the numbers that say where (N, targets, 18))."""
+    """(the pattern of the targets, empty without targets; their numbers (N, targets, 18))."""
     if not isinstance(targets, str) and (tool is not None or relative_to is not None):
-        raise InputError("tool= and relative_to= go with the name of a frame; with targets they belong in Target(...)")
+        raise InputError(
+            "tool= and relative_to= need the name of a frame; with Target objects, pass them to Target(...)"
+        )
     if places is None:
         return _listed(targets)
     rotations, points = _read_places(places)
@@ -190,7 +192,7 @@ def _questions(
 
 
 def _listed(targets: Any) -> tuple[tuple[Target, ...], Array]:
-    """Questions given as Target objects."""
+    """Problems given as Target objects."""
     if not isinstance(targets, Iterable):
         raise InputError(f"targets must be a frame's name, a Target, or a sequence of them; got {targets!r}")
     if isinstance(targets, (str, Target)):
@@ -202,13 +204,13 @@ def _listed(targets: Any) -> tuple[tuple[Target, ...], Array]:
     for number, each in enumerate(asked):
         if [target.shape for target in each] != kind:
             raise InputError(
-                f"targets[{number}] asks for something other than targets[0]; solve each kind in a call of its own"
+                f"targets[{number}] must be of the same kind as targets[0]; solve each kind in a separate call"
             )
     return asked[0], np.array([goals_of(each) for each in asked])
 
 
 def _read_places(places: Any) -> tuple[Array | None, Array]:
-    """(rotations (N, 3, 3) where there are any, points (N, 3) [m])."""
+    """(rotations (N, 3, 3) or None, points (N, 3) [m])."""
     if isinstance(places, Sequence) and any(isinstance(place, pinocchio.SE3) for place in places):
         places = np.array([as_se3(place, f"places[{k}]").homogeneous for k, place in enumerate(places)])
     numbers = as_numbers(places, "places")
@@ -225,7 +227,7 @@ def _read_places(places: Any) -> tuple[Array | None, Array]:
 def _placed(
     targets: Any, rotations: Array | None, points: Array, tool: Any, relative_to: str | None
 ) -> tuple[tuple[Target, ...], Array]:
-    """Questions given as a frame or a pattern, and places."""
+    """Problems given as a frame or a pattern, and places."""
     if isinstance(targets, str):
         orientation = None if rotations is None else np.eye(3)
         pattern = Target(targets, np.zeros(3), rotation=orientation, tool=tool, relative_to=relative_to)
@@ -234,7 +236,7 @@ def _placed(
     else:
         raise InputError(f"with places, targets must be a frame's name or one Target; got {targets!r}")
     if pattern.axis is not None or (pattern.rotation is not None and rotations is None):
-        raise InputError(f"places of {pattern.frame!r} say less than the target asks for; give N Target objects")
+        raise InputError(f"places do not specify all that the target of {pattern.frame!r} needs; give N Target objects")
     goals = np.zeros((len(points), 1, 18))
     if pattern.position is not None:
         goals[:, 0, :3] = points
@@ -245,7 +247,7 @@ def _placed(
 
 
 def _starts(robot: RobotModel, q0: ArrayLike | None, count: int) -> Array:
-    """(1, nq) or (N, nq)."""
+    """The starts (1, nq) or (N, nq), checked."""
     if q0 is None:
         return robot.neutral()[np.newaxis]
     if as_numbers(q0, "q0").ndim != 2:

@@ -1,4 +1,4 @@
-"""The verdict on a solve in one sentence."""
+"""The explanation of a verdict in one sentence."""
 
 from __future__ import annotations
 
@@ -16,12 +16,12 @@ __all__ = ["explain"]
 
 
 def explain(question: Question, targets: Sequence[Target], verdict: Verdict, active: Mapping[str, str]) -> str:
-    """Why the solve ended, what is missing, and which joints are at their limits.
+    """Explain why the solve ended, which errors remain, and which joints are at their limits.
 
     Args:
-        question: What was asked, and how.
-        targets: Where the frames should be.
-        verdict: What the answer is worth.
+        question: The problem and the options.
+        targets: The targets.
+        verdict: The verdict on the answer.
         active: Joint name → "lower", "upper" or "both", for the joints at a limit.
     """
     status, errors, proof = verdict
@@ -49,7 +49,7 @@ def explain(question: Question, targets: Sequence[Target], verdict: Verdict, act
 def _out_of_reach(
     targets: Sequence[Target], tolerance: Tolerance, proof: Shortfall | None, off_plane: OffPlane | None
 ) -> list[str]:
-    """Where the target lies if it cannot be reached, as far as that is known."""
+    """How the target lies out of reach, as far as that is known."""
     frame, places = targets[0 if proof is None else proof.target].frame, []
     if proof is not None and proof.inner:
         places.append(
@@ -63,7 +63,7 @@ def _out_of_reach(
 
 
 def _normal(plane: OffPlane) -> str:
-    """The plane's normal: the name of an axis where it is one, else its three numbers."""
+    """The plane's normal in words: the name of an axis if it is parallel to one, else its three components."""
     whose = "the world" if plane.relative_to is None else f"frame {plane.relative_to!r}"
     numbers = [round(float(x), 3) + 0.0 for x in plane.normal]  # + 0.0: no −0
     for name, number in zip("xyz", numbers, strict=True):

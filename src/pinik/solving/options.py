@@ -1,4 +1,4 @@
-"""Every option of a question, once: what fronts take, both engines read, and a new option joins as one field."""
+"""The options of a solve, defined and checked in one place."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ __all__ = ["ENGINES", "OPTION_NAMES", "Options"]
 
 ENGINES = ("auto", "python", "native")
 
-# Iterations in which the best of the failed attempts is followed to its end, unless the caller allows fewer.
+# The maximum number of iterations of the last run, which continues the best failed attempt.
 _TO_THE_END_AT_MOST = 5000
 
 
@@ -61,23 +61,23 @@ def _engine(value: str, what: str) -> str:
 
 @dataclass(frozen=True)
 class Options:
-    """How a question is to be solved. Checked, immutable and hashable; equal options are the same options.
+    """The options of a solve: checked, immutable and hashable.
 
     Attributes:
-        method: The solver with its parameters; a name, a class or an instance is taken.
-        limits: Whether the answer keeps inside the joints' limits.
-        locked: The names of joints that hold still.
-        restarts: Fresh starts after a failed attempt; the solver's own number when None.
-        seed: The seed of the fresh starts.
-        max_iterations: Iterations of one attempt at most; the solver's own number when None.
+        method: The solver with its parameters; given as a name, a class or an instance.
+        limits: Whether to enforce the joint limits.
+        locked: The names of joints that must not move.
+        restarts: The maximum number of restarts after a failed attempt; the solver's default when None.
+        seed: The seed of the random starts.
+        max_iterations: The maximum number of iterations per attempt; the solver's default when None.
         tolerance: The errors that count as reached.
-        time_limit: Seconds for one question; infinite, or None, where there is no limit.
+        time_limit: Time limit for one problem [s]; infinite, or None, for no limit.
         engine: "auto", "python" or "native".
         trace: Whether to keep every state.
 
     Raises:
         UnknownNameError: There is no such method or engine.
-        InputError: A value of the wrong kind or out of its range.
+        InputError: A value has the wrong type or is out of range.
     """
 
     method: Solver = field(default=DampedLeastSquares(), metadata={"check": lambda value, what: make_solver(value)})
@@ -98,7 +98,7 @@ class Options:
 
     @classmethod
     def of(cls, method: Method = "dls", parameters: dict[str, Any] | None = None, **options: Any) -> Options:
-        """Options with parameters of the solver among them.
+        """Make options from a method, its parameters and the other options.
 
         Args:
             method: A solver's name, class or instance.
@@ -109,19 +109,19 @@ class Options:
 
     @property
     def restarts_at_most(self) -> int:
-        """Fresh starts after a failed attempt."""
+        """The maximum number of restarts after a failed attempt."""
         return self.method.restarts if self.restarts is None else self.restarts
 
     @property
     def iterations_at_most(self) -> int:
-        """Iterations of one attempt."""
+        """The maximum number of iterations per attempt."""
         return self.method.max_iterations if self.max_iterations is None else self.max_iterations
 
     @property
     def iterations_to_the_end(self) -> int:
-        """Iterations of the last run, which follows the best of the failed attempts."""
+        """The maximum number of iterations of the last run, which continues the best failed attempt."""
         return _TO_THE_END_AT_MOST if self.max_iterations is None else self.max_iterations
 
 
 OPTION_NAMES = tuple(own.name for own in dataclasses.fields(Options) if own.name != "method")
-"""The names of the options that every front takes besides the method."""
+"""The names of all options except the method."""

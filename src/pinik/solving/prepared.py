@@ -1,4 +1,4 @@
-"""A kind of question, prepared to be asked many times; the choice of the engine."""
+"""A compiled problem that can be solved many times, and the choice of its engine."""
 
 from __future__ import annotations
 
@@ -28,22 +28,22 @@ Array = NDArray[np.float64]
 
 
 class Prepared:
-    """What is asked of which frames, by which method and with which options; `pinik.prepare` makes it.
+    """A problem with its frames, method and options, made by `pinik.prepare`.
 
-    Everything is checked and compiled once; only where the frames should be, and where the solver starts, differ from
-    one call to the next. Each thread needs its own.
+    Everything is checked and compiled once; only the target positions and orientations and the start differ from call
+    to call. Each thread needs its own instance.
 
     Attributes:
         robot: The robot.
         targets: The targets that it was prepared with.
         options: The options; `options.method` is the solver with its parameters.
-        question: All of this, compiled; any thread may read it.
+        question: The compiled problem; any thread may read it.
         engine: "python" or "native".
-        native: The compiled engine's own object, where it is used.
+        native: The object of the compiled engine, if that engine is used.
     """
 
     def __init__(self, robot: RobotModel, targets: Target | Sequence[Target], options: Options) -> None:
-        """Compile the question."""
+        """Compile the problem."""
         self.engine = _chosen(options.engine, options.method)
         self.question = Question.of(robot, targets, options)
         self.robot, self.options = robot, options
@@ -53,7 +53,7 @@ class Prepared:
         self._attempts: Attempts | None = None
 
     def __reduce__(self) -> tuple[Any, ...]:
-        """Compile it anew elsewhere: what was compiled holds memory of this process."""
+        """Pickle only the inputs; the copy is compiled again, because compiled objects belong to this process."""
         return Prepared, (self.robot, self.targets, self.options)
 
     @property
@@ -63,7 +63,7 @@ class Prepared:
 
     @property
     def attempts(self) -> Attempts:
-        """The Python engine for this question."""
+        """The Python engine for this problem."""
         if self._attempts is None:
             self._attempts = Attempts(self.question)
         return self._attempts
@@ -76,12 +76,12 @@ class Prepared:
         """Solve.
 
         Args:
-            targets: Where the frame should be: an SE3 or 4×4 matrix, or a position (3,) [m] if only that was asked for;
-                or Target objects like those it was prepared with. Those themselves when None.
-            q0: Start (nq,); neutral when None; "nearest" for a start from a table whose frames are near the targets.
+            targets: The new target: an SE3 or 4×4 matrix, or a position (3,) [m] if the target has no orientation; or
+                Target objects of the same kinds as those that it was prepared with. The original targets when None.
+            q0: Start (nq,); neutral when None; "nearest" for a start near the targets, from a table.
 
         Raises:
-            InputError: The targets ask for something other than it was prepared for, or the start has the wrong shape.
+            InputError: The targets differ in kind from those it was prepared with, or the start has the wrong shape.
         """
         began = time.perf_counter()
         quick = self.at(targets, q0)
@@ -92,12 +92,12 @@ class Prepared:
     def answer(
         self, asked: tuple[Target, ...], q0: ArrayLike | str | None = None, began: float | None = None
     ) -> Solution:
-        """Solve for targets of the very kinds that it was prepared with.
+        """Solve for targets of exactly the same kinds as those that it was prepared with.
 
         Args:
             asked: The targets.
             q0: Start, as for a call.
-            began: When the time limit began to run; now when None.
+            began: The time at which the time limit began to run, from `time.perf_counter` [s]; now when None.
         """
         began = time.perf_counter() if began is None else began
         nearest = is_nearest(q0)
@@ -107,14 +107,14 @@ class Prepared:
         return Solution(self.attempts(asked, start, nearest=nearest, began=began), self.question)
 
     def at(self, place: object, q0: object = None) -> Solution | None:
-        """Solve for one frame in the fewest microseconds, if the compiled engine takes the arguments as they are.
+        """Solve for one frame with minimal overhead, if the compiled engine accepts the arguments without conversion.
 
         Args:
-            place: A float64 array (4, 4) or an SE3; (3,) [m] where only a position was asked for.
+            place: A float64 array (4, 4) or an SE3; (3,) [m] if the target has no orientation.
             q0: A float64 array (nq,), None or "nearest".
 
         Returns:
-            None where it does not; a call takes more kinds of arguments, and says what is wrong with them.
+            The solution; None if the engine does not accept the arguments. A normal call converts and checks them.
         """
         if self.native is None:
             return None
@@ -131,19 +131,20 @@ class Prepared:
     def _as_asked(self, targets: Target | Sequence[Target] | pinocchio.SE3 | ArrayLike) -> tuple[Target, ...]:
         if isinstance(targets, (pinocchio.SE3, np.ndarray)) or not _are_targets(targets):
             if len(self.targets) != 1:
-                raise InputError(f"this was prepared for {len(self.targets)} targets; give that many Target objects")
+                raise InputError(f"targets must be {len(self.targets)} Target objects, as when this was prepared")
             return (self.targets[0].moved_to(targets),)
         asked = as_targets(targets)  # type: ignore[arg-type]
         if [target.shape for target in asked] != self.question.problem.kinds:
             frames = ", ".join(target.frame for target in self.targets)
             raise InputError(
-                f"this was prepared for other targets (of {frames}): only the places may differ; prepare these anew"
+                f"targets must be of the same kinds as when this was prepared (for {frames}); "
+                "call prepare again for other kinds"
             )
         return asked
 
 
 def is_nearest(q0: object) -> bool:
-    """Whether a start is the word "nearest"."""
+    """Whether a start is the string "nearest"."""
     return isinstance(q0, str) and q0 == "nearest"
 
 
@@ -152,12 +153,12 @@ def _are_targets(value: object) -> bool:
 
 
 def _chosen(engine: str, solver: Solver) -> str:
-    """The engine that will be used; "auto" is the compiled one where it can be used.
+    """The engine to use; for "auto", the compiled engine if it is available for this solver.
 
     Raises:
-        EngineError: The compiled engine was asked for, and cannot be used.
+        EngineError: The compiled engine was requested but cannot be used.
     """
     why = why_not(solver)
     if engine == "native" and why:
-        raise EngineError(f"the compiled engine cannot be used: {why}; engine='auto' or 'python' can")
+        raise EngineError(f"the compiled engine cannot be used: {why}; use engine='auto' or 'python' instead")
     return "python" if engine == "python" or why else "native"

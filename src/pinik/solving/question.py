@@ -1,4 +1,4 @@
-"""A question: what is asked of which frames of a robot, and how; compiled once, and never changed."""
+"""A question: compiled targets with the options to solve for them."""
 
 from __future__ import annotations
 
@@ -25,12 +25,12 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True, eq=False)
 class Question:
-    """Targets of one kind with the options to solve them by. Any thread may read it.
+    """Compiled targets with the options to solve for them. A question never changes, so any thread may read it.
 
     Attributes:
         problem: The targets, compiled.
         options: The options.
-        limits: The joints' limits, on or off as the options say.
+        limits: The joint limits, enabled or disabled according to the options.
     """
 
     problem: Problem
@@ -43,7 +43,7 @@ class Question:
 
         Raises:
             UnknownNameError: There is no such frame or joint.
-            InputError: The method cannot do what is asked, or a joint named in its parameters cannot be set.
+            InputError: The method cannot solve for these targets, or a joint named in its parameters cannot be set.
         """
         if not isinstance(robot, RobotModel):
             raise InputError(f"robot must be what pinik.load returns; got {robot!r}")
@@ -71,15 +71,15 @@ class Question:
 
     @cached_property
     def bounds(self) -> list[Bounds | None]:
-        """How far and how near each target's frame can be."""
+        """The bounds on the distance of each target's frame from the first joint of its chain."""
         return bounds_of(self.problem, self.limits)
 
 
 def check_joint_names(robot: RobotModel, solver: Solver) -> None:
-    """Check that the joints named in a solver's parameters exist, can be set, and have an angle where one is given."""
+    """Check that the joints named in a solver's parameters exist, can be set, and have an angle if one is given."""
     for parameter, value in solver.parameters.items():
         if isinstance(value, Mapping):
             for name in value:
                 joint = robot.settable_joint(name)
                 if parameter == "rest_posture" and not joint.has_one_axis:
-                    raise InputError(f"rest_posture: joint {name!r} is {joint.kind} and has no angle")
+                    raise InputError(f"rest_posture: joint {name!r} must have one axis; it is {joint.kind}")

@@ -1,4 +1,4 @@
-"""One run of one solver from one start: the loop that every solve, study and live view drains."""
+"""One run of one solver from one start: the iteration loop of solves, studies and the live view."""
 
 from __future__ import annotations
 
@@ -21,34 +21,34 @@ __all__ = ["AT_REST", "TO_THE_END", "Pace", "States", "run"]
 
 Array = NDArray[np.float64]
 States = Generator[State, Target | Sequence[Target] | None, None]
-"""The states of a run. `send` moves the targets, takes the next step and returns its state."""
+"""The states of a run. `send(targets)` moves the targets, takes the next step and returns its state."""
 
 TO_THE_END = Patience(50, 1e-4)
-"""The patience of a run that no other attempt follows."""
+"""The patience of a run after which there are no further attempts."""
 
 AT_REST = 1e-9
-"""The largest joint change [rad or m] that rounding may cause in an exact method at rest."""
+"""The largest joint change in one step [rad or m] at which an exact method counts as being at rest."""
 
 BOLD_SHARE = math.sqrt(0.1)
-"""The share of the distance that sets the damping of a bold run."""
+"""The fraction of the distance that determines the damping of a bold run."""
 
 SHARE_OF_CHAIN = 0.5
-"""A miss that stays is damped like one of at least this share of the chain's length, in the geometric mean."""
+"""For targets out of reach: the smallest distance in the geometric mean that sets damping, per length of the chain."""
 
 
 class Pace(NamedTuple):
     """How a run proceeds, and when it gives up.
 
     Attributes:
-        max_iterations: Iterations at most.
-        patience: When it has stalled.
-        bold: Whether a Jacobian method takes bolder steps, because another attempt can follow: damping that depends on
-            the distance uses a third of it, and limits hold only at the end. A configuration that reaches the targets
-            outside the limits is turned back by whole turns; if that is not enough it is moved inside, and the run goes
-            on within the limits.
-        downhill: Whether a Jacobian method's step is shortened until the residual falls, so that it comes to rest where
-            it would otherwise oscillate.
-        attempt: The run's number.
+        max_iterations: The maximum number of iterations.
+        patience: The condition under which the run has stalled.
+        bold: Whether a Jacobian method takes larger steps, because another attempt can follow: damping uses √0.1 of the
+            distance, and limits are enforced only at the end. If a configuration reaches the targets outside the
+            limits, its hinges are moved by whole turns. If that is not enough, it is clipped to the limits, and the run
+            continues within them.
+        downhill: Whether a Jacobian method's step is shortened until the residual decreases, so that the run converges
+            where it would otherwise oscillate.
+        attempt: The number of the run.
     """
 
     max_iterations: int
@@ -59,16 +59,16 @@ class Pace(NamedTuple):
 
 
 def run(question: Question, kinematics: Kinematics, start: Array, pace: Pace) -> States:
-    """The states of one run, the start first; the last one has a status.
+    """Yield the states of one run, beginning with the start; the last one has a status.
 
-    Where a target is provably out of reach, damping that depends on the distance d uses √(d · max(d, L/2)) instead,
-    with the chain's length L. A stretched-out arm would swing from side to side where λ² is small compared with d · L.
+    If a target is provably out of reach, √(d · max(d, L/2)) replaces the distance d in the damping, where L is the
+    chain's length. Otherwise a stretched arm would swing from side to side when λ² is small compared with d · L.
 
     Args:
-        question: What to solve, and how.
-        kinematics: The targets, on which the run works.
-        start: Where to start (nq,), inside the limits.
-        pace: How to proceed.
+        question: The problem and the options.
+        kinematics: The kinematics of the targets; the run modifies it.
+        start: The start (nq,), inside the limits.
+        pace: How the run proceeds and when it gives up.
     """
     loop = _Loop(question, kinematics, start, pace)
     while True:
@@ -82,7 +82,7 @@ def run(question: Question, kinematics: Kinematics, start: Array, pace: Pace) ->
 
 
 class _Loop:
-    """A run under way: where it stands, and since when it has made no progress."""
+    """A run in progress: its present linearization, and the iterations since its last progress."""
 
     def __init__(self, question: Question, kinematics: Kinematics, start: Array, pace: Pace) -> None:
         self.question, self.kinematics, self.pace = question, kinematics, pace
@@ -99,7 +99,7 @@ class _Loop:
 
     @property
     def damps(self) -> bool:
-        """Whether it matters if a target is out of reach; a bold run knows that its targets may be reached."""
+        """Whether to check if a target is out of reach. A bold run need not: its targets are not provably so."""
         return self.takes_directions and not self.bold
 
     def is_beyond(self) -> bool:
@@ -108,11 +108,11 @@ class _Loop:
         return self.damps and shortfall(self.kinematics.targets, self.bounds, slack) is not None
 
     def look(self) -> State:
-        """The state of the run as it stands."""
+        """The present state of the run."""
         solver, limits, patience = self.question.solver, self.question.limits, self.pace.patience
-        # An exact method steps even from a start that is near enough: it may be asked for the other elbow.
+        # An exact method takes a step even if the start is within tolerance, because the other elbow may be requested.
         reached = self.is_reached() and (self.iteration > 0 or not solver.exact)
-        if reached and not limits.contains(self.at.q):  # only a bold run gets there
+        if reached and not limits.contains(self.at.q):  # only a bold run leaves the limits
             self.box = limits
             self.at = self.kinematics.linearize(limits.clip(limits.wrap(self.at.q)))
             self.milestone, self.since = self.at.residual, 0
@@ -131,7 +131,7 @@ class _Loop:
         return State(at.q, self.iteration, self.updates, tuple(at.errors), at.residual, self.pace.attempt, status)
 
     def aim_at(self, targets: Target | Sequence[Target]) -> None:
-        """Move the targets; the run may take as many iterations again."""
+        """Move the targets, and reset the iteration limit."""
         self.kinematics.retarget(targets)
         if self.kinematics.problem is not self.problem:
             self.problem = self.kinematics.problem
@@ -156,7 +156,7 @@ class _Loop:
         self.iteration, self.updates, self.since = self.iteration + 1, self.updates + updated, self.since + 1
 
     def damped(self) -> Linearization:
-        """The present linearization with the distance that damping depends on."""
+        """The present linearization, with the distance that determines the damping."""
         at = self.at
         if self.bold:
             return at._replace(distance=BOLD_SHARE * at.distance)

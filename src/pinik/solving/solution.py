@@ -1,4 +1,4 @@
-"""The answer of a solve: its verdict, the best configuration, and why it stopped."""
+"""The solution of a solve: its status, the best configuration and the remaining errors."""
 
 from __future__ import annotations
 
@@ -33,12 +33,12 @@ _IN_WORDS = ("robot", "method", "parameters", "message", "active_limits", "trace
 
 
 class Solution:
-    """The answer of a solve, checked by plain Pinocchio."""
+    """The result of a solve, checked by plain Pinocchio."""
 
     _q: Array | None = None
 
     def __init__(self, outcome: Outcome | _native.Answer, question: Question) -> None:
-        """Keep what a solve came to; everything else is worked out when it is first looked at."""
+        """Store the outcome of a solve; all other attributes are computed when they are first read."""
         self._came_to = outcome
         self._question = question
 
@@ -48,7 +48,7 @@ class Solution:
         return outcome if isinstance(outcome, Outcome) else NativeOutcome(outcome, self._question.problem.targets)
 
     def __getstate__(self) -> dict[str, Any]:
-        """Words and numbers alone: what it was computed with is not pickled."""
+        """Pickle the results only, without the compiled problem."""
         outcome = Outcome(*(getattr(self._outcome, name) for name in Outcome._fields))
         return {name: getattr(self, name) for name in _IN_WORDS} | {"_came_to": outcome}
 
@@ -59,28 +59,28 @@ class Solution:
 
     @cached_property
     def targets(self) -> tuple[Target, ...]:
-        """What was asked for."""
+        """The targets."""
         return self._outcome.targets
 
     @cached_property
     def time(self) -> float:
-        """Seconds that the engine took."""
+        """The duration of the solve [s]."""
         return self._outcome.time
 
     @cached_property
     def engine(self) -> str:
-        """The engine that solved it: "python" or "native"."""
+        """The engine that was used: "python" or "native"."""
         return self._outcome.engine
 
     @property
     def status(self) -> Status:
-        """Why the solve ended."""
+        """The reason why the solve ended."""
         return self._outcome.status
 
     @property
     def q(self) -> Array:
         """The best configuration found (nq,), also on failure; read-only, copy it to change it."""
-        if self._q is None:  # `cached_property` takes a lock, and a microsecond
+        if self._q is None:  # not a `cached_property`, whose lock costs a microsecond
             q = self._came_to.q
             q.setflags(write=False)
             self._q = q
@@ -88,22 +88,22 @@ class Solution:
 
     @cached_property
     def errors(self) -> tuple[TargetError, ...]:
-        """Each target's error at `q`, recomputed by plain forward kinematics."""
+        """The error of each target at `q`, recomputed by plain forward kinematics."""
         return self._outcome.errors
 
     @cached_property
     def iterations(self) -> int:
-        """Steps taken in all attempts; sweeps for CCD."""
+        """The number of iterations in all attempts; sweeps for CCD."""
         return self._outcome.iterations
 
     @cached_property
     def joint_updates(self) -> int:
-        """Single joints updated in all attempts by CCD; 0 for methods that take whole steps."""
+        """The number of single-joint updates in all attempts of CCD; 0 for methods that move all joints at once."""
         return self._outcome.joint_updates
 
     @cached_property
     def restarts(self) -> int:
-        """Fresh starts used."""
+        """The number of restarts used."""
         return self._outcome.restarts
 
     @cached_property
@@ -113,19 +113,19 @@ class Solution:
 
     @cached_property
     def trace(self) -> tuple[State, ...] | None:
-        """Every state of every attempt where a trace was asked for, else None."""
+        """Every state of every attempt if a trace was requested, else None."""
         return self._outcome.states if self._question.options.trace else None
 
     @cached_property
     def message(self) -> str:
-        """The status in one sentence, with what is missing and which joints are at their limits."""
+        """The status in one sentence, with the remaining errors and the joints at their limits."""
         outcome = self._outcome
         verdict = Verdict(outcome.status, outcome.errors, outcome.proof)
         return explain(self._question, self.targets, verdict, self._sides_of_limits)
 
     @cached_property
     def active_limits(self) -> tuple[str, ...]:
-        """The joints at a limit that could have moved a target, by name."""
+        """The names of the joints that are at a limit and could move a target frame."""
         return tuple(self._sides_of_limits)
 
     @cached_property
@@ -148,10 +148,10 @@ class Solution:
 
     @cached_property
     def why_not_native(self) -> str | None:
-        """Why the compiled engine was not used, where it was not."""
+        """Why the compiled engine was not used; None if it was."""
         if self.engine == "native":
             return None
-        return why_not(self._question.solver) or "the Python engine was asked for"
+        return why_not(self._question.solver) or "the Python engine was requested"
 
     @property
     def success(self) -> bool:
@@ -160,35 +160,35 @@ class Solution:
 
     @property
     def angles(self) -> dict[str, float]:
-        """Joint name → rad, or m for prismatic joints, at `q`."""
+        """Joint name → angle [rad], or displacement [m] for prismatic joints, at `q`."""
         return self.robot.angles(self.q)
 
     @property
     def joint_placements(self) -> dict[str, pinocchio.SE3]:
-        """Name → SE3 of the floating and planar joints at `q`."""
+        """Joint name → SE3 for the floating and planar joints, at `q`."""
         return self.robot.joint_placements(self.q)
 
     @property
     def position_error(self) -> float | None:
-        """The largest of the targets' [m]; None where no position was asked for."""
+        """The largest position error of any target [m]; None if no target has a position."""
         return largest_of(self.errors).position
 
     @property
     def orientation_error(self) -> float | None:
-        """The largest of the targets' [rad]; None where no orientation was asked for."""
+        """The largest orientation error of any target [rad]; None if no target has an orientation."""
         return largest_of(self.errors).orientation
 
     def raise_for_status(self) -> None:
-        """Do nothing on success.
+        """Raise an error if a target was missed.
 
         Raises:
-            SolveError: The targets were missed; the error carries this solution.
+            SolveError: A target was missed; the error carries this solution.
         """
         if not self.success:
             raise SolveError(self.message, self)
 
     def to_dict(self) -> dict[str, Any]:
-        """The JSON form, plain numbers, strings and lists; docs/json.md explains the fields."""
+        """The JSON form, made of plain numbers, strings, lists and dicts; docs/json.md explains the fields."""
         targets = [
             target.to_dict() | {"position_error_m": error.position, "orientation_error_rad": error.orientation}
             for target, error in zip(self.targets, self.errors, strict=True)
@@ -218,5 +218,5 @@ class Solution:
 
 def _jsonable(value: Any) -> Any:
     if isinstance(value, float) and not math.isfinite(value):
-        return None  # JSON has no infinity: None says "no bound"
+        return None  # JSON has no infinity; None stands for "no bound"
     return dict(value) if isinstance(value, Mapping) else value

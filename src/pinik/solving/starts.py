@@ -1,4 +1,4 @@
-"""Where attempts begin: at numbers that depend only on seed, target and attempt, and are the same in both engines."""
+"""The starts of attempts, from random numbers that depend only on seed, target and attempt, equal in both engines."""
 
 from __future__ import annotations
 
@@ -21,15 +21,15 @@ _MASK = (1 << 64) - 1
 _GOLDEN = 0x9E3779B97F4A7C15
 
 SIZE = 256  # configurations in the table
-NEAREST = 32  # how many of the table's configurations are tried before others are drawn
-OF_THE_TABLE = _MASK  # the table's key in place of a target's number
+NEAREST = 32  # configurations of the table that are tried before others are drawn
+OF_THE_TABLE = _MASK  # the key that replaces a target's index when the table is drawn
 
 
 class Starts:
-    """The starts of attempts that are given none.
+    """The starts of restarts.
 
-    The first of them come from a table of configurations, in the order of how near their frames are to the targets; the
-    others are drawn at random. The table itself is drawn when it is first needed, and serves all targets.
+    The first starts come from a table of configurations, ordered by the distance of their frames from the targets; the
+    others are drawn at random. The table is drawn when it is first needed, and used for all targets.
     """
 
     def __init__(self, kinematics: Kinematics, limits: Limits, seed: int) -> None:
@@ -47,7 +47,7 @@ class Starts:
                 if joint.id in term.chain.frame_support | term.chain.reference_support:
                     needed[joint.idx_q : joint.idx_q + joint.nq] = True
         self._drawn = np.flatnonzero(is_drawn)
-        self._still = np.flatnonzero(needed & ~is_drawn)  # the table is for these values of theirs
+        self._still = np.flatnonzero(needed & ~is_drawn)  # the table is valid for the present values of these entries
         self._table: Array | None = None  # (size, nq)
         self._lengths: Array = np.zeros(SIZE)
         self._seen: Array = np.zeros((SIZE, 0))
@@ -55,13 +55,13 @@ class Starts:
 
     @property
     def draws(self) -> bool:
-        """Whether any joint is drawn; otherwise all starts are the same."""
+        """Whether any joint is drawn at random; otherwise all starts are equal."""
         return self._drawn.size > 0
 
     def next(self, q0: Array, *, target: int, number: int) -> Array:
-        """Start number 1, 2, … for the present targets, whose own number is `target`; ask for number 1 first.
+        """Start `number` (1, 2, …) for the current targets, whose index is `target`; the first call must be number 1.
 
-        What is not drawn stays as in `q0`.
+        Joints that are not drawn keep their values in `q0`.
         """
         if number > NEAREST:
             return random_start(
@@ -77,8 +77,8 @@ class Starts:
     def _rank(self, q0: Array) -> None:
         """Order the table by squared distance from the targets.
 
-        A radian counts as in `Linearization.distance`, and its square as 2 − 2 cos, so that the score is linear in the
-        numbers wanted. The direction towards a point to look at is not linear, and is left out.
+        A radian counts as in `Linearization.distance`, and a squared angle as 2 − 2 cos, so that the score is linear in
+        the numbers of the targets. The direction towards a point (`at`) is not linear, and is left out.
         """
         if self._table is None or (self._table[0, self._still] != q0[self._still]).any():
             self._make(q0)
@@ -118,7 +118,7 @@ def _wanted(target: Target) -> Array:
 
 
 def _seen(rows: Rows, of_a_radian: float) -> tuple[float, Array]:
-    """What one target adds to a score: a number, and the factors on `_wanted`; `of_a_radian` in [m²/rad²]."""
+    """One target's part of a score: a constant, and the factors on `_wanted`; `of_a_radian` in [m²/rad²]."""
     target, weight = rows.target, rows.term.weight**2
     p, R = rows.seen_from_reference()
     length, parts = 0.0, [np.zeros(0)]
@@ -137,7 +137,7 @@ def _is_drawn(joint: Joint, problem: Problem) -> bool:
 
 
 def uniform(seed: int, target: int, attempt: int, index: int) -> float:
-    """The number in [0, 1) that belongs to these four, by SplitMix64 (Steele, Lea and Flood 2014)."""
+    """The random number in [0, 1) for these four keys, by SplitMix64 (Steele, Lea and Flood 2014)."""
     state = seed & _MASK
     for key in (target, attempt, index):
         state = _mix((state + _GOLDEN * (key + 1)) & _MASK)
@@ -145,9 +145,10 @@ def uniform(seed: int, target: int, attempt: int, index: int) -> float:
 
 
 def random_start(problem: Problem, limits: Limits, q0: Array, *, seed: int, target: int, attempt: int) -> Array:
-    """A configuration with every free one-axis joint drawn at random and all others as in `q0`.
+    """A configuration (nq,) with every free one-axis joint drawn at random and all others as in `q0`.
 
-    Angles are uniform in `Joint.range_to_draw_from`; slides without limits are drawn about `q0`.
+    Joint values are uniform in `Joint.range_to_draw_from`; for prismatic joints without limits, this range is around
+    `q0`.
     """
     q = q0.copy()
     for joint in problem.robot.joints:

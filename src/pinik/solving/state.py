@@ -1,4 +1,4 @@
-"""Where a run stands, and why it ended."""
+"""The state of a run after one iteration, and the reasons why it ends."""
 
 from __future__ import annotations
 
@@ -16,12 +16,12 @@ Array = NDArray[np.float64]
 
 
 class Status(Enum):
-    """Why a solve ended; `str()` gives the words."""
+    """The reason why a solve ended; `str()` describes it."""
 
     CONVERGED = "every target is within tolerance"
-    STALLED = "progress stopped short of the target"
-    MAX_ITERATIONS = "the iterations ran out"
-    TIME_LIMIT = "the time ran out"
+    STALLED = "progress stopped before the target was reached"
+    MAX_ITERATIONS = "the maximum number of iterations was reached"
+    TIME_LIMIT = "the time limit was reached"
     UNREACHABLE = "the target lies outside the chain's reach"
 
     def __str__(self) -> str:
@@ -33,12 +33,12 @@ class State(NamedTuple):
 
     Attributes:
         q: The configuration (nq,), read-only.
-        iteration: 0 at the start, then one more for each step (for CCD, each sweep).
-        joint_updates: Single joints updated so far, for sweeping methods.
-        errors: Each target's error.
-        residual: Norm of the weighted residual, which the steps work on [m].
-        attempt: The number of the run, from 0; where every attempt failed, the last run follows the best of them on.
-        status: None while running; the reason in a run's last state.
+        iteration: The number of steps (for CCD, sweeps) so far; 0 at the start.
+        joint_updates: The number of single-joint updates so far, for sweeping methods.
+        errors: The error of each target.
+        residual: Norm of the weighted residual that the steps reduce [m].
+        attempt: The number of the run, from 0; if every attempt failed, a last run continues the best of them.
+        status: None during the run; the reason why it ended in its last state.
     """
 
     q: Array
@@ -51,10 +51,10 @@ class State(NamedTuple):
 
     @property
     def position_error(self) -> float | None:
-        """The largest of the targets' [m]."""
+        """The largest position error of any target [m]; None if no target has a position."""
         return largest_of(self.errors).position
 
     @property
     def orientation_error(self) -> float | None:
-        """The largest of the targets' [rad]."""
+        """The largest orientation error of any target [rad]; None if no target has an orientation."""
         return largest_of(self.errors).orientation

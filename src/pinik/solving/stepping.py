@@ -1,4 +1,4 @@
-"""One step of any solver: clamped, scaled, and along the limits where it meets them."""
+"""One step of any solver: clamped, scaled and kept inside the joint limits."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ Array = NDArray[np.float64]
 def advance(
     solver: Solver, kinematics: Kinematics, limits: Limits, at: Linearization, tolerance: Tolerance, scale: float = 1.0
 ) -> tuple[Array, int]:
-    """(the next configuration, the number of joints updated singly); `scale` shortens a Jacobian method's step."""
+    """(the next configuration, the number of single-joint updates); `scale` shortens a Jacobian method's step."""
     if isinstance(solver, SweepingSolver):
         q, updates = solver.sweep(at.q, kinematics, limits, tolerance)
         if np.shape(q) != at.q.shape:
@@ -41,7 +41,7 @@ def advance(
 
 
 def _stepped(solver: JacobianSolver, kinematics: Kinematics, at: Linearization, scale: float) -> Array:
-    """The configuration after the step, clamped and scaled. Joints that are not free keep their last bit."""
+    """The configuration after the step, clamped and scaled. Joints that are not free keep their exact values."""
     problem = kinematics.problem
     roots = solver.roots(problem)
     dq = solver.step(at if roots is None else at._replace(J=at.J * roots), kinematics)
@@ -50,7 +50,7 @@ def _stepped(solver: JacobianSolver, kinematics: Kinematics, at: Linearization, 
     dq = dq * (at.free if roots is None else at.free * roots)
     length = math.sqrt(dq.dot(dq))
     if not math.isfinite(length):
-        return at.q  # no step: the loop will report a stall
+        return at.q  # without a step, the run ends as stalled
     if length > solver.max_step:
         largest = float(np.abs(dq).max())
         if largest > solver.max_step:
@@ -67,10 +67,10 @@ def _stepped(solver: JacobianSolver, kinematics: Kinematics, at: Linearization, 
 def _step_along_limits(
     q: Array, solver: JacobianSolver, kinematics: Kinematics, limits: Limits, at: Linearization, scale: float
 ) -> Array:
-    """Take the step again after the first try `q` left the limits.
+    """Compute the step again after a first step to `q` left the limits.
 
-    Joints that are at a limit and would move beyond it hold still and leave their share of the step to the others. This
-    repeats until no joint pushes against a limit; what still lies outside is clipped.
+    Joints that are at a limit and would cross it are held fixed, and the step is computed for the other joints. This
+    repeats until no further joint would cross a limit; the result is then clipped.
     """
     held = np.zeros_like(at.free)
     while True:

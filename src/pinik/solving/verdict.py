@@ -1,4 +1,4 @@
-"""The verdict on a configuration: plain forward kinematics has the last word, whatever the solver thought."""
+"""The verdict on a configuration, by plain forward kinematics that is independent of the solvers."""
 
 from __future__ import annotations
 
@@ -20,17 +20,17 @@ __all__ = ["Verdict", "all_within", "judge", "measure_errors", "measure_position
 
 Array = NDArray[np.float64]
 
-# As a part of the chain's length: how far from the nearest point an exact method may come to rest.
+# The largest distance from the nearest point at which an exact method may stop, relative to the chain's length.
 _EXACT = 1e-5
 
 
 class Verdict(NamedTuple):
-    """What a configuration is worth.
+    """The verdict on a configuration.
 
     Attributes:
-        status: Why the solve ended.
-        errors: Each target's error, by plain forward kinematics.
-        proof: Why a target is out of reach, where one provably is.
+        status: The reason why the solve ended.
+        errors: The error of each target, by plain forward kinematics.
+        proof: The proof that a target is out of reach, if there is one.
     """
 
     status: Status
@@ -39,20 +39,20 @@ class Verdict(NamedTuple):
 
 
 def judge(question: Question, targets: Sequence[Target], q: Array, ended: Status) -> Verdict:
-    """The verdict on `q` (nq,).
+    """Judge a configuration.
 
     Args:
-        question: What was asked, and how.
-        targets: Where the frames should be.
-        q: The configuration.
-        ended: Why the solver stopped.
+        question: The problem and the options.
+        targets: The targets.
+        q: The configuration (nq,).
+        ended: The reason why the solver stopped.
     """
     errors = measure_errors(question.robot, targets, q)
     return verdict(question, targets, errors, ended)
 
 
 def verdict(question: Question, targets: Sequence[Target], errors: tuple[TargetError, ...], ended: Status) -> Verdict:
-    """The verdict for errors that were measured already."""
+    """The verdict for errors that are already measured."""
     if all_within(errors, question):
         return Verdict(Status.CONVERGED, errors, None)
     proof = shortfall(targets, question.bounds, question.options.tolerance.position)
@@ -68,21 +68,21 @@ def all_within(errors: Sequence[TargetError], question: Question) -> bool:
 
 
 def _is_nearest(question: Question, errors: Sequence[TargetError]) -> bool:
-    """Whether a run that stalled is as near as can be.
+    """Whether a stalled run has found the nearest reachable point, so that the target is out of reach.
 
-    So it is if its method comes to rest at the nearest point alone, and it missed by more than it may be off by.
+    This is so if its method is exact and the error exceeds the tolerance plus the inaccuracy of the method.
     """
     least = question.options.tolerance.position + _EXACT * question.problem.size_of_chain
     return question.solver.exact and any(error.position is not None and error.position > least for error in errors)
 
 
 def measure_errors(robot: RobotModel, targets: Sequence[Target], q: Array) -> tuple[TargetError, ...]:
-    """Each target's error at `q`, by plain forward kinematics and nothing that the solvers use."""
+    """The error of each target at `q`, by plain forward kinematics, without any code of the solvers."""
     return tuple(_measure(robot, target, q) for target in targets)
 
 
 def measure_positions(robot: RobotModel, target: Target, q: Array) -> Array:
-    """Where a target's frame, or the tool in it, is at many configurations (N, nq): (N, 3) [m]."""
+    """The positions (N, 3) [m] of a target's frame, or of its tool, at many configurations (N, nq)."""
     model, data, frame = robot.model, robot.data, robot.frame_id(target.frame)
     reference = None if target.relative_to is None else robot.frame_id(target.relative_to)
     tool = target.tool

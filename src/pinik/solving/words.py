@@ -1,4 +1,4 @@
-"""The keywords that fronts take: those of a target, the options, and the method's own parameters, told apart."""
+"""The keywords of `solve` and its relatives, sorted into targets, options and the method's parameters."""
 
 from __future__ import annotations
 
@@ -20,19 +20,19 @@ PLACE_WORDS = ("position", *TARGET_KEYWORDS)
 """The keywords of a target besides its frame."""
 
 UNWEIGHTED = 1.0
-"""The weight of a target that is given none; this very object tells that none was given."""
+"""The default weight of a target; this very object shows that no weight was given."""
 
 
 def check_words(method: Method, words: Collection[str], options: Sequence[str] = OPTION_NAMES) -> None:
-    """Check that all words left over are parameters of the method.
+    """Check that all remaining keywords are parameters of the method.
 
     Args:
         method: The method.
-        words: What was given besides targets and options.
-        options: The options of this front.
+        words: The keywords given in addition to those of targets and options.
+        options: The options of the calling function.
 
     Raises:
-        UnknownNameError: One is not; the error lists what it resembles among all words that the front takes.
+        UnknownNameError: A keyword is not a parameter of the method; the error suggests similar keywords.
     """
     if not words:
         return
@@ -53,11 +53,11 @@ def check_words(method: Method, words: Collection[str], options: Sequence[str] =
 def asked_targets(
     targets: str | Target | Iterable[Target], wanted: Wanted, method: Method, parameters: Mapping[str, Any]
 ) -> tuple[Target, ...]:
-    """The targets that are meant: one made from a frame's name and the target's keywords, or those given.
+    """The targets of a call: one made from a frame's name and the target's keywords, or the Target objects as given.
 
     Raises:
-        UnknownNameError: A keyword that nobody knows.
-        InputError: The target is faulty; or there are Target objects and keywords of a target besides.
+        UnknownNameError: There is no such keyword.
+        InputError: The target is faulty, or a target's keywords were given together with Target objects.
     """
     check_words(method, parameters)
     if isinstance(targets, str):
@@ -66,5 +66,5 @@ def asked_targets(
         word for word, value in zip(PLACE_WORDS, wanted, strict=True) if value is not None and value is not UNWEIGHTED
     ]
     if given:
-        raise InputError(f"{given[0]}= goes with the name of a frame; with Target objects it belongs in Target(...)")
+        raise InputError(f"{given[0]}= needs the name of a frame; with Target objects, pass it to Target(...)")
     return as_targets(targets)

@@ -44,7 +44,7 @@ def test_with_a_second_ball_it_waits_and_says_why(open_panel):
     desk.click("step")
     desk.expect("status-1").to_have_text("cannot do this")
     desk.expect("label-1").to_contain_text("cannot do this")
-    desk.expect("message-1").to_have_text("waiting: two_bone takes one target; got 2")
+    desk.expect("message-1").to_have_text("waiting: two_bone takes only one target; got 2")
     assert offered(desk, 1) == FITTING
     desk.choose("ball-mode-1", "off")
     desk.click("step")
@@ -55,7 +55,7 @@ def test_with_another_robot_it_makes_room_and_leaves_the_menu(open_panel):
     desk = open_panel("two_link", ("ccd", "two_bone"))
     desk.choose("robot", "arm")
     desk.until(lambda s: s["robot"] == "arm")
-    desk.expect(desk.toasts).to_contain_text("instance 2 goes on with dls: two_bone cannot chase a ball here")
+    desk.expect(desk.toasts).to_contain_text("instance 2 now uses dls: two_bone cannot chase a ball here")
     desk.expect("method-1").to_have_value("dls")
     assert offered(desk, 0) == offered(desk, 1) == list(METHODS)
     desk.choose("robot", "two_link")

@@ -124,7 +124,7 @@ def test_nothing_asked_for_is_idle_and_the_next_target_counts_from_nothing(arm):
     q = one.q
     one.step([])
     assert (one.status, one.last, one.counted, one.orientation_error) == ("IDLE", None, False, None)
-    assert one.verdict() == ("IDLE", "nothing is asked for", None, None, ())
+    assert one.verdict() == ("IDLE", "there are no targets", None, None, ())
     assert one.q is q
     one.step([target])
     assert one.last.iterations == 2
@@ -132,11 +132,11 @@ def test_nothing_asked_for_is_idle_and_the_next_target_counts_from_nothing(arm):
 
 def test_before_the_first_step_it_says_so(arm):
     one = instance(arm)
-    assert one.verdict() == ("IDLE", "no step was made yet", None, None, ())
+    assert one.verdict() == ("IDLE", "no step has been taken yet", None, None, ())
     one.step([pinik.Target("tip", FAR)])
     assert one.verdict().status == "UNREACHABLE"
     one.settings = StepSettings(limits=False)
-    assert (one.status, one.verdict().message) == ("IDLE", "no step was made yet")
+    assert (one.status, one.verdict().message) == ("IDLE", "no step has been taken yet")
 
 
 def test_another_solver_empties_the_statistics_another_chase_does_not(arm):
@@ -337,7 +337,7 @@ def test_a_solver_that_refuses_a_question_waits_for_another(arm):
     one.step([tip, bone])
     assert (one.status, one.q is q) == ("REFUSED", True)
     one.step([])
-    assert one.verdict().message == "nothing is asked for"
+    assert one.verdict().message == "there are no targets"
     one.step([tip])
     assert one.status == "CONVERGED"
 

@@ -120,7 +120,7 @@ def test_while_it_cannot_do_what_is_asked_it_waits_and_says_why(two_link):
     shown.add_ball("link2")
     steps(shown, 5)
     one, other = shown.instances[1], shown.instances[0]
-    assert one.verdict() == ("REFUSED", "waiting: two_bone takes one target; got 2", None, None, ())
+    assert one.verdict() == ("REFUSED", "waiting: two_bone takes only one target; got 2", None, None, ())
     assert (one.status, one.counted, one.last) == ("REFUSED", False, None)
     assert changed(shown) == before
     assert other.status != "REFUSED"
@@ -133,7 +133,7 @@ def test_while_it_cannot_do_what_is_asked_it_waits_and_says_why(two_link):
     shown.orient_ball(0, True, [0.0, 0.0, 0.5])
     before = changed(shown)
     steps(shown, 5)
-    assert "a position alone; target 'tip' asks for an orientation" in one.verdict().message
+    assert "only a position; target 'tip' has an orientation" in one.verdict().message
     assert changed(shown) == before
     shown.orient_ball(0, False, [0.0, 0.0, 0.0])
     shown.step()
@@ -181,7 +181,7 @@ def test_with_a_robot_that_it_cannot_move_it_makes_room_and_says_so(two_link, ar
     there = shown.with_robot(arm)
     assert [one.solver.name for one in there.instances] == ["ccd", "jt", "dls", "pinv"]
     (note,) = there.notes
-    assert note.startswith(f"instance 4 goes on with pinv: two_bone cannot chase a ball here: frame 'tip' {ALONE}: 12")
+    assert note.startswith(f"instance 4 now uses pinv: two_bone cannot chase a ball here: frame 'tip' {ALONE}: 12")
     steps(there, 2)
     assert all(one.status == "CONVERGED" for one in there.instances)
     back = there.with_robot(two_link)

@@ -421,9 +421,7 @@ def test_tabs_are_told_why_a_method_makes_room_for_another(two_link):
     stage.play(tab, ticks=1)
     for each in (tab, other):
         (error,) = each.of("error")
-        assert error["message"].startswith(
-            "instance 2 goes on with dls: two_bone cannot chase a ball here: frame 'tip'"
-        )
+        assert error["message"].startswith("instance 2 now uses dls: two_bone cannot chase a ball here: frame 'tip'")
     state = tab.last("state")
     assert ([one["method"] for one in state["instances"]], "two_bone" in state["methods"]) == (["ccd", "dls"], False)
 

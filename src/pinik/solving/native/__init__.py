@@ -1,1 +1,1 @@
-"""The bridge between pinik and its compiled engine."""
+"""The interface between pinik and its compiled engine."""

@@ -1,4 +1,4 @@
-"""Targets as the rows of numbers that the compiled engine reads, and back."""
+"""The conversion of targets into rows of numbers for the compiled engine, and back."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ Array = NDArray[np.float64]
 def goals_of(targets: tuple[Target, ...]) -> Array:
     """Encode targets as rows (n, 18): position (3), rotation matrix by rows (9), direction (3), point to look at (3).
 
-    What a target does not constrain is zero.
+    Numbers that a target does not constrain are zero.
     """
     goals = np.zeros((len(targets), 18))
     for row, target in zip(goals, targets, strict=True):

@@ -1,4 +1,4 @@
-"""Robots, problems and solvers handed over to the compiled engine."""
+"""The conversion of robots, problems and solvers for the compiled engine."""
 
 from __future__ import annotations
 
@@ -27,13 +27,13 @@ __all__ = ["make_engine"]
 if TYPE_CHECKING:
     from ..._native import Engine
 
-_MOST = 2**62  # restarts and iterations beyond it are not told apart; the engine counts in 64 bits
+_MOST = 2**62  # the engine counts restarts and iterations in 64 bits; larger limits are reduced to this
 _IDENTITY = pinocchio.SE3.Identity()
 _ROBOTS: WeakKeyDictionary[RobotModel, Any] = WeakKeyDictionary()
 
 
 def make_engine(question: Question) -> Engine:
-    """The compiled engine for a question."""
+    """Build the compiled engine for a question."""
     module = load()
     options, problem = question.options, question.problem
     robot = _robot(problem.robot)
@@ -53,7 +53,7 @@ def make_engine(question: Question) -> Engine:
 
 
 def _robot(robot: RobotModel) -> Any:
-    """The engine's copy of a robot, which is built once and then kept."""
+    """The engine's copy of a robot, which is built once and then cached."""
     if robot not in _ROBOTS:
         _ROBOTS[robot] = _make_robot(robot)
     return _ROBOTS[robot]

@@ -1,4 +1,4 @@
-"""The numbers of the algorithm that both engines use, handed over to the compiled engine."""
+"""The numerical constants that both engines share, as passed to the compiled engine."""
 
 from __future__ import annotations
 

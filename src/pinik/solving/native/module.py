@@ -17,8 +17,8 @@ from ...solvers.transpose import JacobianTranspose
 __all__ = ["ABI", "METHODS", "load", "why_not"]
 
 ABI = "30fe9f972285d79a"
-"""Identifies the signatures that this package expects of the module: the digest of its stub, which the module holds
-as well (src/native/bindings/abi.hpp)."""
+"""The digest of the module's stub, which identifies its signatures; the module contains the same digest
+(src/native/bindings/abi.hpp)."""
 
 METHODS: tuple[type[Solver], ...] = (CCD, JacobianTranspose, PseudoInverse, DampedLeastSquares)
 """The solvers that the compiled engine implements; a class derived from one of them runs in Python."""

@@ -1,4 +1,4 @@
-"""What the compiled engine's solves came to, as Python objects."""
+"""The outcomes of the compiled engine as Python objects."""
 
 from __future__ import annotations
 
@@ -52,7 +52,7 @@ class NativeOutcome:
     """An `attempts.Outcome` of the compiled engine: each attribute is converted to Python when it is read.
 
     Attributes:
-        pattern: The targets of the prepared question, whose numbers this solve replaced.
+        pattern: The targets of the prepared problem, whose numbers this solve replaced.
     """
 
     __slots__ = ("_answer", "pattern")

@@ -1,4 +1,4 @@
-"""A solver's parameters as the page's sliders and menus need them."""
+"""A solver's parameters in the form that the page's sliders and menus need."""
 
 from __future__ import annotations
 
@@ -11,12 +11,12 @@ __all__ = ["changed_parameters", "describe_parameters"]
 
 
 def describe_parameters(solver: Solver) -> list[dict[str, Any]]:
-    """Each parameter with its value, default, range, unit and help; docs/live-protocol.md lists the fields."""
+    """Describe each parameter: value, default, range, unit and help. docs/live-protocol.md lists the fields."""
     return [_described(own, getattr(solver, own.name)) for own in parameters_of(type(solver))]
 
 
 def changed_parameters(solver: Solver) -> dict[str, Any]:
-    """Name → value of the parameters that differ from their defaults, as JSON has them."""
+    """Name → value of the parameters that differ from their defaults, in their JSON form."""
     return {p["name"]: p["value"] for p in describe_parameters(solver) if p["value"] != p["default"]}
 
 

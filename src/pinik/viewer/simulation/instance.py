@@ -1,4 +1,4 @@
-"""One robot with one solver in it, which chases the balls step after step."""
+"""One robot with one solver, which chases the balls step by step."""
 
 from __future__ import annotations
 
@@ -31,8 +31,8 @@ __all__ = ["STATUSES", "Instance", "Standing", "StepSettings"]
 Array = NDArray[np.float64]
 
 STATUSES = ("IDLE", *(status.name for status in Status), "FAILED", "REFUSED")
-"""How a step may end: as a solve, or with nothing asked for, with a solver of one's own that raised, or with a question
-that the method cannot answer."""
+"""How a step may end: with the status of a solve; IDLE without targets; FAILED if a custom solver raised an exception;
+REFUSED if the method cannot solve for these targets."""
 
 
 @dataclass(frozen=True)
@@ -40,10 +40,10 @@ class StepSettings:
     """How a step goes, the same for all instances of a session.
 
     Attributes:
-        limits: Whether joint limits hold.
-        tolerance: What counts as reached.
-        until_reached: Whether a step goes on until the targets are reached or the method gives up.
-        at_most: Iterations of one step at most, where it does not.
+        limits: Whether the joint limits are enforced.
+        tolerance: The errors that count as reached.
+        until_reached: Whether a step runs until the targets are reached or the method gives up.
+        at_most: The maximum number of iterations per step if `until_reached` is False.
     """
 
     limits: bool = True
@@ -53,14 +53,15 @@ class StepSettings:
 
 
 class Standing(NamedTuple):
-    """Where an instance stands, in words.
+    """The present result of an instance.
 
     Attributes:
-        status: One of `STATUSES`; UNREACHABLE only where that is proved.
-        message: One sentence.
-        position_error: The largest of the targets' [m], by plain forward kinematics; None where none is asked for.
-        orientation_error: The same [rad].
-        active_limits: Names of the joints that sit at a limit and could move a target.
+        status: One of `STATUSES`; UNREACHABLE only if there is a proof.
+        message: An explanation in one sentence.
+        position_error: The largest position error of any target [m], by plain forward kinematics; None if no target
+            has a position.
+        orientation_error: The largest orientation error [rad], likewise.
+        active_limits: Names of the joints that are at a limit and could move a target frame.
     """
 
     status: str
@@ -71,7 +72,7 @@ class Standing(NamedTuple):
 
 
 class _RefusedError(Exception):
-    """The method cannot do what is asked; why, in words."""
+    """The method cannot solve for these targets; the message says why."""
 
 
 class Instance:
@@ -80,10 +81,10 @@ class Instance:
     Attributes:
         robot: The robot.
         q: Its configuration (nq,).
-        statistics: Of its last steps.
-        last: The figures of the last step; None before the first, and while nothing is asked for.
+        statistics: Statistics of its last steps.
+        last: The figures of the last step; None before the first step and while there are no targets.
         status: One of `STATUSES`.
-        counted: Whether the last step had something to do, and so counts in the statistics.
+        counted: Whether the last step had work to do, and so counts in the statistics.
     """
 
     def __init__(
@@ -124,12 +125,12 @@ class Instance:
         self._forget_run()
 
     def put(self, q: Array) -> None:
-        """Start again from `q` (nq,), with nothing in the statistics."""
+        """Start again from `q` (nq,), with empty statistics."""
         self.q = q
         self.statistics.clear()
         self._forget_run()
 
-    def _forget_run(self, why: str = "no step was made yet") -> None:
+    def _forget_run(self, why: str = "no step has been taken yet") -> None:
         self.last: StepFigures | None = None
         self.status = "IDLE"
         self.counted = False
@@ -141,18 +142,18 @@ class Instance:
         self._trouble = ""
 
     def step(self, targets: Sequence[Target], seconds: float = math.inf) -> None:
-        """Chase the targets for one simulation step, for about `seconds` at most.
+        """Follow the targets for one simulation step, for about `seconds` at most.
 
-        A step that begins with every target reached, and none moved, has nothing to do and does not count; nor does
-        one whose question the method refuses.
+        A step does not count if all targets are reached already and none has moved, or if the method cannot solve for
+        these targets.
         """
         asked = tuple(targets)
         if not asked:
-            self._forget_run("nothing is asked for")
+            self._forget_run("there are no targets")
             return
         moved = len(asked) != len(self._targets) or any(a is not b for a, b in zip(asked, self._targets, strict=True))
         if moved and [target.shape for target in asked] != [target.shape for target in self._targets]:
-            self._forget_run()  # another kind of question, which the method may refuse, or no longer
+            self._forget_run()  # the kinds of the targets changed, so whether the method can solve for them may change
         self._targets = asked
         if self.status == "REFUSED":
             return
@@ -166,7 +167,7 @@ class Instance:
         except _RefusedError as refusal:
             self.status, self.counted, self._trouble = "REFUSED", False, f"waiting: {refusal}"
             return
-        except Exception as error:  # a solver of the user's own may raise whatever it likes
+        except Exception as error:  # a custom solver may raise any exception
             self._fail(error, self._clock() - began)
             return
         spent = self._clock() - began
@@ -205,7 +206,7 @@ class Instance:
         return run(self._question, kinematics, limits.clip(limits.wrap(self.q)), Pace(most))
 
     def _fail(self, error: Exception, spent: float) -> None:
-        """A step that the solver did not survive counts as one that missed."""
+        """Count a step in which the solver raised an exception as a miss."""
         self._forget_run()
         self._trouble = f"the solver failed: {type(error).__name__}: {error}"
         self.last = StepFigures(spent, 0, 0, reached=False, error=None, jump=0.0)
@@ -214,15 +215,15 @@ class Instance:
 
     @property
     def orientation_error(self) -> float | None:
-        """The largest of the targets' at the last step [rad]."""
+        """The largest orientation error of any target at the last step [rad]."""
         return None if self._state is None else largest_of(self._state.errors).orientation
 
     def limit_sides(self) -> dict[str, str]:
-        """Joint name → "lower", "upper" or "both", for joints at a limit or beyond one, whether limits hold or not."""
+        """Joint name → "lower", "upper" or "both", for joints at or beyond a limit, even if limits are not enforced."""
         return self._all_limits.active(self.q)
 
     def verdict(self) -> Standing:
-        """Where it stands, with the errors recomputed by plain forward kinematics, and why a target is missed."""
+        """The present result: errors recomputed by plain forward kinematics, and the reason if a target is missed."""
         if self._trouble:
             return Standing(self.status, self._trouble, None, None, ())
         if self._question is None or not self._targets:

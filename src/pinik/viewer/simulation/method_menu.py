@@ -1,4 +1,4 @@
-"""Which methods the balls leave to choose from, and what becomes of a method when the robot changes."""
+"""The methods that can chase the balls, and their replacements when the robot changes."""
 
 from __future__ import annotations
 
@@ -15,10 +15,10 @@ __all__ = ["check_balls", "fitting", "offered"]
 
 
 def check_balls(solver: Solver, robot: Robot, frames: Sequence[str]) -> None:
-    """See that a method can chase a ball on one of these frames, if it is the only one and asks for a position alone.
+    """Check that a method can chase a ball on at least one of these frames, as its only target and by position alone.
 
     Raises:
-        InputError: It cannot; the message says why not the first.
+        InputError: It can chase none; the message gives the reason for the first frame.
     """
     refusals = []
     for frame in frames:
@@ -31,7 +31,7 @@ def check_balls(solver: Solver, robot: Robot, frames: Sequence[str]) -> None:
 
 
 def offered(methods: Mapping[str, type[Solver]], robot: Robot, frames: Sequence[str]) -> list[str]:
-    """Names of the methods that can: closed forms do not know every robot."""
+    """The names of the methods that can chase a ball on one of these frames; closed forms suit only some robots."""
     return [name for name, method in methods.items() if name not in CLOSED_FORMS or _can(method.make(), robot, frames)]
 
 
@@ -46,10 +46,13 @@ def _can(solver: Solver, robot: Robot, frames: Sequence[str]) -> bool:
 def fitting(
     solvers: Iterable[Solver], methods: Mapping[str, type[Solver]], robot: Robot, frames: Sequence[str]
 ) -> tuple[list[Solver], list[str]]:
-    """The solvers for another robot, and what was done to them, in words.
+    """Adapt solvers to another robot.
 
-    Parameters lose what they say of joints that the robot does not have. A method that cannot chase a ball there makes
-    room for the first that can, and is not among the others if there is such a one.
+    Parameter entries for joints that the robot does not have are dropped. A method that cannot chase a ball on this
+    robot is replaced by the first one that can, preferably one that is not in use yet.
+
+    Returns:
+        The solvers, and a note about each replacement.
     """
     fit, notes = [_with_joints_of(robot, solver) for solver in solvers], []
     for number, solver in enumerate(fit):
@@ -59,7 +62,7 @@ def fitting(
             taken = [other.name for other in fit]
             name = min(offered(methods, robot, frames), key=lambda name: name in taken)
             fit[number] = make_solver(methods[name])
-            notes.append(f"instance {number + 1} goes on with {name}: {error}")
+            notes.append(f"instance {number + 1} now uses {name}: {error}")
     return fit, notes
 
 

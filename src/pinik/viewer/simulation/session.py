@@ -1,4 +1,4 @@
-"""The live view's simulation: instances of one robot that chase the same balls; no socket, no drawing."""
+"""The live view's simulation: instances of one robot that chase the same balls."""
 
 from __future__ import annotations
 
@@ -29,30 +29,30 @@ __all__ = ["MOST_BALLS", "STEPS_PER_SECOND", "VIEWS", "Methods", "Session"]
 STEPS_PER_SECOND = 60
 VIEWS = (1, 2, 4)
 MOST_BALLS = 12
-# The part of a step's time that the solvers may take; the rest is for drawing and for the people's messages.
+# The share of a step's time that the solvers may take; the rest is for drawing and for messages from the page.
 _SOLVERS_SHARE = 0.7
 _ON_THE_GROUND = 0.12  # [m] above the lowest frame
 _DEFAULT_METHODS = ("ccd", "jt", "pinv", "dls")
 
 
 Methods = Method | Iterable[Method]
-"""One method or several, by name (also "ccd,dls"), class or instance."""
+"""One method or several, as names (also "ccd,dls"), classes or instances."""
 
 
 class Session:
-    """One, two or four instances of a robot, the balls they chase, and how the balls move.
+    """One, two or four instances of a robot, the balls that they chase, and the motion of the balls.
 
-    There are always four instances; `view` says how many of them step and are seen.
+    There are always four instances; `view` is the number of them that step and are visible.
 
     Attributes:
         robot: The robot.
-        methods: Short name → class, of every method that there is.
-        instances: All four.
+        methods: Short name → class, for every available method.
+        instances: All four instances.
         balls: The balls, each with the frame that chases it.
-        motion: How balls move by themselves.
-        running: Whether `tick` steps.
-        steps: How many were made since the last reset.
-        notes: What another robot has changed besides, in words.
+        motion: The automatic motion of the balls.
+        running: Whether `tick` takes a step.
+        steps: The number of steps since the last reset.
+        notes: What else changed with the last change of robot, in words.
     """
 
     def __init__(
@@ -64,19 +64,20 @@ class Session:
         seed: int = 0,
         clock: Callable[[], float] = time.perf_counter,
     ) -> None:
-        """Set the scene.
+        """Create the instances and the balls.
 
         Args:
             robot: The robot.
-            methods: One to four methods, by name, class or instance; a view of more instances than that takes the
-                others in the order of `pinik.SOLVERS`, then of `pinik.CLOSED_FORMS`.
-            view: How many instances are seen: 1, 2 or 4; enough for `methods` when None.
-            seed: Of the random places.
-            clock: Seconds that pass, for the statistics and for steps that would take too long.
+            methods: One to four methods, as names, classes or instances. Further instances use the remaining methods,
+                in the order of `pinik.SOLVERS`, then of `pinik.CLOSED_FORMS`.
+            view: The number of visible instances: 1, 2 or 4; enough for `methods` when None.
+            seed: The seed of the random positions.
+            clock: A function that returns the time in seconds, for the statistics and for the time limit of a step.
 
         Raises:
-            UnknownNameError: No such method, or a joint in its parameters that the robot does not have.
-            InputError: More than four methods, none, one that cannot chase any ball of this robot, or another view.
+            UnknownNameError: There is no such method, or its parameters name a joint that the robot does not have.
+            InputError: There are no methods or more than four, one of them cannot chase any ball of this robot, or
+                the view is not 1, 2 or 4.
         """
         if isinstance(methods, (str, type, Solver)):
             methods = methods.split(",") if isinstance(methods, str) else [methods]
@@ -89,7 +90,7 @@ class Session:
         for made in solvers:
             known = self.methods.setdefault(made.name, type(made))
             if known is not type(made) or "," in made.name:
-                raise InputError(f"methods have names of their own, without a comma; {made.name!r} is none")
+                raise InputError(f"a method's name must be unique and must not contain a comma; got {made.name!r}")
         frames = principal_frames(robot)
         for made in solvers:
             check_balls(made, robot, frames)
@@ -116,7 +117,7 @@ class Session:
         self._refresh_statistics()
 
     def with_robot(self, robot: Robot) -> Session:
-        """A session with another robot and the same settings, as far as they fit that robot."""
+        """A session with another robot and the same settings, as far as they apply to that robot."""
         solvers, notes = fitting(
             [instance.solver for instance in self.instances], self.methods, robot, principal_frames(robot)
         )
@@ -131,29 +132,29 @@ class Session:
 
     @property
     def seen(self) -> list[Instance]:
-        """The instances that step and are seen."""
+        """The instances that step and are visible."""
         return self.instances[: self.view]
 
     @property
     def offered(self) -> list[str]:
         """Names of the methods that can chase one of the balls."""
-        if self._offered[0] != self._frames:  # compiling a question takes milliseconds, and a state tells this
+        if self._offered[0] != self._frames:  # kept: every state message needs it, and a check takes milliseconds
             self._offered = self._frames, offered(self.methods, self.robot, self._frames)
         return self._offered[1]
 
     @property
     def summaries(self) -> list[Summary]:
-        """The statistics of those, as they stood at the last full second."""
+        """The statistics of the visible instances, refreshed once per second."""
         return self._summaries[: self.view]
 
     def tick(self) -> bool:
-        """One step while it runs; whether there was one."""
+        """Take a step if the session is running; return whether it is."""
         if self.running:
             self.step()
         return self.running
 
     def step(self) -> None:
-        """Move the balls on by a 60th of a second, and let every instance that is seen chase them."""
+        """Advance the balls by 1/60 s, and let every visible instance chase them."""
         self.motion.advance(self.balls, 1.0 / STEPS_PER_SECOND)
         targets = [ball.target for ball in self.balls if ball.mode != "off"]
         share = _SOLVERS_SHARE / STEPS_PER_SECOND / self.view
@@ -164,7 +165,7 @@ class Session:
             self._refresh_statistics()
 
     def reset(self) -> None:
-        """Robots and balls back where they began, the statistics emptied."""
+        """Return the robots and balls to where they began, and clear the statistics."""
         for instance in self.instances:
             instance.put(self._home)
         for ball in self.balls:
@@ -174,33 +175,33 @@ class Session:
         self._refresh_statistics()
 
     def set_view(self, count: int) -> None:
-        """Let 1, 2 or 4 instances be seen."""
+        """Show 1, 2 or 4 instances."""
         if type(count) is not int or count not in VIEWS:
-            raise InputError(f"a view has 1, 2 or 4 instances; got {count!r}")
+            raise InputError(f"a view must have 1, 2 or 4 instances; got {count!r}")
         self.view = count
 
     def set_method(self, index: int, method: str, **parameters: Any) -> None:
-        """Another method in an instance, by its short name; its parameters are the defaults but for those given.
+        """Change the method of an instance, by short name; parameters that are not given have their defaults.
 
         Raises:
-            UnknownNameError: No such method, or parameter of it.
-            InputError: A value out of its range, a method that cannot chase any of the balls, or no such instance.
+            UnknownNameError: There is no such method, or it has no such parameter.
+            InputError: A value is out of range, the method cannot chase any of the balls, or there is no such instance.
         """
         if method not in self.methods:
             raise UnknownNameError("method", method, self.methods)
         try:
             solver = make_solver(self.methods[method], **parameters)
-        except TypeError as error:  # a class of the user's own, with a field that has no default
-            raise InputError(f"method {method!r} cannot be made anew: {error}") from None
+        except TypeError as error:  # a custom class with a field that has no default
+            raise InputError(f"method {method!r} cannot be created from its defaults: {error}") from None
         check_balls(solver, self.robot, self._frames)
         self._set_solver(index, solver)
 
     def set_parameter(self, index: int, name: str, value: Any) -> None:
-        """One parameter of an instance's method.
+        """Set one parameter of an instance's method.
 
         Raises:
-            UnknownNameError: No such parameter, or a joint in it that the robot does not have.
-            InputError: A value out of its range, or no such instance.
+            UnknownNameError: There is no such parameter, or it names a joint that the robot does not have.
+            InputError: The value is out of range, or there is no such instance.
         """
         solver = self._instance(index).solver
         self._set_solver(index, make_solver(type(solver), **(solver.parameters | {name: value})))
@@ -222,7 +223,7 @@ class Session:
         self.apply_settings(dataclasses.replace(self.settings, tolerance=Tolerance.of((position, orientation))))
 
     def set_motion(self, kind: str) -> None:
-        """How balls move: "hand", "curve" or "random"."""
+        """Set how the balls move: "hand", "curve" or "random"."""
         if kind not in MOTIONS:
             raise UnknownNameError("motion", kind, MOTIONS)
         if kind != self.motion.kind:
@@ -230,22 +231,22 @@ class Session:
             self.motion.restart()
 
     def set_curve(self, name: str) -> None:
-        """Which curve they follow."""
+        """Set the curve that the balls follow."""
         if name not in CURVES:
             raise UnknownNameError("curve", name, CURVES)
         self.motion.curve = name
 
     def move_ball(self, index: int, position: ArrayLike) -> None:
-        """Put a ball somewhere (3,) [m]; from then on balls move by hand."""
+        """Move a ball to a position (3,) [m], and switch the motion to "hand"."""
         self._ball(index).put(position)
         self.set_motion("hand")
 
     def orient_ball(self, index: int, on: bool, rpy: ArrayLike) -> None:
-        """Ask for an orientation at a ball (roll, pitch, yaw (3,) [rad]), or for none."""
+        """Turn a ball's orientation target on or off; `rpy` is roll, pitch, yaw (3,) [rad]."""
         self._ball(index).orient(on, rpy)
 
     def set_mode(self, index: int, mode: str) -> None:
-        """Switch a ball "on", "pinned" or "off"; one that was off appears where the first robot's frame is."""
+        """Switch a ball "on", "pinned" or "off"; one that was off appears at its frame on the first instance."""
         ball = self._ball(index)
         match mode:
             case "on" | "pinned" | "off":
@@ -256,29 +257,29 @@ class Session:
                 raise UnknownNameError("mode", mode, MODES)
 
     def add_ball(self, frame: str) -> None:
-        """One more ball, on a frame that has none yet.
+        """Add a ball to a frame that has none yet.
 
         Raises:
-            UnknownNameError: No such frame.
-            InputError: It has a ball already, or there are too many.
+            UnknownNameError: There is no such frame.
+            InputError: The frame has a ball already, or there are too many balls.
         """
         self.robot.frame_id(frame)
         if frame in self._frames:
-            raise InputError(f"frame {frame!r} has a ball already")
+            raise InputError(f"frame {frame!r} already has a ball")
         if len(self.balls) >= MOST_BALLS:
-            raise InputError(f"there are {MOST_BALLS} balls at most; remove one first")
+            raise InputError(f"a session can have at most {MOST_BALLS} balls; remove one first")
         self._place_ball(frame, "off")
         self.set_mode(len(self.balls) - 1, "on")
 
     def remove_ball(self, index: int) -> None:
-        """One ball less; the last one stays.
+        """Remove a ball, but not the last one.
 
         Raises:
-            InputError: No such ball, or it is the last.
+            InputError: There is no such ball, or it is the last one.
         """
         ball = self._ball(index)
         if len(self.balls) == 1:
-            raise InputError("the last ball stays; switch it off instead")
+            raise InputError("the last ball cannot be removed; switch it off instead")
         self.balls.remove(ball)
 
     @property
@@ -286,7 +287,7 @@ class Session:
         return [ball.frame for ball in self.balls]
 
     def _is_planted(self, frame: str) -> bool:
-        """Whether the robot stands on this frame: it does not hang in the world, and the frame is on the ground."""
+        """Whether the robot stands on this frame: its root is not fixed, and the frame is near the ground."""
         if self.robot.root == "fixed":
             return False
         height = self.robot.placement(frame, self._home).translation[2] - lowest_point(self.robot, self._home)
