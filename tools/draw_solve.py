@@ -47,7 +47,7 @@ PYTHON = (
     Stop("direction(J, e)", ("or CCD's sweep:", "the method itself"), "solvers/", 760, 306, 140, GREEN, 130),
 )
 ANSWER = (
-    Stop("Certifier", ("plain Pinocchio measures", "q again from scratch"), "solving/state", 24, 510, 196, ORANGE),
+    Stop("Certifier", ("plain Pinocchio measures", "q again from scratch"), "solving/verdict", 24, 510, 196, ORANGE),
     Stop("Verdict", ("errors against tolerances:", "one status"), "solving/verdict", 256, 510, 196, ORANGE),
     Stop("Solution", ("q, angles, errors, why", "it stopped"), "solving/solution", 488, 510, 196, PINK),
     Stop("Message", ("one sentence, written", "when somebody reads it"), "solving/message", 720, 510, 196, PINK),
