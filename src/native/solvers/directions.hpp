@@ -92,7 +92,7 @@ class Directions {
     } else if (solver_.rule == DampingRule::manipulability) {
       square(at.J, A_);
       const Square full = A_.template selfadjointView<Eigen::Lower>();
-      const double w = std::sqrt(std::max(full.determinant(), 0.0));
+      const double w = std::sqrt(std::max(full.partialPivLu().determinant(), 0.0));
       const double missing = std::max(0.0, 1.0 - w / solver_.manipulability);
       squared *= missing * missing;
     }
