@@ -393,7 +393,7 @@ def test_every_front_takes_the_name_of_a_frame_with_a_targets_keywords(arm):
 
 def test_iterates_old_keyword_still_works_and_warns(arm):
     target = Target("tip", [0.4, 0.2, 0.8])
-    with pytest.warns(DeprecationWarning, match=r"solver= is called method="):
+    with pytest.warns(DeprecationWarning, match="use method= instead"):
         old = pinik.iterate(arm, target, solver="ccd")
     assert [state.q.tolist() for state in old] == [state.q.tolist() for state in pinik.iterate(arm, target, "ccd")]
 
@@ -548,3 +548,18 @@ def test_neither_a_yielded_configuration_nor_a_solutions_can_be_spoiled(arm):
     s = arm.solve("tip", position=[0.4, 0.2, 0.8])
     with pytest.raises(ValueError, match="read-only"):
         s.q[0] = 0.5
+
+
+@pytest.mark.parametrize(
+    ("ask", "word"),
+    [
+        (lambda arm, place: pinik.iterate(arm, "tip", position=place, restarts=3), "restarts"),
+        (lambda arm, place: pinik.prepare(arm, "tip", position=place, q0=arm.neutral()), "q0"),
+        (lambda arm, place: pinik.solve_many(arm, "tip", position=[place]), "position"),
+    ],
+)
+def test_a_keyword_that_a_function_lacks_is_not_suggested_to_it(arm, ask, word):
+    with pytest.raises(pinik.UnknownNameError) as caught:
+        ask(arm, [0.4, 0.2, 0.8])
+    assert caught.value.name == word
+    assert word not in caught.value.valid

@@ -16,7 +16,7 @@ from ..problem.kinematics import Kinematics
 from ..problem.targets import Target, Tolerance
 from ..solvers.registry import SOLVERS, Method
 from .kept import Kept, Key, kept_of
-from .options import Options
+from .options import OPTION_NAMES, Options
 from .prepared import Prepared
 from .question import Question
 from .run import Pace, States, run
@@ -26,6 +26,8 @@ from .words import UNWEIGHTED, Wanted, asked_targets
 __all__ = ["answer", "iterate", "prepare", "solve"]
 
 _PAIRS = (tuple, list, Tolerance)
+
+_OPTIONS_OF_ITERATE = ("q0", "limits", "locked", "max_iterations", "tolerance")
 
 
 def solve(
@@ -144,7 +146,7 @@ def prepare(
     wanted = (
         position, rotation, rpy, quat_xyzw, quat_wxyz, placement, axis, direction, at, tool, relative_to, weight,
     )  # fmt: skip
-    asked = asked_targets(targets, wanted, method, solver_parameters)
+    asked = asked_targets(targets, wanted, method, solver_parameters, OPTION_NAMES)
     options = Options.of(
         method, solver_parameters, limits=limits, locked=locked, restarts=restarts, seed=seed,
         max_iterations=max_iterations, tolerance=tolerance, time_limit=time_limit, engine=engine, trace=trace,
@@ -206,7 +208,7 @@ def iterate(
     wanted = (
         position, rotation, rpy, quat_xyzw, quat_wxyz, placement, axis, direction, at, tool, relative_to, weight,
     )  # fmt: skip
-    asked = asked_targets(targets, wanted, method, solver_parameters)
+    asked = asked_targets(targets, wanted, method, solver_parameters, _OPTIONS_OF_ITERATE)
     options = Options.of(
         method, solver_parameters, limits=limits, locked=locked, max_iterations=max_iterations, tolerance=tolerance
     )

@@ -22,7 +22,7 @@ from .at_once import attempt_at_once, lands_at_once
 from .attempts import Outcome, Outcomes
 from .native.codec import goals_of, targets_of
 from .native.outcomes import attempt_many
-from .options import Options
+from .options import OPTION_NAMES, Options
 from .prepared import Prepared, is_nearest
 from .solution import Solution
 from .state import Status
@@ -34,6 +34,8 @@ __all__ = ["Solutions", "solve_many"]
 Array = NDArray[np.float64]
 
 _MOST_THREADS = 1024
+
+_KEYWORDS = ("places", "tool", "relative_to", "q0", "threads", *(name for name in OPTION_NAMES if name != "trace"))
 
 
 def solve_many(
@@ -83,7 +85,7 @@ def solve_many(
         raise InputError(f"robot must be what pinik.load returns; got {robot!r}")
     if "trace" in solver_parameters:
         raise InputError("solve_many keeps no trace; pinik.solve does")
-    check_words(method, solver_parameters)
+    check_words(method, solver_parameters, _KEYWORDS)
     options = Options.of(
         method, solver_parameters, limits=limits, locked=locked, restarts=restarts, seed=seed,
         max_iterations=max_iterations, tolerance=tolerance, time_limit=time_limit, engine=engine,

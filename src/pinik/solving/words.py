@@ -23,13 +23,13 @@ UNWEIGHTED = 1.0
 """The default weight of a target; this very object shows that no weight was given."""
 
 
-def check_words(method: Method, words: Collection[str], options: Sequence[str] = OPTION_NAMES) -> None:
+def check_words(method: Method, words: Collection[str], offered: Sequence[str]) -> None:
     """Check that all remaining keywords are parameters of the method.
 
     Args:
         method: The method.
         words: The keywords given in addition to those of targets and options.
-        options: The options of the calling function.
+        offered: The keywords that the calling function has.
 
     Raises:
         UnknownNameError: A keyword is not a parameter of the method; the error suggests similar keywords.
@@ -45,21 +45,32 @@ def check_words(method: Method, words: Collection[str], options: Sequence[str] =
             unknown = word
             break
     if unknown is not None:
-        known = dict.fromkeys([*PLACE_WORDS, "q0", "method", *options, *own])
+        known = dict.fromkeys([*offered, "method", *own])
         hint = f"the method is {solver.name!r}" if own else ""
         raise UnknownNameError("keyword", unknown, known, hint)
 
 
 def asked_targets(
-    targets: str | Target | Iterable[Target], wanted: Wanted, method: Method, parameters: Mapping[str, Any]
+    targets: str | Target | Iterable[Target],
+    wanted: Wanted,
+    method: Method,
+    parameters: Mapping[str, Any],
+    options: Sequence[str] = ("q0", *OPTION_NAMES),
 ) -> tuple[Target, ...]:
     """The targets of a call: one made from a frame's name and the target's keywords, or the Target objects as given.
+
+    Args:
+        targets: A frame's name or targets.
+        wanted: The values of a target's keywords, in the order of `PLACE_WORDS`.
+        method: The method.
+        parameters: The keywords given in addition to those of targets and options.
+        options: The other keywords that the calling function has.
 
     Raises:
         UnknownNameError: There is no such keyword.
         InputError: The target is faulty, or a target's keywords were given together with Target objects.
     """
-    check_words(method, parameters)
+    check_words(method, parameters, (*PLACE_WORDS, *options))
     if isinstance(targets, str):
         return (Target(targets, **dict(zip(PLACE_WORDS, wanted, strict=True))),)
     given = [
