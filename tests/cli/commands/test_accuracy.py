@@ -73,7 +73,7 @@ def test_a_method_s_parameter_is_changed_and_the_others_are_not(run):
         (("--param", "jtt.alpha=1"), "did you mean 'jt'"),
         (("--param", "jt.alpha"), "--param must be NAME=VALUE"),
         (("--param", 'ccd.stiffness={"joint7": 0}'), "--param ccd.stiffness cannot be set"),
-        (("--param", "jt.lambda=1"), "no parameter of 'jt' 'lambda'"),
+        (("--param", "jt.lambda=1"), "no parameter 'lambda'"),
         (("--engine", "fast"), "no engine 'fast'"),
     ],
 )

@@ -99,7 +99,7 @@ def _changed(solver: Solver, parameters: Iterable[str] | None) -> Solver:
     values = {}
     for name, text in _pairs(parameters, "--param", "NAME=VALUE"):
         if name not in solver.parameters:
-            raise UnknownNameError(f"parameter of {solver.name!r}", name, solver.parameters)
+            raise UnknownNameError("parameter", name, solver.parameters, f"the method is {solver.name!r}")
         try:
             values[name] = json.loads(text)
         except (ValueError, RecursionError):
