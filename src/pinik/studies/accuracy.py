@@ -1,4 +1,4 @@
-"""Welman's figs. 4.4 and 4.5: what each digit of accuracy costs, well within reach and at the edge of reach."""
+"""Welman's figures 4.4 and 4.5: what each digit of accuracy costs, well within reach and at the edge of reach."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Welman's fig. 4.2: a straight arm whose tip is pulled inwards along its own line."""
+"""Welman's figure 4.2: a straight arm whose tip is pulled inwards along its own line."""
 
 from __future__ import annotations
 

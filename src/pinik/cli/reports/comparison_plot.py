@@ -1,4 +1,4 @@
-"""Grouped bars as in the thesis's fig. 4.9: time, iterations and efficiency of each method in each comparison."""
+"""Grouped bars as in the thesis's figure 4.9: time, iterations and efficiency of each method in each comparison."""
 
 from __future__ import annotations
 
