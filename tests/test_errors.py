@@ -105,7 +105,7 @@ def test_a_flaw_is_a_sentence_that_knows_its_parts():
 
 def test_warnings_of_a_robot_are_sentences_with_elements():
     text = robot(link("a"), link("b"), joint("j", "a", "b", '<mimic joint="k"/>'))
-    with pytest.warns(pinik.UrdfWarning, match="joint 'j': it mimics 'k', and there is no such joint"):
+    with pytest.warns(pinik.UrdfWarning, match="joint 'j': it mimics 'k', which does not exist"):
         (flaw,) = pinik.load(text).warnings
     assert isinstance(flaw, str)
     assert flaw.element == "joint 'j'"
