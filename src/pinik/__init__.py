@@ -26,6 +26,7 @@ from .solvers.transpose import JacobianTranspose
 from .solvers.two_bone import TwoBoneSolver
 from .solving.front import iterate, prepare, solve
 from .solving.many import Solutions, solve_many
+from .solving.options import Options
 from .solving.prepared import Prepared
 from .solving.solution import Solution
 from .solving.state import State, Status
@@ -45,6 +46,7 @@ __all__ = [
     "Kinematics",
     "Linearization",
     "MissingExtraError",
+    "Options",
     "Patience",
     "Picture",
     "PinikError",

@@ -138,3 +138,12 @@ def test_options_are_immutable():
     with pytest.raises(TypeError):
         options.method.stiffness["a"] = -3.0
     assert options.locked == ("b",)
+
+
+def test_a_word_of_another_method_and_the_old_word_are_named(arm):
+    with pytest.raises(pinik.UnknownNameError, match="relaxation belongs to 'ccd'"):
+        arm.solve("tip", [0.3, 0.2, 0.9], relaxation=1.0)
+    with pytest.raises(pinik.UnknownNameError, match="given as method="):
+        arm.solve("tip", [0.3, 0.2, 0.9], solver="ccd")
+    with pytest.raises(pinik.InputError, match="the method must be given once"):
+        pinik.iterate(arm, "tip", method="jt", position=[0.3, 0.2, 0.9], solver="ccd")

@@ -98,3 +98,9 @@ def test_no_questions_have_no_answers(arm, engine):
         assert str(many).startswith("0 of 0 solved")
         with pytest.raises(IndexError):
             many[0]
+
+
+def test_a_change_of_the_parameters_that_were_read_changes_no_solution(arm):
+    solution = arm.solve("tip", [0.3, 0.2, 0.9], damping=0.5)
+    solution.parameters["damping"] = 9.0
+    assert solution.parameters["damping"] == solution.to_dict()["parameters"]["damping"] == 0.5

@@ -118,7 +118,7 @@ def _nothing(robot: RobotModel) -> Outcomes:
 class Solutions(Outcomes):
     """The answers to N questions, each checked by plain Pinocchio. `solutions[i]` is what `pinik.solve` returns.
 
-    Any thread may read it.
+    Any thread may read it. The arrays belong to the caller, and `solutions[i]` is made from them when it is read.
 
     Attributes:
         q: The best configurations (N, nq).

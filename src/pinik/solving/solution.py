@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 
 Array = NDArray[np.float64]
 
-_IN_WORDS = ("robot", "method", "parameters", "message", "active_limits", "trace", "engine", "why_not_native")
+_IN_WORDS = ("robot", "method", "_parameters", "message", "active_limits", "trace", "engine", "why_not_native")
 
 
 class Solution:
@@ -128,9 +128,13 @@ class Solution:
         """The names of the joints that are at a limit and could move a target frame."""
         return tuple(self._sides_of_limits)
 
-    @cached_property
+    @property
     def parameters(self) -> dict[str, Any]:
-        """The solver's parameters."""
+        """The solver's parameters; a new dictionary each time."""
+        return dict(self._parameters)
+
+    @cached_property
+    def _parameters(self) -> dict[str, Any]:
         return self._question.solver.parameters
 
     @property

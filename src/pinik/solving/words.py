@@ -8,7 +8,7 @@ from typing import Any
 from ..errors import InputError, UnknownNameError
 from ..problem.targets import TARGET_KEYWORDS, Target, as_targets
 from ..solvers.base import Solver, field_names
-from ..solvers.registry import Method, meant_by
+from ..solvers.registry import SOLVERS, Method, meant_by
 from .options import OPTION_NAMES
 
 __all__ = ["PLACE_WORDS", "UNWEIGHTED", "Wanted", "asked_targets", "check_words"]
@@ -46,8 +46,16 @@ def check_words(method: Method, words: Collection[str], offered: Sequence[str]) 
             break
     if unknown is not None:
         known = dict.fromkeys([*offered, "method", *own])
-        hint = f"the method is {solver.name!r}" if own else ""
+        hint = f"the method is {solver.name!r}{_whose(unknown)}" if own else ""
         raise UnknownNameError("keyword", unknown, known, hint)
+
+
+def _whose(word: str) -> str:
+    """Say where a word that this call does not have belongs."""
+    if word == "solver":
+        return ", given as method="
+    others = [name for name, solver in SOLVERS.items() if word in field_names(solver)]
+    return f"; {word} belongs to {', '.join(map(repr, others))}" if others else ""
 
 
 def asked_targets(

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import functools
 import importlib.util
+import warnings
 from typing import Any
 
 import pinocchio
@@ -34,7 +35,9 @@ def load() -> Any:
     except ImportError as error:
         return f"it does not load: {error}"
     if getattr(_native, "abi", None) != ABI:
-        return "the compiled module belongs to another build of pinik; install pinik again"
+        why = "the compiled module belongs to another build of pinik; install pinik again"
+        warnings.warn(f"pinik solves in Python, tens of times slower: {why}", RuntimeWarning, stacklevel=2)
+        return why
     if _native.pinocchio_version != pinocchio.__version__:
         return (
             f"it was built against Pinocchio {_native.pinocchio_version}, and {pinocchio.__version__} is installed; "
