@@ -94,7 +94,7 @@ def test_a_name_of_no_notebook_is_an_error_and_nothing_is_run(names, monkeypatch
     monkeypatch.setattr(run_notebooks, "run", lambda path: pytest.fail("it ran"))
     with pytest.raises(SystemExit):
         run_notebooks.main(names)
-    assert f"no notebook's name begins with {names[-1]!r}; there are: 01_your_urdf" in capsys.readouterr().err
+    assert f"no notebook's name starts with {names[-1]!r}; there are: 01_your_urdf" in capsys.readouterr().err
 
 
 @each_notebook

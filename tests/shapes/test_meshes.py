@@ -164,7 +164,7 @@ def test_a_robot_brings_its_file_its_text_and_its_folders(tmp_path):
         ("/no/such.urdf", pinik.RobotLoadError, "no such file"),
         ("/", pinik.RobotLoadError, "directory"),
         ("<sdf/>", pinik.RobotLoadError, "SDF"),
-        (3, pinik.InputError, "a Robot, a path or URDF text; got 3"),
+        (3, pinik.InputError, "a robot, a path or URDF text; got 3"),
     ],
 )
 def test_what_is_no_robot_is_refused_in_words(source, error, words):

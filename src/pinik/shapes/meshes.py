@@ -53,7 +53,7 @@ def load_shapes(
     """Read the visual shapes of a robot.
 
     Args:
-        robot_or_urdf: A RobotModel, a path to a .urdf file, or URDF text.
+        robot_or_urdf: A robot, a path to a .urdf file, or URDF text.
         package_dirs: Folders to search first for `package://` addresses; the robot's own come next.
 
     Returns:
@@ -72,7 +72,7 @@ def load_shapes(
     elif isinstance(robot_or_urdf, (str, os.PathLike)):
         description = urdf.read(robot_or_urdf)
     else:
-        raise InputError(f"robot_or_urdf must be a RobotModel, a path or URDF text; got {robot_or_urdf!r}")
+        raise InputError(f"robot_or_urdf must be a robot, a path or URDF text; got {robot_or_urdf!r}")
     robot = parse(description.document, None if description.path else "utf-8")
     named = {
         material.attributes.get("name", ""): color

@@ -203,9 +203,9 @@ def iterate(
         UnknownNameError, InputError: As for `solve`.
     """
     if "solver" in solver_parameters:
-        warnings.warn("iterate(solver=...) is deprecated; use method= instead", DeprecationWarning, stacklevel=2)
         if method != "dls":
             raise InputError("the method must be given once: solver= is the old name of method=")
+        warnings.warn("iterate(solver=...) is deprecated; use method= instead", DeprecationWarning, stacklevel=2)
         method = solver_parameters.pop("solver")
     wanted = (
         position, rotation, rpy, quat_xyzw, quat_wxyz, placement, axis, direction, at, tool, relative_to, weight,

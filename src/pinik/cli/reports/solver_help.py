@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+import dataclasses
 import textwrap
 
-from ...solvers.base import Solver, field_names
-from ...solvers.parameter import parameters_of
+from ...solvers.base import Solver
+from ...solvers.parameter import Parameter, parameters_of
 from ...solvers.registry import known_methods
 
 __all__ = ["solvers_help"]
@@ -24,14 +25,11 @@ def solvers_help() -> str:
 
 
 def _lines(solver: type[Solver]) -> list[str]:
-    """A line for each parameter; a field that was made without `parameter` has only its name."""
+    """A line for each parameter; of a field that was made without `parameter`, only the name and the default."""
     described = {own.name: own for own in parameters_of(solver)}
     texts = []
-    for name in field_names(solver):
-        own = described.get(name)
-        if own is None:
-            texts.append(name)
-        else:
-            facts = "; ".join(filter(None, [own.range_in_words, f"default {own.default_in_words}"]))
-            texts.append(f"{name}: {own.help} ({facts})")
+    for field in dataclasses.fields(solver):
+        own = described.get(field.name, Parameter(field.default, "", name=field.name))
+        facts = "; ".join(filter(None, [own.range_in_words, f"default {own.default_in_words}"]))
+        texts.append(f"{own.name}: {own.help} ({facts})" if own.help else f"{own.name} ({facts})")
     return [textwrap.fill(text, 78, initial_indent="  ", subsequent_indent="      ") for text in texts]
