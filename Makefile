@@ -34,12 +34,13 @@ lint: $(VENV)/installed-dev
 	@$(python) -m ruff format --check .
 	@$(python) -m mypy
 
-# Python itself is built without sanitizers, so their library must be loaded first, and Python's own leaks be ignored.
+# Python itself is built without sanitizers, so their library must be loaded first and Python's own leaks be ignored.
+# pytest must not capture the reports, which are written just before the process ends.
 sanitize: $(VENV)/installed-dev $(sanitized)/built
 	@LD_PRELOAD="$$($(CXX) -print-file-name=libasan.so) $$($(CXX) -print-file-name=libstdc++.so)" \
 		ASAN_OPTIONS=detect_leaks=0 UBSAN_OPTIONS=print_stacktrace=1 \
 		PINIK_REQUIRE_NATIVE=1 PINIK_SANITIZED_ENGINE="$$(echo $(sanitized)/pinik/_native*.so)" \
-		$(python) -m pytest tests/solving/test_native.py tests/solving/test_native_equivalence.py --timeout=3600
+		$(python) -m pytest tests/solving/test_native.py tests/solving/test_native_equivalence.py --capture=sys --timeout=3600
 
 bench: $(VENV)/installed-dev
 	@$(python) -m pytest benchmarks --benchmark-enable --benchmark-only

@@ -1,12 +1,14 @@
 // The Python module pinik._native; only pinik.solving.native uses it.
 #include <pinocchio/config.hpp>  // only the version
 
+#include "../solving/pool.hpp"
 #include "abi.hpp"
 #include "interface.hpp"
 #include "numbers.hpp"
 
 NB_MODULE(_native, m) {
   pinik::import_numpy();
+  pinik::prepare_to_throw();
   m.doc() = "pinik's compiled engine; use it through pinik.solve, engine=\"native\".";
   m.attr("pinocchio_version") = PINOCCHIO_VERSION;
   m.attr("abi") = pinik::abi;

@@ -1,5 +1,5 @@
-// Refuses compiler flags that would change the layout of Eigen's types. pinik passes such types to Pinocchio's
-// libraries, whose wheels are built for any processor; with another alignment the process would crash.
+// Refuses compiler flags that would change the layout of Eigen's types, or how Eigen allocates memory. pinik and
+// Pinocchio's libraries, whose wheels are built for any processor, hand such types to each other and would crash.
 #pragma once
 
 #if defined(__AVX__)
@@ -10,3 +10,5 @@
 
 static_assert(EIGEN_MAX_ALIGN_BYTES == 16 && EIGEN_MAX_STATIC_ALIGN_BYTES == 16,
               "pinik must be compiled with Eigen's default alignment of 16 bytes, which is that of Pinocchio's libraries");
+static_assert(EIGEN_MALLOC_ALREADY_ALIGNED == 1,
+              "pinik must be compiled so that Eigen takes memory from malloc as it is, like Pinocchio's libraries");

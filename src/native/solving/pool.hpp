@@ -59,9 +59,9 @@ void share(std::size_t threads, std::atomic<bool>& stop, const Make& make, Pause
   {
     Pool pool;
     pool.threads.reserve(threads);  // so that no allocation can fail after a thread has started
-    // For prepare_to_throw() in the threads. So large a block goes back to the system when it is freed, which is where a
-    // new thread gets its memory from if there is little; untouched, it costs nothing.
-    std::unique_ptr<char[]> spare(new char[48 << 20]);
+    // For prepare_to_throw() in the threads. A block of this size comes from the system itself and goes back to it when it
+    // is freed, which is where a new thread gets its memory from if there is little. Untouched, it costs nothing.
+    std::unique_ptr<char[]> spare(new char[65 << 20]);
     static_cast<volatile char*>(spare.get())[0] = 0;  // keeps the compiler from leaving it out
     std::unique_lock<std::mutex> lock(mutex);
     try {
