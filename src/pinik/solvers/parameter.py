@@ -22,7 +22,7 @@ class JointValues(Mapping[str, float]):
 
     __slots__ = ("_hash", "_values")
 
-    def __init__(self, values: Mapping[str, float] = {}) -> None:  # noqa: B006
+    def __init__(self, values: Mapping[str, float] = {}) -> None:
         self._values = dict(values)
         self._hash = hash(frozenset(self._values.items()))
 

@@ -14,8 +14,9 @@ from ..errors import InputError
 from ..model.robot_model import RobotModel
 from ..problem.kinematics import Kinematics
 from ..problem.targets import Target, Tolerance
-from ..solvers.registry import SOLVERS, Method
+from ..solvers.registry import Method
 from .kept import Kept, Key, kept_of
+from .keys import key_of
 from .options import OPTION_NAMES, Options
 from .prepared import Prepared
 from .question import Question
@@ -25,7 +26,6 @@ from .words import UNWEIGHTED, Wanted, asked_targets
 
 __all__ = ["answer", "iterate", "prepare", "solve"]
 
-_PAIRS = (tuple, list, Tolerance)
 
 _OPTIONS_OF_ITERATE = ("q0", "limits", "locked", "max_iterations", "tolerance")
 
@@ -147,11 +147,8 @@ def prepare(
         position, rotation, rpy, quat_xyzw, quat_wxyz, placement, axis, direction, at, tool, relative_to, weight,
     )  # fmt: skip
     asked = asked_targets(targets, wanted, method, solver_parameters, OPTION_NAMES)
-    options = Options.of(
-        method, solver_parameters, limits=limits, locked=locked, restarts=restarts, seed=seed,
-        max_iterations=max_iterations, tolerance=tolerance, time_limit=time_limit, engine=engine, trace=trace,
-    )  # fmt: skip
-    return Prepared(robot, asked, options)
+    given = (limits, locked, restarts, seed, max_iterations, tolerance, time_limit, engine, trace)
+    return Prepared(robot, asked, _options(method, given, solver_parameters))
 
 
 def iterate(
@@ -244,7 +241,7 @@ def answer(
     key, prepared = None, None
     if type(targets) is str and _is_plain(wanted):
         position = wanted[0]
-        key = _key((targets, position is None), method, given, parameters)
+        key = key_of((targets, position is None), method, given, parameters)
         prepared = _found(kept, key)
         if prepared is not None:
             quick = prepared.at(wanted[5] if position is None else _as_point(position), q0)
@@ -252,7 +249,7 @@ def answer(
                 return quick
     asked = asked_targets(targets, wanted, method, parameters)
     if key is None:
-        key = _key(tuple([target.shape for target in asked]), method, given, parameters)
+        key = key_of(tuple([target.shape for target in asked]), method, given, parameters)
         prepared = _found(kept, key)
     if prepared is None:
         prepared = kept.prepared(robot, asked, _options(method, given, parameters), key)
@@ -277,40 +274,6 @@ def _is_plain(wanted: Wanted) -> bool:
     )
 
 
-def _key(what: object, method: Method, given: tuple[Any, ...], parameters: dict[str, Any]) -> Key | None:
-    """The arguments of a call as a key; None for arguments that must be checked in every call.
-
-    The key includes their types, because `True == 1`.
-    """
-    meant: object = SOLVERS.get(method) if type(method) is str else method
-    if meant is None:
-        return None
-    if given[1] != () or given[5] is not None:
-        plain = _plain_options(*given)
-        if plain is None:
-            return None
-        given = plain
-    own = tuple([(name, type(value), _as_key(value)) for name, value in parameters.items()]) if parameters else ()
-    return what, meant, given, tuple(map(type, given)), own
-
-
-def _plain_options(limits: object, locked: Any, *between: Any) -> tuple[Any, ...] | None:
-    """The options, with the locked joints and the tolerance as tuples; None if these have other types."""
-    restarts, seed, max_iterations, tolerance, *rest = between
-    if locked != () and type(locked) not in (tuple, list):
-        return None
-    if tolerance is not None:
-        tolerance = tolerance.tolist() if type(tolerance) is np.ndarray else tolerance
-        if type(tolerance) not in _PAIRS or any([type(number) is not float for number in tolerance]):
-            return None
-        tolerance = tuple(tolerance)
-    return limits, tuple(locked), restarts, seed, max_iterations, tolerance, *rest
-
-
-def _as_key(value: object) -> object:
-    return tuple([(name, type(x), x) for name, x in value.items()]) if type(value) is dict else value
-
-
 def _found(kept: Kept, key: Key | None) -> Prepared | None:
     try:
         return None if key is None else kept.found(key)
@@ -319,11 +282,7 @@ def _found(kept: Kept, key: Key | None) -> Prepared | None:
 
 
 def _options(method: Method, given: tuple[Any, ...], parameters: dict[str, Any]) -> Options:
-    limits, locked, restarts, seed, max_iterations, tolerance, time_limit, engine, trace = given
-    return Options.of(
-        method, parameters, limits=limits, locked=locked, restarts=restarts, seed=seed,
-        max_iterations=max_iterations, tolerance=tolerance, time_limit=time_limit, engine=engine, trace=trace,
-    )  # fmt: skip
+    return Options.of(method, parameters, **dict(zip(OPTION_NAMES, given, strict=True)))
 
 
 def _as_point(position: ArrayLike) -> object:

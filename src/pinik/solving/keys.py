@@ -1,0 +1,58 @@
+"""The arguments of a call as a key, by which an equal call finds the compiled problem again."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from ..problem.targets import Tolerance
+from ..solvers.registry import SOLVERS, Method
+from .kept import Key
+from .options import OPTION_NAMES
+
+__all__ = ["key_of"]
+
+_PAIRS = (tuple, list, Tolerance)
+_LOCKED, _TOLERANCE = OPTION_NAMES.index("locked"), OPTION_NAMES.index("tolerance")
+
+
+def key_of(what: object, method: Method, given: tuple[Any, ...], parameters: dict[str, Any]) -> Key | None:
+    """The arguments of a call as a key; None for arguments that must be checked in every call.
+
+    The key includes their types, because `True == 1`.
+
+    Args:
+        what: The kinds of the targets.
+        method: The method.
+        given: The values of the options, in the order of `OPTION_NAMES`.
+        parameters: The solver's parameters.
+    """
+    meant: object = SOLVERS.get(method) if type(method) is str else method
+    if meant is None:
+        return None
+    if given[_LOCKED] != () or given[_TOLERANCE] is not None:
+        plain = list(given)
+        plain[_LOCKED], plain[_TOLERANCE] = _as_names(given[_LOCKED]), _as_pair(given[_TOLERANCE])
+        if plain[_LOCKED] is None or (plain[_TOLERANCE] is None and given[_TOLERANCE] is not None):
+            return None
+        given = tuple(plain)
+    own = tuple([(name, type(value), _as_key(value)) for name, value in parameters.items()]) if parameters else ()
+    return what, meant, given, tuple(map(type, given)), own
+
+
+def _as_names(locked: Any) -> tuple[Any, ...] | None:
+    """The locked joints as a tuple; None if they have another type."""
+    return tuple(locked) if type(locked) in (tuple, list) else None
+
+
+def _as_pair(tolerance: Any) -> tuple[float, ...] | None:
+    """The tolerance as a tuple of floats; None if it has another type."""
+    tolerance = tolerance.tolist() if type(tolerance) is np.ndarray else tolerance
+    if type(tolerance) not in _PAIRS or any([type(number) is not float for number in tolerance]):
+        return None
+    return tuple(tolerance)
+
+
+def _as_key(value: object) -> object:
+    return tuple([(name, type(x), x) for name, x in value.items()]) if type(value) is dict else value
