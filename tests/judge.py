@@ -28,10 +28,29 @@ AXES = {"x": (1, 0, 0), "y": (0, 1, 0), "z": (0, 0, 1), "-x": (-1, 0, 0), "-y": 
 
 
 class Miss(NamedTuple):
-    """How far one target is missed [m], [rad]; None for what it does not ask for."""
+    """How far one target is missed [m], [rad]; None for what it does not ask for.
+
+    `offset` is the position error along the target's own axes, and `tolerance` what the target itself allows.
+    """
 
     position: float | None
     orientation: float | None
+    offset: tuple[float, ...] = ()
+    tolerance: Any = None
+
+    def is_within(self, tolerance: Sequence[Any]) -> bool:
+        """Whether the errors are within the target's own tolerance, or else within `tolerance`."""
+        metres, radians = tolerance if self.tolerance is None else self.tolerance
+        if np.ndim(metres):
+            near = all(abs(off) <= most for off, most in zip(self.offset, metres, strict=True)) or not self.offset
+        else:
+            near = self.position is None or self.position <= metres
+        return near and (self.orientation is None or self.orientation <= radians)
+
+    def scaled(self, factor: float) -> Miss:
+        """All errors multiplied by a factor."""
+        own = [None if error is None else factor * error for error in self[:2]]
+        return Miss(own[0], own[1], tuple(factor * off for off in self.offset), self.tolerance)
 
 
 class Errors(NamedTuple):
@@ -55,11 +74,9 @@ class Errors(NamedTuple):
         """The largest orientation error [rad]."""
         return _largest(miss.orientation for miss in self.each)
 
-    def are_within(self, tolerance: Sequence[float] = TOLERANCE) -> bool:
-        """Whether every target is met; limits are not considered."""
-        return all(
-            error is None or error <= most for miss in self.each for error, most in zip(miss, tolerance, strict=True)
-        )
+    def are_within(self, tolerance: Sequence[Any] = TOLERANCE, factor: float = 1.0) -> bool:
+        """Whether every target is met within `factor` times its tolerance; limits are not considered."""
+        return all(miss.scaled(1.0 / factor).is_within(tolerance) for miss in self.each)
 
 
 def judge(robot: pinik.Robot, targets: Any, q: ArrayLike) -> Errors:
@@ -119,9 +136,9 @@ def assert_honest(
         assert _agree(one[1], other[1], 1e-6), f"it says {said}, and the judge finds {errors}"
     assert not (limits and errors.outside), f"outside the limits: {errors.outside}"
     hair = 1e-6  # rounding may decide either way at the tolerance itself
-    if errors.are_within([(1.0 - hair) * most for most in tolerance]):
+    if errors.are_within(tolerance, 1.0 - hair):
         assert solution.success, f"{solution.message}, and the judge finds {errors}"
-    if not errors.are_within([(1.0 + hair) * most for most in tolerance]):
+    if not errors.are_within(tolerance, 1.0 + hair):
         assert not solution.success, f"{solution.message}, and the judge finds {errors}"
 
 
@@ -144,12 +161,13 @@ class Asked(NamedTuple):
     axis: Array | None
     direction: Array | None
     at: Array | None
+    tolerance: Any
 
 
 def asked(target: pinik.Target | Mapping[str, Any]) -> Asked:
     """Read a Target's fields, or convert a mapping of Target's keywords."""
     if isinstance(target, pinik.Target):
-        names = ("frame", "position", "rotation", "axis", "direction", "at", "tool", "relative_to")
+        names = ("frame", "position", "rotation", "axis", "direction", "at", "tool", "relative_to", "tolerance")
         return _asked(**{name: getattr(target, name) for name in names})
     return _asked(**target)
 
@@ -157,7 +175,7 @@ def asked(target: pinik.Target | Mapping[str, Any]) -> Asked:
 def _asked(
     frame: str, position: Any = None, rotation: Any = None, rpy: Any = None, quat_xyzw: Any = None,
     quat_wxyz: Any = None, placement: Any = None, axis: Any = None, direction: Any = None, at: Any = None,
-    tool: Any = None, relative_to: str | None = None, weight: float = 1.0,
+    tool: Any = None, relative_to: str | None = None, weight: float = 1.0, tolerance: Any = None,
 ) -> Asked:  # fmt: skip
     if placement is not None:
         pose = _matrix(placement)
@@ -171,7 +189,8 @@ def _asked(
         rotation = rotation_of_quaternion(x, y, z, w)
     axis = AXES[axis] if isinstance(axis, str) else axis
     numbers = (position, rotation, axis, direction, at)
-    return Asked(frame, relative_to, _matrix(tool), *(None if n is None else np.array(n, dtype=float) for n in numbers))
+    numbers = [None if n is None else np.array(n, dtype=float) for n in numbers]  # None in a position becomes NaN
+    return Asked(frame, relative_to, _matrix(tool), *numbers, tolerance)
 
 
 def rotation_of_quaternion(x: float, y: float, z: float, w: float) -> Array:
@@ -214,18 +233,24 @@ def _miss(frames: Mapping[str, Array], wish: Asked) -> Miss:
     if wish.relative_to is not None:
         found = _inverse(frames[wish.relative_to]) @ found
     p, R = found[:3, 3], found[:3, :3]
-    position = None if wish.position is None else float(np.linalg.norm(p - wish.position))
+    position, offset = None, ()
+    if wish.position is not None:
+        missed = np.where(np.isnan(wish.position), 0.0, p - wish.position)
+        position = float(np.linalg.norm(missed))
+        offset = tuple(missed if wish.rotation is None else wish.rotation.T @ missed)
     if wish.rotation is not None:
         turn = wish.rotation.T @ R
         skew = np.array([turn[2, 1] - turn[1, 2], turn[0, 2] - turn[2, 0], turn[1, 0] - turn[0, 1]])
-        return Miss(position, math.atan2(float(np.linalg.norm(skew)), float(np.trace(turn)) - 1.0))
+        angle = math.atan2(float(np.linalg.norm(skew)), float(np.trace(turn)) - 1.0)
+        return Miss(position, angle, offset, wish.tolerance)
     if wish.axis is None:
-        return Miss(position, None)
+        return Miss(position, None, offset, wish.tolerance)
     line = wish.direction if wish.at is None else wish.at - p
     if wish.at is not None and np.linalg.norm(line) < ON_TOP:
-        return Miss(position, 0.0)
+        return Miss(position, 0.0, offset, wish.tolerance)
     pointing = R @ wish.axis
-    return Miss(position, math.atan2(float(np.linalg.norm(np.cross(pointing, line))), float(pointing @ line)))
+    angle = math.atan2(float(np.linalg.norm(np.cross(pointing, line))), float(pointing @ line))
+    return Miss(position, angle, offset, wish.tolerance)
 
 
 def _read(robot: pinik.Robot, q: Array) -> tuple[PlainRobot, dict[str, float], dict[str, Array], dict[str, float]]:

@@ -77,7 +77,7 @@ def problems(draw: st.DrawFn, names: tuple[str, ...] = tuple(ROBOTS), most_targe
     settable = list(robot.joint_names)
     locked = draw(st.lists(st.sampled_from(settable), max_size=2, unique=True))
     posed = robot.random(rng)
-    kinds = st.sampled_from(["position", "pose", "rotation", "axis", "look", "axis+position"])
+    kinds = st.sampled_from(["position", "pose", "rotation", "axis", "look", "axis+position", "partial position"])
     asked = draw(st.lists(kinds, min_size=1, max_size=draw(st.integers(1, most_targets))))
     targets = [target(draw, rng, robot, frames(name), posed, kind) for kind in asked]
     parameters = draw(parameters_of(method, robot))
@@ -100,6 +100,10 @@ def target(
     position = placement.translation + off * rng.normal(size=3)
     if "position" in kind or kind == "look":
         about["position"] = position
+    about["tolerance"] = draw(st.sampled_from([None, None, (1e-3, 0.3), ((0.1, 1e-4, 1e-3), 0.02)]))
+    if kind == "partial position":
+        free = draw(st.sampled_from([(0,), (2,), (0, 1), (1, 2)]))
+        about["position"] = [None if k in free else x for k, x in enumerate(position.tolist())]
     if kind == "pose":
         about["placement"] = pinocchio.SE3(placement.rotation, position)
     elif kind == "rotation":

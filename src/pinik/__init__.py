@@ -14,7 +14,8 @@ from .model.joint import Joint
 from .picture.draw import draw
 from .picture.picture import Picture
 from .problem.kinematics import Kinematics, Linearization
-from .problem.targets import Target, TargetError, Tolerance
+from .problem.targets import Target
+from .problem.tolerance import TargetError, Tolerance
 from .robot import Robot
 from .solvers.base import JacobianSolver, Patience, Solver, SweepingSolver
 from .solvers.ccd import CCD

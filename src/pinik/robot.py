@@ -9,7 +9,8 @@ import pinocchio
 from numpy.typing import ArrayLike
 
 from .model.robot_model import RobotModel
-from .problem.targets import Target, Tolerance
+from .problem.targets import Target
+from .problem.tolerance import Tolerance
 from .solvers.registry import Method
 from .solving.front import answer
 from .solving.solution import Solution

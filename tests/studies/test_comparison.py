@@ -9,7 +9,7 @@ import pinik
 from judge import assert_good, plain_placement
 from pinik.model.home import home_configuration
 from pinik.motion.figures import StepFigures
-from pinik.problem.targets import Tolerance
+from pinik.problem.tolerance import Tolerance
 from pinik.studies.comparison import COMPARISONS, Comparison, bones, chain_length, compare, places
 from pinik.studies.steps import Rules
 

@@ -11,7 +11,7 @@ import pytest
 import pinik
 from judge import plain_placement
 from pinik.motion.figures import StepFigures
-from pinik.problem.targets import Tolerance
+from pinik.problem.tolerance import Tolerance
 from pinik.studies.steps import Rules, chase_with, in_pieces
 
 NEAR = Tolerance(1e-4, 1e-3)

@@ -11,10 +11,15 @@ namespace {
 
 nb::object as_float(double value) { return std::isnan(value) ? nb::none() : nb::object(nb::float_(value)); }
 
+nb::object offset_of(const TargetError& error) {
+  if (std::isnan(error.offset[0])) return nb::none();
+  return nb::make_tuple(error.offset[0], error.offset[1], error.offset[2]);
+}
+
 nb::tuple as_tuple(const std::vector<TargetError>& errors) {
   nb::list list;
   for (const TargetError& error : errors)
-    list.append(nb::make_tuple(as_float(error.position), as_float(error.orientation)));
+    list.append(nb::make_tuple(as_float(error.position), as_float(error.orientation), offset_of(error)));
   return nb::tuple(list);
 }
 
@@ -55,7 +60,8 @@ void register_answers(nb::module_& m) {
       .def_prop_ro("q", [](const Answer& a) { return as_array(a.q); },
                    nb::sig("def q(self) -> NDArray[numpy.float64]"))
       .def_prop_ro("errors", [](const Answer& a) { return as_tuple(a.errors); },
-                   nb::sig("def errors(self) -> tuple[tuple[float | None, float | None], ...]"))
+                   nb::sig("def errors(self) -> tuple[tuple[float | None, float | None, "
+                           "tuple[float, float, float] | None], ...]"))
       .def_ro("iterations", &Answer::iterations)
       .def_ro("joint_updates", &Answer::joint_updates)
       .def_ro("restarts", &Answer::restarts)
@@ -64,7 +70,8 @@ void register_answers(nb::module_& m) {
       .def_prop_ro("proof", &proof_of, nb::sig("def proof(self) -> tuple[int, float, float, bool] | None"))
       .def_prop_ro("states", &states_of,
                    nb::sig("def states(self) -> tuple[tuple[NDArray[numpy.float64], int, int, "
-                           "tuple[tuple[float | None, float | None], ...], float, int, Status], ...]"));
+                           "tuple[tuple[float | None, float | None, tuple[float, float, float] | None], ...], "
+                           "float, int, Status], ...]"));
 }
 
 }  // namespace pinik

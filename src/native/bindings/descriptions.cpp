@@ -59,7 +59,8 @@ Placement in_joint(const Robot& robot, int joint, const Mat3& R, const Vec3& p) 
 
 void add_term(Problem& problem, const Robot& robot, int frame_joint, const Mat3& frame_R, const Vec3& frame_p,
               bool has_reference, int reference_joint, const Mat3& reference_R, const Vec3& reference_p,
-              bool asks_position, bool asks_rotation, bool asks_axis, bool asks_at, const Vec3& axis, double weight,
+              bool asks_position, bool asks_rotation, bool asks_axis, bool asks_at, const Vec3& along,
+              const Tolerance& tolerance, const Vec3& axis, double weight,
               bool has_bounds, const Vec3& base, std::array<double, 2> reach, std::array<double, 2> hole) {
   Term term;
   term.frame_joint = frame_joint;
@@ -71,6 +72,9 @@ void add_term(Problem& problem, const Robot& robot, int frame_joint, const Mat3&
   term.asks_rotation = asks_rotation;
   term.asks_axis = asks_axis;
   term.asks_at = asks_at;
+  term.has_free_axes = asks_position && along != Vec3::Ones();
+  if (asks_position) term.along = along;
+  term.tolerance = tolerance;
   term.axis = axis;
   term.weight = weight;
   term.has_bounds = has_bounds;
@@ -103,6 +107,7 @@ void register_constants(nb::module_& m) {
       .def_rw("radian", &Constants::radian)
       .def_rw("no_direction", &Constants::no_direction)
       .def_rw("reach_rounding", &Constants::reach_rounding)
+      .def_rw("slack_share", &Constants::slack_share)
       .def_rw("smallest_damping_squared", &Constants::smallest_damping_squared)
       .def_rw("smallest_cutoff", &Constants::smallest_cutoff)
       .def_rw("ccd_rounding", &Constants::ccd_rounding)
@@ -130,6 +135,12 @@ void register_descriptions(nb::module_& m) {
   nb::class_<Patience>(m, "Patience")
       .def(nb::init<std::int64_t, double>(), "iterations"_a, "progress"_a);
   register_constants(m);
+  nb::class_<Tolerance>(m, "Tolerance")
+      .def("__init__",
+           [](Tolerance* self, double position, double orientation, bool is_box, const Vec3& box) {
+             new (self) Tolerance{position, orientation, is_box, box};
+           },
+           "position"_a, "orientation"_a, "is_box"_a, "box"_a);
   nb::class_<Robot>(m, "Robot")
       .def(nb::init<>())
       .def("add_joint", &add_joint, "kind"_a, "parent"_a, "rotation"_a, "translation"_a, "axis"_a, "idx_q"_a, "nq"_a,
@@ -145,16 +156,17 @@ void register_descriptions(nb::module_& m) {
            nb::keep_alive<1, 2>(), "robot"_a, "constants"_a)
       .def("add_term", &add_term, "robot"_a, "frame_joint"_a, "frame_rotation"_a, "frame_translation"_a,
            "has_reference"_a, "reference_joint"_a, "reference_rotation"_a, "reference_translation"_a,
-           "asks_position"_a, "asks_rotation"_a, "asks_axis"_a, "asks_at"_a, "axis"_a, "weight"_a, "has_bounds"_a,
+           "asks_position"_a, "asks_rotation"_a, "asks_axis"_a, "asks_at"_a, "along"_a, "tolerance"_a, "axis"_a, "weight"_a, "has_bounds"_a,
            "base"_a, "reach"_a, "hole"_a)
       .def("add_coordinate", &add_coordinate, "joint"_a, "index"_a, "entry"_a, "movers"_a, "moved"_a)
       .def("finish",
-           [](Problem& self, double lightest, double size_of_chain) {
+           [](Problem& self, double lightest, double size_of_chain, bool is_wide) {
              self.lightest = lightest;
+             self.is_wide = is_wide;
              self.size_of_chain = size_of_chain;
              self.finish();
            },
-           "lightest"_a, "size_of_chain"_a);
+           "lightest"_a, "size_of_chain"_a, "is_wide"_a);
 }
 
 }  // namespace pinik

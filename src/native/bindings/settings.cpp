@@ -37,14 +37,13 @@ void register_settings(nb::module_& m) {
       .def_rw("by_svd", &Solver::by_svd)
       .def_rw("stiffness", &Solver::stiffness)
       .def_rw("relaxation", &Solver::relaxation)
+      .def_rw("loose_relaxation", &Solver::loose_relaxation)
       .def_rw("position_weight", &Solver::position_weight)
       .def_rw("printed_scaling", &Solver::printed_scaling);
-  nb::class_<Tolerance>(m, "Tolerance").def(nb::init<double, double>(), "position"_a, "orientation"_a);
   nb::class_<Settings>(m, "Settings")
       .def(nb::init<>())
       .def_rw("solver", &Settings::solver)
       .def_rw("patience", &Settings::patience)
-      .def_rw("tolerance", &Settings::tolerance)
       .def_rw("limits", &Settings::limits)
       .def_rw("restarts", &Settings::restarts)
       .def_rw("seed", &Settings::seed)

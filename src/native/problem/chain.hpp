@@ -32,7 +32,8 @@ class Chain {
   static bool fits(const Problem& problem) {
     if (problem.terms.size() != 1) return false;
     const Term& term = problem.terms.front();
-    if (term.has_reference || term.asks_axis || !term.asks_position) return false;
+    if (term.has_reference || term.asks_axis || !term.asks_position || term.has_free_axes || term.tolerance.is_box)
+      return false;
     for (int j : problem.joints) {
       const Joint& joint = problem.mechanism->joints[static_cast<std::size_t>(j)];
       if (!joint.has_one_axis() || joint.follows) return false;

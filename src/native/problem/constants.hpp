@@ -24,6 +24,7 @@ struct Constants {
   double radian = not_given;
   double no_direction = not_given;
   double reach_rounding = not_given;
+  double slack_share = not_given;
   // pinik.solvers
   double smallest_damping_squared = not_given;
   double smallest_cutoff = not_given;

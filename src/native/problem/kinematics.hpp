@@ -6,6 +6,7 @@
 
 #include "../model/fast.hpp"
 #include "chain.hpp"
+#include "slack.hpp"
 
 namespace pinik {
 
@@ -54,6 +55,7 @@ class Kinematics {
  public:
   const Problem& problem;
   bool target_jacobian = false;  // whether the Jacobian is that of the target's position instead of the frame's (thesis, eq. 3.9)
+  bool loose = false;            // whether residuals stop pulling inside their tolerances
   std::vector<Placement> world;  // placements by joint, from the last forward()
 
   explicit Kinematics(const Problem& problem) : problem(problem), world(problem.mechanism->joints.size()) {
@@ -77,20 +79,40 @@ class Kinematics {
     return {reference.R.transpose() * at.R, reference.R.transpose() * (at.p - reference.p)};
   }
 
-  // The goal in the world, at the configuration of the last forward().
+  // The goal in the world, at the configuration of the last forward(). Along free axes, its position is the frame's.
   Goal wanted(std::size_t index) const {
     const Term& term = problem.terms[index];
-    const Goal& goal = problem.goals[index];
+    Goal goal = problem.goals[index];
+    if (term.has_free_axes)
+      goal.position = term.along.cwiseProduct(goal.position) +
+                      (Vec3::Ones() - term.along).cwiseProduct(seen_from_reference(term).p);
     if (!term.has_reference) return goal;
     const Placement at = world[term.reference_joint] * term.reference;
     return {at.p + at.R * goal.position, at.R * goal.rotation, at.R * goal.direction, at.p + at.R * goal.at};
+  }
+
+  // The axes of the frame in which a target is expressed, in the world.
+  Mat3 reference_axes(const Term& term) const {
+    return term.has_reference ? Mat3(world[term.reference_joint].R * term.reference.R) : Mat3(Mat3::Identity());
+  }
+
+  // The axes of the box of a target's tolerance, for its goal in the world.
+  Mat3 box_axes(const Term& term, const Goal& goal) const {
+    return term.asks_rotation ? goal.rotation : reference_axes(term);
+  }
+
+  // The part of a position error that lies outside the target's tolerance.
+  Outside outside_tolerance(const Term& term, const Vec3& e, const Mat3& box_axes) const {
+    const double share = problem.constants.slack_share;
+    return term.tolerance.is_box ? outside_box(e, share * term.tolerance.box, box_axes)
+                                 : outside_ball(e, share * term.tolerance.position);
   }
 
   void linearize(Linearization<Rows>& at) {
     const auto columns = static_cast<Eigen::Index>(problem.coordinates.size());
     at.errors.resize(problem.terms.size());
     if constexpr (Rows != Eigen::Dynamic) {
-      if (chain_) {
+      if (chain_ && !loose) {
         at.J.resize(Rows, columns);
         return see(*chain_, problem, target_jacobian, at);
       }
@@ -117,23 +139,45 @@ class Kinematics {
     double own = 0.0;
     int row = term.row;
     if (term.asks_position) {
-      const Vec3 e = goal.position - frame.p;
-      at.e.template segment<3>(row) = term.weight * e;
+      Vec3 e = goal.position - frame.p;
       error.position = e.norm();
-      own += error.position * error.position;
+      if (term.tolerance.is_box) error.offset = box_axes(term, goal).transpose() * e;
       const Vec3 point = target_jacobian ? goal.position : frame.p;
       for (const Part& part : problem.parts[index]) {
         auto column = at.J.template block<3, 1>(row, part.coordinate);
         if (part.moves_frame) column += term.weight * velocity(part, point);
         if (part.moves_reference) column -= term.weight * velocity(part, goal.position);
       }
+      if (term.has_free_axes) {
+        const Mat3 axes = reference_axes(term);
+        scale_rows(at, row, axes * term.along.asDiagonal() * axes.transpose());
+      }
+      if (loose) {
+        const Outside outside = outside_tolerance(term, e, box_axes(term, goal));
+        scale_rows(at, row, outside.factor);
+        e = outside.left;
+      }
+      at.e.template segment<3>(row) = term.weight * e;
+      own += e.squaredNorm();
       row += 3;
     }
     if (term.asks_orientation()) {
-      at.e.template segment<3>(row) = term.turn_weight * orientation(index, term, frame, goal, row, at, error.orientation);
-      own += problem.squared_metres_per_radian * error.orientation * error.orientation;
+      Vec3 e = orientation(index, term, frame, goal, row, at, error.orientation);
+      double angle = error.orientation;
+      if (loose) {
+        const Outside outside = outside_ball(e, problem.constants.slack_share * term.tolerance.orientation);
+        scale_rows(at, row, outside.factor);
+        e = outside.left;
+        angle = e.norm();
+      }
+      at.e.template segment<3>(row) = term.turn_weight * e;
+      own += problem.squared_metres_per_radian * angle * angle;
     }
     return term.weight * term.weight * own;
+  }
+
+  static void scale_rows(Linearization<Rows>& at, int row, const Mat3& factor) {
+    at.J.template middleRows<3>(row) = (factor * at.J.template middleRows<3>(row)).eval();
   }
 
   Vec3 orientation(std::size_t index, const Term& term, const Placement& frame, const Goal& goal, int row,

@@ -15,6 +15,9 @@ struct Term {
   Placement frame, reference;  // in their joints
   bool has_reference = false;
   bool asks_position = false, asks_rotation = false, asks_axis = false, asks_at = false;
+  bool has_free_axes = false;
+  Vec3 along = Vec3::Ones();  // 1 for the axes of the reference along which the position is constrained, else 0
+  Tolerance tolerance;
   Vec3 axis = Vec3::UnitX();  // in the frame
   double weight = 1.0;        // of the position's rows, relative to the heaviest target, which has 1
   double turn_weight = 1.0;   // of the orientation's rows [m]: weight times Problem::size_of_chain
@@ -67,6 +70,7 @@ struct Problem {
   int rows = 0;
   bool is_plain = true;  // whether every coordinate is one entry of q
   double lightest = 1.0, size_of_chain = 1.0;  // the smallest weight; the length of the longest chain [m]
+  bool is_wide = false;  // whether an answer inside a wide tolerance is looked for if the exact one is not found
   double squared_metres_per_radian = 1.0;      // what a radian counts in Linearization::distance
   std::vector<Goal> goals;                     // by term; each solve sets them
 

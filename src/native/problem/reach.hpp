@@ -15,26 +15,27 @@ struct Shortfall {
   bool inner = false;
 };
 
-// The target that is farthest out of reach, if there is one.
+// The target that is farthest out of reach, by more than its tolerance, if there is one.
 inline std::optional<Shortfall> shortfall(const Problem& problem, bool limits) {
   std::optional<Shortfall> worst;
   for (std::size_t t = 0; t < problem.terms.size(); ++t) {
     const Term& term = problem.terms[t];
     const double reach = term.reach[limits], hole = term.hole[limits];
     if (!term.asks_position || !term.has_bounds || !std::isfinite(reach)) continue;
-    const Vec3& position = problem.goals[t].position;
+    // Along free axes, the nearest position to the base.
+    const Vec3 position = term.along.cwiseProduct(problem.goals[t].position - term.base) + term.base;
     const double distance = (position - term.base).norm();
     const double slack = problem.constants.reach_rounding * (reach + position.norm() + term.base.norm());
     Shortfall found{static_cast<int>(t), 0.0, 0.0, false};
     if (distance > reach + slack) {
       found.distance = distance - reach;
       found.bound = reach;
-    } else if (distance < hole - slack) {
+    } else if (distance < hole - slack && !term.has_free_axes) {
       found.distance = hole - distance;
       found.bound = hole;
       found.inner = true;
     }
-    if (found.distance > 0.0 && (!worst || found.distance > worst->distance)) worst = found;
+    if (found.distance > term.tolerance.farthest() && (!worst || found.distance > worst->distance)) worst = found;
   }
   return worst;
 }

@@ -25,7 +25,7 @@ struct Solver {
   double damping = 0.0, manipulability = 0.0;
   bool by_svd = false;
   std::vector<double> stiffness;  // by coordinate; empty if all are 1
-  double relaxation = 1.0, position_weight = 1.0;
+  double relaxation = 1.0, loose_relaxation = 1.0, position_weight = 1.0;
   bool printed_scaling = false;
 
   bool sweeps() const { return method == Method::ccd; }

@@ -14,13 +14,14 @@ class Sweep {
       : solver_(solver), kinematics_(kinematics), constants_(kinematics.problem.constants) {}
 
   // One pass from the tip to the base, in place. Returns how many joints were updated.
-  int operator()(Vector& q, const Limits& limits, const Tolerance& tolerance) {
+  int operator()(Vector& q, const Limits& limits) {
     const Problem& problem = kinematics_.problem;
     look(q);
+    const double relaxation = kinematics_.loose ? solver_.loose_relaxation : solver_.relaxation;
     int updates = 0;
     for (std::size_t c = 0; c < problem.coordinates.size(); ++c) {
       const Coordinate& coordinate = problem.coordinates[c];
-      if (all_within(tolerance)) break;
+      if (all_within()) break;
       ++updates;
       const double part = solver_.stiffness.empty() ? 1.0 : solver_.stiffness[c];
       if (coordinate.movers.size() > 1) {
@@ -31,7 +32,7 @@ class Sweep {
       const int mover = coordinate.movers.front().joint;
       const Placement& joint = kinematics_.world[static_cast<std::size_t>(mover)];
       const Vec3 axis = joint.R.col(problem.axis_of(mover, coordinate.index)), origin = joint.p;
-      const double change = best_change(coordinate, axis, origin, q, limits, part * solver_.relaxation);
+      const double change = best_change(coordinate, axis, origin, q, limits, part * relaxation);
       advance(coordinate, change, q, limits);
       if (problem.mechanism->joints[static_cast<std::size_t>(coordinate.joint)].nv == 1)
         carry(coordinate, axis, origin, change);
@@ -57,9 +58,9 @@ class Sweep {
       chasers_.emplace_back(kinematics_, t, alpha, solver_.max_residual);
   }
 
-  bool all_within(const Tolerance& tolerance) const {
+  bool all_within() const {
     for (const Chaser& chaser : chasers_)
-      if (!chaser.within(tolerance)) return false;
+      if (!chaser.within()) return false;
     return true;
   }
 

@@ -38,14 +38,13 @@ class Attempts {
     began_ = paused_ = Clock::now();
     states_seen_ = 0;
     outcome_ = Outcome();
-    least_residual_ = infinity;
+    least_miss_ = infinity;
     limits_.wrap(start);
     limits_.clip(start);
     target_ = target;
     first_number_ = nearest ? 1 : 0;
     outcome_.q = start;
     outcome_.proof = shortfall(problem_, settings_.limits);
-    if (outcome_.proof && outcome_.proof->distance <= settings_.tolerance.position) outcome_.proof.reset();
     if (problem_.coordinates.empty()) {
       attempt(start_of(0, start), problem_.constants.to_the_end, 0, false, false, 0);
       outcome_.status = Status::stalled;
@@ -66,7 +65,7 @@ class Attempts {
   Run<Rows> run_;
   const Limits limits_, loose_;
   Outcome outcome_;
-  double least_residual_ = infinity;  // of outcome_.q
+  double least_miss_ = infinity;  // of outcome_.q
   std::uint64_t target_ = 0;
   std::int64_t first_number_ = 0;  // 1 if the first attempt begins at the first of starts_
   Clock::time_point began_, paused_;
@@ -99,7 +98,7 @@ class Attempts {
 
   Status attempt(const Vector& start, Patience patience, std::int64_t max_iterations, bool bold, bool downhill,
                  std::int64_t number) {
-    RunSettings run{max_iterations, settings_.tolerance, patience, bold, downhill, outcome_.proof.has_value()};
+    RunSettings run{max_iterations, patience, bold, downhill, outcome_.proof.has_value()};
     Status ended = Status::running;
     std::int64_t iterations = 0, updates = 0;
     const auto see = [&](const Linearization<Rows>& at, std::int64_t iteration, std::int64_t updated, Status status) {
@@ -108,7 +107,7 @@ class Attempts {
       if (settings_.trace)
         outcome_.states.push_back({at.q, iteration, updated, at.errors, at.residual, number, status});
       ended = status;
-      if (status == Status::converged || (at.residual < least_residual_ && limits_.contains(at.q))) keep(at);
+      if (status == Status::converged || (miss(at) < least_miss_ && limits_.contains(at.q))) keep(at);
       if (status == Status::running && out_of_time()) ended = Status::time_limit;
       if (ended != Status::running && ended != Status::converged && !limits_.contains(at.q)) consider_inside(at);
       return ended == Status::running;
@@ -137,12 +136,25 @@ class Attempts {
     limits_.wrap(inside_.q);
     limits_.clip(inside_.q);
     kinematics_.linearize(inside_);
-    if (inside_.residual < least_residual_) keep(inside_);
+    if (miss(inside_) < least_miss_) keep(inside_);
   }
 
   void keep(const Linearization<Rows>& at) {
     outcome_.q = at.q;
-    least_residual_ = at.residual;
+    least_miss_ = miss(at);
+  }
+
+  // How far a state misses the targets [m]: its residual, or its errors beyond the tolerances if one is wide.
+  double miss(const Linearization<Rows>& at) const {
+    if (!problem_.is_wide) return at.residual;
+    const double metres_per_radian = std::sqrt(problem_.squared_metres_per_radian);
+    double squared = 0.0;
+    for (std::size_t t = 0; t < at.errors.size(); ++t) {
+      const Term& term = problem_.terms[t];
+      const double own = term.weight * at.errors[t].excess(term.tolerance, metres_per_radian);
+      squared += own * own;
+    }
+    return std::sqrt(squared);
   }
 };
 

@@ -54,7 +54,11 @@ TargetError error_of(const Term& term, const Goal& goal, double no_direction, co
   pinocchio::SE3 at = in_world(term.frame_joint, term.frame, data);
   if (term.has_reference) at = in_world(term.reference_joint, term.reference, data).actInv(at);
   TargetError error;
-  if (term.asks_position) error.position = (goal.position - at.translation()).norm();
+  if (term.asks_position) {
+    const Vec3 left = term.along.cwiseProduct(goal.position - at.translation());
+    error.position = left.norm();
+    if (term.tolerance.is_box) error.offset = term.asks_rotation ? Vec3(goal.rotation.transpose() * left) : left;
+  }
   if (term.asks_rotation) {
     error.orientation = pinocchio::log3(Mat3(goal.rotation * at.rotation().transpose())).norm();
   } else if (term.asks_axis) {

@@ -25,7 +25,7 @@ class Engine {
 
   Answer solve(Vector start, std::vector<Goal> goals, bool nearest, Pause pause) {
     std::unique_ptr<Worker> worker = borrow();
-    Answer answer = worker->solve(*robot_, settings_, start, goals, 0, nearest, {nullptr, pause});
+    Answer answer = worker->solve(*robot_, start, goals, 0, nearest, {nullptr, pause});
     give_back(std::move(worker));
     answer.goals = std::move(goals);
     return answer;
@@ -44,7 +44,7 @@ class Engine {
         std::vector<Goal> goals;
         for (std::uint64_t i = next++; i < count && !stop; i = next++) {
           take(i, start, goals);
-          put(i, worker->solve(*robot_, settings_, start, goals, i, nearest, {&stop, nullptr}));
+          put(i, worker->solve(*robot_, start, goals, i, nearest, {&stop, nullptr}));
         }
         give_back(std::move(worker));
       };
@@ -71,7 +71,7 @@ class Engine {
     }
 
     // Solve one problem; `start` is put inside the limits.
-    Answer solve(const Robot& robot, const Settings& settings, Vector& start, std::vector<Goal>& goals,
+    Answer solve(const Robot& robot, Vector& start, std::vector<Goal>& goals,
                  std::uint64_t target, bool nearest, const Interrupts& now) {
       const Clock::time_point began = Clock::now();
       problem.goals.swap(goals);
@@ -85,7 +85,8 @@ class Engine {
           attempts);
       answer.errors = robot.certifier->errors(problem, answer.q, memory);
       bool within = true;
-      for (const TargetError& error : answer.errors) within = within && error.within(settings.tolerance);
+      for (std::size_t t = 0; t < answer.errors.size(); ++t)
+        within = within && answer.errors[t].within(problem.terms[t].tolerance);
       if (within)
         answer.status = Status::converged;
       else if (answer.proof)

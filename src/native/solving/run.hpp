@@ -8,7 +8,6 @@ namespace pinik {
 
 struct RunSettings {
   std::int64_t max_iterations = 0;
-  Tolerance tolerance;
   Patience patience;
   bool bold = false, downhill = false, beyond = false;
 };
@@ -26,20 +25,24 @@ class Run {
     const bool bold = settings.bold && !solver_.sweeps();
     stepping_.damp_by(bold ? kinematics_.problem.constants.bold_part_of_distance : 1.0, settings.beyond);
     const Limits* box = bold && limits.enabled ? &loose : &limits;
+    kinematics_.loose = false;
     at_.q = start;
     kinematics_.linearize(at_);
     double milestone = at_.residual, scale = 1.0;
     std::int64_t since = 0, iteration = 0, updates = 0;
+    const auto move_inside = [&] {
+      box = &limits;
+      limits.wrap(at_.q);
+      limits.clip(at_.q);
+      kinematics_.linearize(at_);
+      milestone = at_.residual;
+      since = 0;
+    };
     for (;;) {
-      bool reached = all_within(settings.tolerance);
+      bool reached = all_within();
       if (reached && !limits.contains(at_.q)) {  // only a bold run gets there
-        box = &limits;
-        limits.wrap(at_.q);
-        limits.clip(at_.q);
-        kinematics_.linearize(at_);
-        milestone = at_.residual;
-        since = 0;
-        reached = all_within(settings.tolerance);
+        move_inside();
+        reached = all_within();
       }
       if (at_.residual < milestone * (1.0 - settings.patience.progress)) {
         milestone = at_.residual;
@@ -52,8 +55,14 @@ class Run {
         status = Status::stalled;
       else if (iteration >= settings.max_iterations)
         status = Status::max_iterations;
+      if (status == Status::stalled && kinematics_.problem.is_wide && !kinematics_.loose && !settings.beyond) {
+        kinematics_.loose = true;
+        scale = 1.0;
+        status = Status::running;
+        move_inside();
+      }
       if (!see(at_, iteration, updates, status) || status != Status::running) return;
-      updates += stepping_.advance(at_, *box, settings.tolerance, scale, next_.q);
+      updates += stepping_.advance(at_, *box, scale, next_.q);
       kinematics_.linearize(next_);
       if (!settings.downhill || solver_.sweeps()) {
         std::swap(at_, next_);
@@ -74,9 +83,9 @@ class Run {
   Stepping<Rows> stepping_;
   Linearization<Rows> at_, next_;
 
-  bool all_within(const Tolerance& tolerance) const {
-    for (const TargetError& error : at_.errors)
-      if (!error.within(tolerance)) return false;
+  bool all_within() const {
+    for (std::size_t t = 0; t < at_.errors.size(); ++t)
+      if (!at_.errors[t].within(kinematics_.problem.terms[t].tolerance)) return false;
     return true;
   }
 };

@@ -17,7 +17,6 @@ struct Settings {
   std::uint64_t seed = 0;
   std::int64_t max_iterations = 0;         // of one attempt
   std::int64_t iterations_to_the_end = 0;  // of the last run, which continues the best of the failed attempts
-  Tolerance tolerance;
   double time_limit = infinity;  // [s]
   bool trace = false;
 };

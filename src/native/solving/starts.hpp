@@ -126,8 +126,9 @@ class Starts {
         const Placement at = kinematics.seen_from_reference(term);
         const double weight = term.weight * term.weight;
         if (term.asks_position) {
-          seen_.row(k).template segment<3>(f) = -2.0 * weight * at.p;
-          lengths_[k] += weight * at.p.squaredNorm();
+          const Vec3 p = term.along.cwiseProduct(at.p);
+          seen_.row(k).template segment<3>(f) = -2.0 * weight * p;
+          lengths_[k] += weight * p.squaredNorm();
           f += 3;
         }
         if (term.asks_rotation) {

@@ -20,11 +20,10 @@ class Stepping {
   }
 
   // Write the configuration after the next step into `q`. Returns how many joints a sweep updated.
-  int advance(const Linearization<Rows>& from, const Limits& limits, const Tolerance& tolerance, double scale,
-              Vector& q) {
+  int advance(const Linearization<Rows>& from, const Limits& limits, double scale, Vector& q) {
     if (solver_.sweeps()) {
       q = from.q;
-      const int updates = sweep_(q, limits, tolerance);
+      const int updates = sweep_(q, limits);
       if (!q.allFinite()) q = from.q;
       limits.clip(q);
       return updates;

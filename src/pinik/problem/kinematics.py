@@ -10,9 +10,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..model.robot_model import RobotModel
-from .problem import Problem
+from .problem import RADIAN, Problem
 from .rows import Rows
-from .targets import Target, TargetError, as_targets
+from .targets import Target, as_targets
+from .tolerance import TargetError
 
 __all__ = ["Kinematics", "Linearization"]
 
@@ -53,6 +54,7 @@ class Kinematics:
         targets: The current targets.
         rows: The rows of e and J for each target.
         evaluations: The number of residual evaluations so far.
+        loose: Whether residuals stop pulling inside their tolerances (`problem.slack`).
     """
 
     def __init__(
@@ -74,7 +76,7 @@ class Kinematics:
         return made
 
     def _begin(self, problem: Problem) -> None:
-        self.evaluations = 0
+        self.evaluations, self.loose = 0, False
         self._compile(problem)
 
     def _compile(self, problem: Problem) -> None:
@@ -92,7 +94,8 @@ class Kinematics:
         problem = self.problem
         if [target.shape for target in asked] != problem.kinds:
             locked = [joint.name for joint in problem.locked]
-            self._compile(Problem(self.robot, asked, locked=locked, target_jacobian=problem.target_jacobian))
+            at_target, tolerance = problem.target_jacobian, problem.tolerance
+            self._compile(Problem(self.robot, asked, locked=locked, target_jacobian=at_target, tolerance=tolerance))
             return
         self.targets = asked
         for rows, target in zip(self.rows, asked, strict=True):
@@ -102,17 +105,28 @@ class Kinematics:
         """Residual, Jacobian and errors at `q` (nq,)."""
         self.evaluations += 1
         if len(self.rows) == 1:
-            e, J, error = self.rows[0].linearize(q)
+            e, J, error = self.rows[0].linearize(q, self.loose)
             errors = [error]
         else:
-            parts = [rows.linearize(q) for rows in self.rows]
+            parts = [rows.linearize(q, self.loose) for rows in self.rows]
             e = np.concatenate([part[0] for part in parts])
             J = np.vstack([part[1] for part in parts])
             errors = [part[2] for part in parts]
         problem = self.problem
         if problem.columns_to_clear is not None:
             J[:, problem.columns_to_clear] = 0.0
-        return Linearization(q, e, J, errors, math.sqrt(e.dot(e)), self._distance(errors), problem.free)
+        distance = self._distance_outside(e) if self.loose else self._distance(errors)
+        return Linearization(q, e, J, errors, math.sqrt(e.dot(e)), distance, problem.free)
+
+    def _distance_outside(self, e: Array) -> float:
+        """The distance of a residual that has stopped pulling inside the tolerances."""
+        squared, row = 0.0, 0
+        for term in self.problem.terms:
+            turning = row + term.size - 3 * term.pattern.asks_orientation
+            squared += float(e[row:turning].dot(e[row:turning]))
+            row += term.size
+            squared += RADIAN * RADIAN * float(e[turning:row].dot(e[turning:row]))
+        return math.sqrt(squared)
 
     def _distance(self, errors: list[TargetError]) -> float:
         squared, of_a_radian = 0.0, self.problem.squared_metres_per_radian

@@ -15,8 +15,11 @@ from ..model.robot_model import RobotModel
 from .coordinates import Coordinate
 from .targets import Target, as_targets
 from .term import Term
+from .tolerance import Tolerance
 
 __all__ = ["RADIAN", "Problem"]
+
+_DEFAULT = Tolerance()
 
 RADIAN = 0.3
 """The weight of an orientation error of one radian in a distance, relative to the chain's length."""
@@ -32,11 +35,13 @@ class Problem:
         terms: The targets, compiled.
         locked: The joints that must not move.
         target_jacobian: Whether Jacobians are taken at the target instead of the effector (thesis, eq. 3.9).
+        tolerance: The tolerance of the targets that have none of their own.
         free: (nv,) whether a tangent coordinate moves a target frame and is not locked.
         coordinates: The free coordinates one by one, distal joints first, in the order of CCD.
         size: The number of residual rows m.
         size_of_chain: The length of the longest chain [m]; 1 if all lengths are 0.
         lightest: The smallest weight divided by the largest.
+        is_wide: Whether a tolerance is so wide that an answer inside it is looked for if the exact one is not found.
         held_entries: The indices of the entries of q that must not change, if nq and nv differ; else None.
         columns_to_clear: The columns of J that are not free but may be nonzero; None if there are none.
     """
@@ -48,6 +53,7 @@ class Problem:
         *,
         locked: Iterable[str] = (),
         target_jacobian: bool = False,
+        tolerance: Tolerance = _DEFAULT,
     ) -> None:
         """Compile the targets.
 
@@ -56,6 +62,7 @@ class Problem:
             targets: At least one.
             locked: Names of joints that must not move; the joints that mimic them do not move either.
             target_jacobian: Whether to take Jacobians at the target.
+            tolerance: The tolerance of the targets that have none of their own.
 
         Raises:
             UnknownNameError: There is no such frame or joint.
@@ -65,6 +72,7 @@ class Problem:
         self.targets = as_targets(targets)
         self.locked = tuple(robot.settable_joint(name) for name in as_names(locked, "locked"))
         self.target_jacobian = target_jacobian
+        self.tolerance = tolerance
         self.model = robot.model
         ids = [
             (self._frame(target), None if target.relative_to is None else robot.frame_id(target.relative_to))
@@ -78,9 +86,17 @@ class Problem:
         heaviest = max(target.weight for target in self.targets)
         self.lightest = min(target.weight for target in self.targets) / heaviest
         self.terms = tuple(
-            Term(target, chain, *own, target.weight / heaviest, target.weight / heaviest * self.size_of_chain)
+            Term(
+                target,
+                chain,
+                *own,
+                target.weight / heaviest,
+                target.weight / heaviest * self.size_of_chain,
+                target.tolerance or tolerance,
+            )
             for target, chain, own in zip(self.targets, chains, ids, strict=True)
         )
+        self.is_wide = any(term.tolerance.is_wide(self.size_of_chain) for term in self.terms)
         self.size = sum(term.size for term in self.terms)
         # Without a reference, the other columns are exactly zero. With one, the columns of joints that move both frames
         # cancel only up to rounding.

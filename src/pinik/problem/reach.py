@@ -15,12 +15,16 @@ from ..model.limits import Limits
 from .problem import Problem
 from .targets import Target
 from .term import Term
+from .tolerance import Tolerance
 
 __all__ = ["Bounds", "Shortfall", "bounds_of", "reach_bounds", "shortfall"]
 
 Vector = Sequence[float]  # three plain numbers, because numpy is slow for so few
 
 ROUNDING = 1e-12  # relative to the lengths involved: allowance for rounding in the placements of a chain
+
+
+_NONE = Tolerance(0.0, 0.0)
 
 
 class Shortfall(NamedTuple):
@@ -57,32 +61,36 @@ class _Span(NamedTuple):
     distance: _Range
 
 
-def shortfall(targets: Sequence[Target], bounds: Sequence[Bounds | None], slack: float = 0.0) -> Shortfall | None:
-    """The target that lies farthest outside its chain's reach, if the distance exceeds `slack`; else None.
+def shortfall(
+    targets: Sequence[Target], bounds: Sequence[Bounds | None], tolerance: Tolerance = _NONE
+) -> Shortfall | None:
+    """The target that lies farthest outside its chain's reach, by more than its tolerance; None if there is none.
 
     Args:
         targets: The targets.
         bounds: The bounds for each target, from `bounds_of`.
-        slack: The position tolerance [m].
+        tolerance: The tolerance of the targets that have none of their own; zero by default.
     """
     worst = None
     for index, (target, own) in enumerate(zip(targets, bounds, strict=True)):
         found = _shortfall(index, target, own)
-        if found is not None and (worst is None or found.distance > worst.distance):
+        if found is None or found.distance <= (target.tolerance or tolerance).farthest:
+            continue
+        if worst is None or found.distance > worst.distance:
             worst = found
-    return None if worst is None or worst.distance <= slack else worst
+    return worst
 
 
 def _shortfall(index: int, target: Target, bounds: Bounds | None) -> Shortfall | None:
     if target.position is None or bounds is None:
         return None
     base, reach, hole = bounds
-    position = target.position
+    position = np.where(target.along, target.position, base)  # along free axes, the nearest to the base
     distance = float(np.linalg.norm(position - base))
     slack = ROUNDING * (reach + float(np.linalg.norm(position)) + float(np.linalg.norm(base)))
     if distance > reach + slack:
         return Shortfall(index, distance - reach, reach, False)
-    if distance < hole - slack:
+    if distance < hole - slack and all(target.along):
         return Shortfall(index, hole - distance, hole, True)
     return None
 

@@ -1,11 +1,11 @@
-"""What a solve is asked for: targets, and how near to them is near enough."""
+"""Targets: frames, and where they should be."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 import pinocchio
@@ -13,8 +13,9 @@ from numpy.typing import ArrayLike, NDArray
 
 from ..checks import as_finite_number, as_point, as_rotation, as_se3, as_unit_vector, as_vector
 from ..errors import InputError, UnknownNameError
+from .tolerance import Tolerance
 
-__all__ = ["NO_DIRECTION", "TARGET_KEYWORDS", "Target", "TargetError", "Tolerance", "as_targets", "largest_of"]
+__all__ = ["NO_DIRECTION", "TARGET_KEYWORDS", "Target", "as_position", "as_targets"]
 
 Array = NDArray[np.float64]
 
@@ -23,55 +24,6 @@ NO_DIRECTION = 1e-9
 _LIGHTEST, _HEAVIEST = 1e-3, 1e3
 _NAMED_AXES = {"x": (1.0, 0.0, 0.0), "y": (0.0, 1.0, 0.0), "z": (0.0, 0.0, 1.0)}
 _NAMED_AXES |= {f"-{name}": (-x, -y, -z) for name, (x, y, z) in list(_NAMED_AXES.items())}
-
-
-class Tolerance(NamedTuple):
-    """The largest errors that count as reached.
-
-    Attributes:
-        position: Metres.
-        orientation: Radians.
-    """
-
-    position: float = 1e-4
-    orientation: float = 1e-3
-
-    @classmethod
-    def of(cls, value: Tolerance | ArrayLike | None) -> Tolerance:
-        """A checked Tolerance from None (the defaults), a Tolerance or a pair (metres, radians)."""
-        if value is None:
-            return cls()
-        pair = as_vector(value, 2, "tolerance", "metres, radians")
-        if (pair <= 0.0).any():
-            raise InputError(f"tolerance must be two positive numbers (metres, radians); got {pair.tolist()}")
-        return cls(float(pair[0]), float(pair[1]))
-
-
-class TargetError(NamedTuple):
-    """How far one target is missed; None for what it does not ask for.
-
-    Attributes:
-        position: Metres.
-        orientation: Radians; for an axis target the angle between the axis and its direction.
-    """
-
-    position: float | None
-    orientation: float | None
-
-    def within(self, tolerance: Tolerance) -> bool:
-        """Whether both errors are at most their tolerances."""
-        return (self.position is None or self.position <= tolerance.position) and (
-            self.orientation is None or self.orientation <= tolerance.orientation
-        )
-
-
-def largest_of(errors: Iterable[TargetError]) -> TargetError:
-    """The largest position error and the largest orientation error of several targets, None where none has one."""
-    errors = tuple(errors)
-    return TargetError(
-        max((error.position for error in errors if error.position is not None), default=None),
-        max((error.orientation for error in errors if error.orientation is not None), default=None),
-    )
 
 
 @dataclass(frozen=True, eq=False, init=False)
@@ -83,13 +35,15 @@ class Target:
 
     Attributes:
         frame: The name of the frame to move.
-        position: The position wanted for the frame's origin, or for `tool`'s (3,) [m]; None where it is free.
+        position: The position wanted for the frame's origin, or for `tool`'s (3,) [m], NaN along axes that are free;
+            None where all of it is free.
         rotation: The orientation wanted (3, 3); None where it is free or given by `axis`.
         axis: A unit vector (3,) fixed in the frame (in `tool` where one is given).
         direction: The unit vector (3,) that `axis` should point along.
         at: The point (3,) [m] that `axis` should point at.
         relative_to: The frame, moving or not, in which all of the above is expressed; the world when None.
         weight: A factor on this target's residual in the step; it never changes the verdict.
+        tolerance: The errors of this target that count as reached; those of the call when None.
     """
 
     frame: str
@@ -100,12 +54,13 @@ class Target:
     at: Array | None
     relative_to: str | None
     weight: float
+    tolerance: Tolerance | None
     _tool: pinocchio.SE3 | None
 
     def __init__(
         self,
         frame: str,
-        position: ArrayLike | None = None,
+        position: ArrayLike | Sequence[float | None] | None = None,
         *,
         rotation: ArrayLike | None = None,
         rpy: ArrayLike | None = None,
@@ -118,12 +73,14 @@ class Target:
         tool: pinocchio.SE3 | ArrayLike | None = None,
         relative_to: str | None = None,
         weight: float = 1.0,
+        tolerance: Tolerance | ArrayLike | None = None,
     ) -> None:
         """Check and normalise.
 
         Args:
             frame: The frame to move.
-            position: Where its origin should be (3,) [m].
+            position: Where its origin should be (3,) [m]. A coordinate of None leaves that axis of `relative_to`, or of
+                the world, free.
             rotation: Rotation matrix (3, 3).
             rpy: Fixed-axis roll, pitch, yaw (3,) [rad]: Rz(yaw) Ry(pitch) Rx(roll).
             quat_xyzw: Quaternion, scalar last; scaled to unit length.
@@ -135,6 +92,8 @@ class Target:
             tool: SE3 (or 4×4) of the point meant, in the frame; or just its position (3,) [m].
             relative_to: The frame in which the target is expressed.
             weight: A factor from 0.001 to 1000.
+            tolerance: The errors that count as reached (metres, radians). The metres may be three numbers: the largest
+                errors along the axes of the target's rotation, or of `relative_to` if it has no rotation.
 
         Raises:
             InputError: Nothing is asked for, something is contradictory, not finite or of the wrong shape; a direction
@@ -152,13 +111,14 @@ class Target:
             position, rotation = pose.translation, pose.rotation
         self._keep(
             frame=frame,
-            position=None if position is None else as_point(position, f"{what}position"),
+            position=None if position is None else as_position(position, f"{what}position"),
             rotation=_rotation(what, rotation, rpy, quat_xyzw, quat_wxyz),
             axis=None if axis is None else _axis(axis, f"{what}axis"),
             direction=None if direction is None else as_unit_vector(direction, f"{what}direction"),
             at=None if at is None else as_point(at, f"{what}at"),
             relative_to=relative_to,
             weight=float(weight),
+            tolerance=None if tolerance is None else Tolerance.of(tolerance, f"{what}tolerance"),
             _tool=None if tool is None else _tool(tool, f"{what}tool"),
         )
 
@@ -183,18 +143,26 @@ class Target:
     def _key(self) -> tuple[object, ...]:
         """All that is asked, as something that can be compared."""
         numbers = (self.position, self.rotation, self.direction, self.at)
-        return self.shape, tuple([None if value is None else tuple((value + 0.0).flat) for value in numbers])
+        return self.shape, tuple([None if value is None else tuple(_known(value)) for value in numbers])
 
     @property
     def asks_orientation(self) -> bool:
         """Whether a rotation, or an axis's direction, is wanted."""
         return self.rotation is not None or self.axis is not None
 
+    @property
+    def along(self) -> tuple[bool, bool, bool]:
+        """Along which axes of `relative_to` the position is constrained."""
+        if self.position is None:
+            return False, False, False
+        x, y, z = (~np.isnan(self.position)).tolist()
+        return x, y, z
+
     @cached_property
     def shape(self) -> tuple[object, ...]:
         """What is asked of which frame, without the numbers that say where. It is equal where only these differ."""
         axis = None if self.axis is None else tuple(self.axis.tolist())
-        parts = (self.position is not None, self.rotation is not None, axis, self.at is not None)
+        parts = (self.along, self.rotation is not None, axis, self.at is not None, self.tolerance)
         tool = None if self._tool is None else self._tool.homogeneous.tobytes()
         return self.frame, self.relative_to, self.weight, tool, parts
 
@@ -225,6 +193,8 @@ class Target:
         moved = object.__new__(Target)
         vars(moved).update(vars(self))
         vars(moved).pop("_key", None)
+        if self.position is not None:
+            position = np.where(self.along, position, np.nan)
         given = {"position": position, "rotation": rotation, "direction": direction, "at": at}
         moved._keep(
             **{
@@ -234,6 +204,20 @@ class Target:
             }
         )
         return moved
+
+    def alone(self, part: str) -> Target | None:
+        """The same target with its position or its orientation alone; None if it does not ask for that part.
+
+        Args:
+            part: "position" or "orientation".
+        """
+        dropped = ("rotation", "axis", "direction", "at") if part == "position" else ("position",)
+        if self.position is None if part == "position" else not self.asks_orientation:
+            return None
+        own = object.__new__(Target)
+        vars(own).update({name: value for name, value in vars(self).items() if name not in ("_key", "shape")})
+        vars(own).update(dict.fromkeys(dropped))
+        return own
 
     def __reduce__(self) -> tuple[Any, ...]:
         fields = {name: value for name, value in vars(self).items() if name not in ("_key", "shape")}
@@ -251,7 +235,7 @@ class Target:
             raise InputError(
                 f'a target must be an object such as {{"frame": …, "position": [x, y, z]}}; got {fields!r}'
             )
-        keywords = ("frame", "position", *TARGET_KEYWORDS)
+        keywords = ("frame", "position", *TARGET_KEYWORDS, "tolerance")
         for key in fields:
             if key not in keywords:
                 raise UnknownNameError("target keyword", key, keywords)
@@ -265,13 +249,16 @@ class Target:
         for name in ("position", "rotation", "axis", "direction", "at"):
             value = getattr(self, name)
             if value is not None:
-                fields[name] = value.tolist()
+                fields[name] = _jsonable(value)
         if self._tool is not None:
             fields["tool"] = self._tool.homogeneous.tolist()
         if self.relative_to is not None:
             fields["relative_to"] = self.relative_to
         if self.weight != 1.0:
             fields["weight"] = self.weight
+        if self.tolerance is not None:
+            box = self.tolerance.box
+            fields["tolerance"] = [self.tolerance.position if box is None else list(box), self.tolerance.orientation]
         return fields
 
 
@@ -298,7 +285,7 @@ TARGET_KEYWORDS = (
     "rotation", "rpy", "quat_xyzw", "quat_wxyz", "placement", "axis", "direction", "at", "tool", "relative_to",
     "weight",
 )  # fmt: skip
-"""What `Target` takes beside frame and position."""
+"""What `Target` takes besides frame, position and tolerance."""
 
 
 def _restored(fields: dict[str, Any]) -> Target:
@@ -363,6 +350,28 @@ def _rotation(
         raise InputError(f"{what}a quaternion must not be zero; got {quaternion.tolist()} (x, y, z, w)")
     quaternion = quaternion / largest  # first, so that no square overflows
     return np.array(pinocchio.Quaternion(quaternion / np.linalg.norm(quaternion)).toRotationMatrix())
+
+
+def as_position(position: ArrayLike | Sequence[float | None], what: str) -> Array:
+    """A point (3,) [m], with NaN for coordinates of None."""
+    if not isinstance(position, (list, tuple)) or len(position) != 3 or not any(x is None for x in position):
+        return as_point(position, what)  # type: ignore[arg-type]
+    if all(coordinate is None for coordinate in position):
+        raise InputError("must have a coordinate that is not None; leave it out to leave all axes free", argument=what)
+    free = [coordinate is None for coordinate in position]
+    numbers: list[Any] = [0.0 if coordinate is None else coordinate for coordinate in position]
+    point = as_point(numbers, what)
+    return np.where(free, np.nan, point)
+
+
+def _known(numbers: Array) -> list[float | None]:
+    """The numbers one by one, with None for NaN and 0 for −0, so that they can be compared."""
+    return [x + 0.0 if x == x else None for x in numbers.ravel().tolist()]
+
+
+def _jsonable(numbers: Array) -> list[Any]:
+    """Nested lists of the numbers; None for NaN."""
+    return _known(numbers) if numbers.ndim == 1 else numbers.tolist()
 
 
 def _axis(axis: str | ArrayLike, what: str) -> Array:

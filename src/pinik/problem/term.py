@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 from ..model.chains import Chain
 from .targets import Target
+from .tolerance import Tolerance
 
 __all__ = ["Term"]
 
@@ -20,6 +21,7 @@ class Term:
         frame, reference: Indices of the frames in the problem's model; a reference of None is the world.
         weight: The factor on its position rows, at most 1.
         turn_weight: The factor on its orientation rows [m]: `weight` times the problem's `size_of_chain`.
+        tolerance: The errors that count as reached.
     """
 
     pattern: Target
@@ -28,6 +30,12 @@ class Term:
     reference: int | None
     weight: float
     turn_weight: float
+    tolerance: Tolerance
+
+    @property
+    def has_free_axes(self) -> bool:
+        """Whether the position is constrained along some axes only."""
+        return self.pattern.position is not None and not all(self.pattern.along)
 
     @property
     def size(self) -> int:

@@ -21,7 +21,8 @@ if TYPE_CHECKING:
     from ..model.robot_model import RobotModel
     from ..problem.kinematics import Kinematics, Linearization
     from ..problem.problem import Problem
-    from ..problem.targets import Target, Tolerance
+    from ..problem.targets import Target
+    from ..problem.tolerance import Tolerance
 
 __all__ = ["JacobianSolver", "Patience", "Solver", "SweepingSolver", "field_names", "without_motion"]
 

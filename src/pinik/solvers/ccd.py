@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from ..problem.coordinates import Coordinate
     from ..problem.kinematics import Kinematics
     from ..problem.problem import Problem
-    from ..problem.targets import Tolerance
+    from ..problem.tolerance import Tolerance
 
 __all__ = ["CCD"]
 
@@ -84,7 +84,7 @@ class CCD(SweepingSolver):
         model, data = kinematics.model, kinematics.data
         q = q.copy()
         chasers = self._chasers(q, kinematics)
-        relaxation = self.relaxation_for(kinematics.problem)
+        relaxation = self.relaxation_for(kinematics.problem, kinematics.loose)
         updates = 0
         for coordinate in kinematics.problem.coordinates:
             if all([chaser.within(tolerance) for chaser in chasers]):
@@ -111,17 +111,22 @@ class CCD(SweepingSolver):
         kinematics.evaluations += 1
         size = kinematics.problem.size_of_chain
         alpha = self.position_weight / (size if self.scaling == "printed" else size * size)
-        return [Chaser(rows, alpha, self.max_residual) for rows in kinematics.rows]
+        return [Chaser(rows, alpha, self.max_residual, kinematics.loose) for rows in kinematics.rows]
 
     @property
     def held(self) -> tuple[str, ...]:
         """The joints of stiffness 0."""
         return without_motion(self.stiffness)
 
-    def relaxation_for(self, problem: Problem) -> float:
-        """The relaxation; if it is None, the default for the kinds of the targets."""
+    def relaxation_for(self, problem: Problem, loose: bool = False) -> float:
+        """The relaxation; if it is None, the default for the kinds of the targets.
+
+        With `loose`, residuals stop pulling inside their tolerances, and overshooting would leave a tolerance again.
+        """
         if self.relaxation is not None:
             return self.relaxation
+        if loose:
+            return 1.0
         return _RELAXATION_OF_POSES if any(target.asks_orientation for target in problem.targets) else 1.0
 
     def _best_change(

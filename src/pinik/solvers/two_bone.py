@@ -21,7 +21,8 @@ if TYPE_CHECKING:
     from ..model.limits import Limits
     from ..problem.kinematics import Kinematics
     from ..problem.problem import Problem
-    from ..problem.targets import Target, Tolerance
+    from ..problem.targets import Target
+    from ..problem.tolerance import Tolerance
 
 __all__ = ["TwoBoneSolver"]
 
@@ -104,6 +105,8 @@ def _bones(robot: RobotModel, targets: Sequence[Target]) -> tuple[TwoBone, Array
     target = targets[0]
     if len(targets) > 1:
         raise InputError(f"two_bone takes only one target; got {len(targets)}")
+    if target.position is not None and not all(target.along):
+        raise InputError(f"two_bone takes only a whole position; target {target.frame!r} leaves an axis free")
     if target.position is None or target.asks_orientation:
         raise InputError(f"two_bone takes only a position; target {target.frame!r} has an orientation")
     if target.tool is not None:

@@ -8,7 +8,7 @@ import time
 import numpy as np
 from numpy.typing import NDArray
 
-from ..problem.targets import TargetError
+from ..problem.tolerance import TargetError
 from ..solvers.two_bone import TwoBoneSolver
 from .attempts import Outcomes
 from .native.codec import targets_of
@@ -28,7 +28,8 @@ def lands_at_once(question: Question) -> bool:
     """Whether the first step of the method is final, and the options allow the second step that confirms it."""
     solver, options = question.solver, question.options
     unhurried = options.iterations_at_most > 1 and options.time_limit == math.inf
-    return isinstance(solver, TwoBoneSolver) and solver.lands_at_once and unhurried
+    whole = all(term.tolerance.box is None for term in question.problem.terms)
+    return isinstance(solver, TwoBoneSolver) and solver.lands_at_once and unhurried and whole
 
 
 def attempt_at_once(question: Question, goals: Array, starts: Array) -> Outcomes:
@@ -41,7 +42,7 @@ def attempt_at_once(question: Question, goals: Array, starts: Array) -> Outcomes
         part = slice(begin, begin + _BLOCK)
         q[part], missed[part], rests[part] = _answered(question, positions[part], starts[part])
     status = np.full(count, Status.CONVERGED, dtype=object)
-    outside = np.flatnonzero(missed > question.options.tolerance.position)
+    outside = np.flatnonzero(missed > question.problem.terms[0].tolerance.farthest)
     status[outside] = [_status(question, goals[k], float(missed[k])) for k in outside]
     iterations = np.where((status == Status.CONVERGED) | rests, 1, 2) * question.problem.free.any()
     none = np.zeros(count, dtype=np.int64)

@@ -12,7 +12,8 @@ from numpy.typing import NDArray
 
 from ..problem.kinematics import Kinematics
 from ..problem.reach import Shortfall, shortfall
-from ..problem.targets import Target, TargetError
+from ..problem.targets import Target
+from ..problem.tolerance import TargetError
 from .question import Question
 from .run import TO_THE_END, Pace, run
 from .starts import Starts
@@ -150,7 +151,7 @@ class _Search:
 
     def _attempt_and_restart(self) -> Status:
         options = self.question.options
-        proof = shortfall(self.kinematics.targets, self.question.bounds, options.tolerance.position)
+        proof = shortfall(self.kinematics.targets, self.question.bounds, options.tolerance)
         most = options.restarts_at_most if self.attempts.draws else 0
         if proof is not None:
             most = min(most, RESTARTS_WHEN_UNREACHABLE)
@@ -171,7 +172,7 @@ class _Search:
         for state in run(self.question, self.kinematics, start, pace):
             if options.trace:
                 self.states.append(state)
-            if (self.best is None or state.residual < self.best.residual) and limits.contains(state.q):
+            if (self.best is None or self._miss(state) < self._miss(self.best)) and limits.contains(state.q):
                 self.best = state
             status = state.status
             if status is None and self.deadline < math.inf and time.perf_counter() > self.deadline:
@@ -187,12 +188,26 @@ class _Search:
         assert status is not None  # a run's last state has one
         return status
 
+    def _miss(self, state: State) -> float:
+        """How far a state misses the targets [m]: its residual, or its errors beyond the tolerances if one is wide."""
+        problem = self.question.problem
+        if not problem.is_wide:
+            return state.residual
+        metres = math.sqrt(problem.squared_metres_per_radian)
+        return math.hypot(
+            *[
+                term.weight * error.excess(term.tolerance, metres)
+                for term, error in zip(problem.terms, state.errors, strict=True)
+            ]
+        )
+
     def _consider_inside(self, state: State) -> None:
         """Move a state from outside the limits to the inside, and keep it if it is the best so far."""
         limits = self.question.limits
         at = self.kinematics.linearize(limits.clip(limits.wrap(state.q)))
-        if self.best is None or at.residual < self.best.residual:
-            self.best = state._replace(q=at.q, errors=tuple(at.errors), residual=at.residual)
+        inside = state._replace(q=at.q, errors=tuple(at.errors), residual=at.residual)
+        if self.best is None or self._miss(inside) < self._miss(self.best):
+            self.best = inside
 
     def _judged(self, ended: Status) -> Outcome:
         """The outcome with the best state, judged by plain forward kinematics."""

@@ -13,7 +13,8 @@ from numpy.typing import ArrayLike
 from ..errors import InputError
 from ..model.robot_model import RobotModel
 from ..problem.kinematics import Kinematics
-from ..problem.targets import Target, Tolerance
+from ..problem.targets import Target
+from ..problem.tolerance import Tolerance
 from ..solvers.registry import Method
 from .kept import Kept, Key, kept_of
 from .keys import key_of
@@ -248,7 +249,7 @@ def answer(
             if quick is not None:
                 return quick
     asked = asked_targets(targets, wanted, method, parameters)
-    if key is None:
+    if key is None or not all(asked[0].along):
         key = key_of(tuple([target.shape for target in asked]), method, given, parameters)
         prepared = _found(kept, key)
     if prepared is None:

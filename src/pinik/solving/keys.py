@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from ..problem.targets import Tolerance
+from ..problem.tolerance import Tolerance
 from ..solvers.registry import SOLVERS, Method
 from .kept import Key
 from .options import OPTION_NAMES

@@ -16,7 +16,8 @@ from ..checks import as_count, as_many, as_numbers, as_points, as_rotations, as_
 from ..errors import InputError
 from ..model.robot_model import RobotModel
 from ..problem.reach import shortfall
-from ..problem.targets import Target, Tolerance, as_targets, largest_of
+from ..problem.targets import Target, as_targets
+from ..problem.tolerance import Tolerance, largest_of
 from ..solvers.registry import Method
 from .at_once import attempt_at_once, lands_at_once
 from .attempts import Outcome, Outcomes
@@ -166,11 +167,11 @@ class Solutions(Outcomes):
         outcome = Outcome(
             self.status[index],
             self.q[index].copy(),
-            measure_errors(question.robot, targets, self.q[index]),
+            measure_errors(question.robot, targets, self.q[index], tolerance),
             int(self.iterations[index]),
             int(self.joint_updates[index]),
             int(self.restarts[index]),
-            shortfall(targets, question.bounds, tolerance.position) if missed else None,
+            shortfall(targets, question.bounds, tolerance) if missed else None,
             (),
             targets,
             float(self.time[index]),

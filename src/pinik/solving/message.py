@@ -7,7 +7,8 @@ from collections.abc import Mapping, Sequence
 
 from ..closed_form.robot_bones import OffPlane
 from ..problem.reach import Shortfall
-from ..problem.targets import Target, TargetError, Tolerance, largest_of
+from ..problem.targets import Target
+from ..problem.tolerance import TargetError, Tolerance, largest_of
 from .question import Question
 from .state import Status
 from .verdict import Verdict
@@ -15,7 +16,13 @@ from .verdict import Verdict
 __all__ = ["explain"]
 
 
-def explain(question: Question, targets: Sequence[Target], verdict: Verdict, active: Mapping[str, str]) -> str:
+def explain(
+    question: Question,
+    targets: Sequence[Target],
+    verdict: Verdict,
+    active: Mapping[str, str],
+    alone: Sequence[str] = (),
+) -> str:
     """Explain why the solve ended, which errors remain, and which joints are at their limits.
 
     Args:
@@ -23,6 +30,7 @@ def explain(question: Question, targets: Sequence[Target], verdict: Verdict, act
         targets: The targets.
         verdict: The verdict on the answer.
         active: Joint name → "lower", "upper" or "both", for the joints at a limit.
+        alone: Which of "position" and "orientation" is found when it is asked for alone.
     """
     status, errors, proof = verdict
     if status is Status.CONVERGED:
@@ -30,8 +38,8 @@ def explain(question: Question, targets: Sequence[Target], verdict: Verdict, act
         words = [] if position is None else [_length(position)]
         words += [] if orientation is None else [_angle(orientation)]
         return f"converged, {' and '.join(words)} off"
-    tolerance = question.options.tolerance
-    missed = _missed(targets, errors, tolerance)
+    tolerances = [term.tolerance for term in question.problem.terms]
+    missed = _missed(targets, errors, tolerances)
     if not question.problem.free.any():
         return f"no free joint moves {_frames(targets)}; {missed}"
     begin = {
@@ -41,13 +49,13 @@ def explain(question: Question, targets: Sequence[Target], verdict: Verdict, act
         Status.UNREACHABLE: "unreachable:",
     }[status]
     off_plane = question.solver.off_plane(question.robot, targets)
-    why = _out_of_reach(targets, tolerance, proof, off_plane)
+    why = _out_of_reach(targets, tolerances, proof, off_plane) or _each_alone(alone)
     first, *others = [*why, missed] if status is Status.UNREACHABLE else [missed, *why]
     return "; ".join([f"{begin} {first}", *others, *_limits(active)])
 
 
 def _out_of_reach(
-    targets: Sequence[Target], tolerance: Tolerance, proof: Shortfall | None, off_plane: OffPlane | None
+    targets: Sequence[Target], tolerances: Sequence[Tolerance], proof: Shortfall | None, off_plane: OffPlane | None
 ) -> list[str]:
     """How the target lies out of reach, as far as that is known."""
     frame, places = targets[0 if proof is None else proof.target].frame, []
@@ -57,7 +65,7 @@ def _out_of_reach(
         )
     elif proof is not None:
         places.append(f"{_length(proof.distance)} beyond its chain's reach of {_length(proof.bound)}")
-    if off_plane is not None and abs(off_plane.distance) > tolerance.position:
+    if off_plane is not None and abs(off_plane.distance) > tolerances[0].farthest:
         places.append(f"{_length(abs(off_plane.distance))} off the plane in which {frame} moves, {_normal(off_plane)}")
     return [f"the target of {frame} lies {' and '.join(places)}"] if places else []
 
@@ -72,13 +80,20 @@ def _normal(plane: OffPlane) -> str:
     return f"whose normal is ({', '.join(f'{x:g}' for x in numbers)}) in the axes of {whose}"
 
 
-def _missed(targets: Sequence[Target], errors: Sequence[TargetError], tolerance: Tolerance) -> str:
+def _each_alone(alone: Sequence[str]) -> list[str]:
+    """Which of position and orientation can be reached, if not both."""
+    if len(alone) == 2:
+        return ["position and orientation can each be reached alone, but both together were not found"]
+    return [f"the {alone[0]} alone can be reached"] if alone else []
+
+
+def _missed(targets: Sequence[Target], errors: Sequence[TargetError], tolerances: Sequence[Tolerance]) -> str:
     parts = []
-    for target, error in zip(targets, errors, strict=True):
+    for target, error, tolerance in zip(targets, errors, tolerances, strict=True):
         words = []
-        if error.position is not None and error.position > tolerance.position:
+        if error.position is not None and not error.position_within(tolerance):
             words.append(f"{_length(error.position)} short")
-        if error.orientation is not None and error.orientation > tolerance.orientation:
+        if error.orientation is not None and not error.orientation_within(tolerance):
             words.append(f"{_angle(error.orientation)} off")
         if words:
             name = f"{target.frame} " if len(targets) > 1 else ""
@@ -120,4 +135,6 @@ def _angle(radians: float) -> str:
     degrees = math.degrees(radians)
     if degrees >= 10.0:
         return f"{degrees:.0f}°"
-    return f"{degrees:.2g}°" if degrees >= 0.001 else f"{degrees:.4f}°"
+    if degrees >= 1e-4:
+        return f"{degrees:.2g}°" if degrees >= 0.001 else f"{degrees:.4f}°"
+    return "less than 0.0001°"

@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike
 
 from ..checks import as_count, as_names, as_positive_number
 from ..errors import InputError, UnknownNameError
-from ..problem.targets import Tolerance
+from ..problem.tolerance import Tolerance
 from ..solvers.base import Solver
 from ..solvers.damped_least_squares import DampedLeastSquares
 from ..solvers.registry import Method, make_solver

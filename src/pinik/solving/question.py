@@ -50,7 +50,13 @@ class Question:
         solver = options.method
         check_joint_names(robot, solver)
         at_target = isinstance(solver, JacobianSolver) and solver.target_jacobian
-        problem = Problem(robot, targets, locked=(*options.locked, *solver.held), target_jacobian=at_target)
+        problem = Problem(
+            robot,
+            targets,
+            locked=(*options.locked, *solver.held),
+            target_jacobian=at_target,
+            tolerance=options.tolerance,
+        )
         solver.check(problem)
         return cls(problem, options, Limits.of(robot, options.limits))
 

@@ -64,6 +64,9 @@ def run(question: Question, kinematics: Kinematics, start: Array, pace: Pace) ->
     If a target is provably out of reach, √(d · max(d, L/2)) replaces the distance d in the damping, where L is the
     chain's length. Otherwise a stretched arm would swing from side to side when λ² is small compared with d · L.
 
+    If a tolerance is wide and the run stalls, it goes on inside the limits with residuals that stop pulling inside
+    their tolerances.
+
     Args:
         question: The problem and the options.
         kinematics: The kinematics of the targets; the run modifies it.
@@ -94,6 +97,7 @@ class _Loop:
         self.problem = question.problem
         self.beyond = self.is_beyond()
         self.iteration, self.last, self.updates, self.scale, self.rests = 0, pace.max_iterations, 0, 1.0, False
+        kinematics.loose = False
         self.at = kinematics.linearize(start)
         self.milestone, self.since = self.at.residual, 0
 
@@ -104,8 +108,8 @@ class _Loop:
 
     def is_beyond(self) -> bool:
         """Whether a target is provably out of reach."""
-        slack = self.question.options.tolerance.position
-        return self.damps and shortfall(self.kinematics.targets, self.bounds, slack) is not None
+        tolerance = self.question.options.tolerance
+        return self.damps and shortfall(self.kinematics.targets, self.bounds, tolerance) is not None
 
     def look(self) -> State:
         """The present state of the run."""
@@ -113,9 +117,7 @@ class _Loop:
         # An exact method takes a step even if the start is within tolerance, because the other elbow may be requested.
         reached = self.is_reached() and (self.iteration > 0 or not solver.exact)
         if reached and not limits.contains(self.at.q):  # only a bold run leaves the limits
-            self.box = limits
-            self.at = self.kinematics.linearize(limits.clip(limits.wrap(self.at.q)))
-            self.milestone, self.since = self.at.residual, 0
+            self.move_inside()
             reached = self.is_reached()
         if self.at.residual < self.milestone * (1.0 - patience.progress):
             self.milestone, self.since = self.at.residual, 0
@@ -126,13 +128,28 @@ class _Loop:
             status = Status.STALLED
         else:
             status = Status.MAX_ITERATIONS if self.iteration >= self.last else None
+        if status is Status.STALLED and self.can_loosen():
+            self.kinematics.loose, self.scale, status = True, 1.0, None
+            self.move_inside()
         at = self.at
         at.q.setflags(write=False)  # the next step starts from it
         return State(at.q, self.iteration, self.updates, tuple(at.errors), at.residual, self.pace.attempt, status)
 
+    def move_inside(self) -> None:
+        """Move the configuration inside the limits, and keep it there from now on."""
+        limits = self.question.limits
+        self.box = limits
+        self.at = self.kinematics.linearize(limits.clip(limits.wrap(self.at.q)))
+        self.milestone, self.since = self.at.residual, 0
+
+    def can_loosen(self) -> bool:
+        """Whether an answer inside wide tolerances remains to be looked for."""
+        return self.problem.is_wide and not (self.kinematics.loose or self.beyond or self.question.solver.exact)
+
     def aim_at(self, targets: Target | Sequence[Target]) -> None:
         """Move the targets, and reset the iteration limit."""
         self.kinematics.retarget(targets)
+        self.kinematics.loose = False
         if self.kinematics.problem is not self.problem:
             self.problem = self.kinematics.problem
             self.bounds = bounds_of(self.problem, self.question.limits) if self.damps else []
@@ -167,5 +184,6 @@ class _Loop:
 
     def is_reached(self) -> bool:
         """Whether every target is within tolerance."""
-        tolerance = self.question.options.tolerance
-        return all([error.within(tolerance) for error in self.at.errors])
+        return all(
+            [error.within(term.tolerance) for error, term in zip(self.at.errors, self.problem.terms, strict=True)]
+        )

@@ -13,7 +13,9 @@ from numpy.typing import NDArray
 
 from ..errors import SolveError
 from ..model.robot_model import RobotModel
-from ..problem.targets import Target, TargetError, largest_of
+from ..problem.targets import Target
+from ..problem.tolerance import TargetError, largest_of
+from .alone import found_alone
 from .attempts import Outcome
 from .message import explain
 from .native.module import why_not
@@ -121,7 +123,9 @@ class Solution:
         """The status in one sentence, with the remaining errors and the joints at their limits."""
         outcome = self._outcome
         verdict = Verdict(outcome.status, outcome.errors, outcome.proof)
-        return explain(self._question, self.targets, verdict, self._sides_of_limits)
+        clueless = outcome.proof is None and outcome.status not in (Status.CONVERGED, Status.TIME_LIMIT)
+        alone = found_alone(self._question, self.targets, self.q) if clueless else []
+        return explain(self._question, self.targets, verdict, self._sides_of_limits, alone)
 
     @cached_property
     def active_limits(self) -> tuple[str, ...]:

@@ -110,7 +110,7 @@ class Starts:
 
 def _wanted(target: Target) -> Array:
     parts = [
-        np.zeros(0) if target.position is None else target.position,
+        np.zeros(0) if target.position is None else target.position[list(target.along)],
         np.zeros(0) if target.rotation is None else target.rotation.ravel(),
         np.zeros(0) if target.direction is None else target.direction,
     ]
@@ -123,6 +123,7 @@ def _seen(rows: Rows, of_a_radian: float) -> tuple[float, Array]:
     p, R = rows.seen_from_reference()
     length, parts = 0.0, [np.zeros(0)]
     if target.position is not None:
+        p = p[list(target.along)]
         length = weight * float(p.dot(p))
         parts.append(-2.0 * weight * p)
     if target.rotation is not None:

@@ -8,7 +8,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ..problem.targets import TargetError, largest_of
+from ..problem.tolerance import TargetError, largest_of
 
 __all__ = ["State", "Status"]
 

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from ..errors import InputError
 from ..model.limits import Limits
 from ..problem.kinematics import Kinematics, Linearization
-from ..problem.targets import Tolerance
+from ..problem.tolerance import Tolerance
 from ..solvers.base import JacobianSolver, Solver, SweepingSolver
 
 __all__ = ["advance"]

@@ -12,7 +12,8 @@ from numpy.typing import NDArray
 
 from ..model.robot_model import RobotModel
 from ..problem.reach import Shortfall, shortfall
-from ..problem.targets import NO_DIRECTION, Target, TargetError
+from ..problem.targets import NO_DIRECTION, Target
+from ..problem.tolerance import TargetError, Tolerance
 from .question import Question
 from .state import Status
 
@@ -47,7 +48,7 @@ def judge(question: Question, targets: Sequence[Target], q: Array, ended: Status
         q: The configuration (nq,).
         ended: The reason why the solver stopped.
     """
-    errors = measure_errors(question.robot, targets, q)
+    errors = measure_errors(question.robot, targets, q, question.options.tolerance)
     return verdict(question, targets, errors, ended)
 
 
@@ -55,16 +56,15 @@ def verdict(question: Question, targets: Sequence[Target], errors: tuple[TargetE
     """The verdict for errors that are already measured."""
     if all_within(errors, question):
         return Verdict(Status.CONVERGED, errors, None)
-    proof = shortfall(targets, question.bounds, question.options.tolerance.position)
+    proof = shortfall(targets, question.bounds, question.options.tolerance)
     if proof is not None or (ended is Status.STALLED and _is_nearest(question, errors)):
         return Verdict(Status.UNREACHABLE, errors, proof)
     return Verdict(Status.STALLED if ended is Status.CONVERGED else ended, errors, None)
 
 
 def all_within(errors: Sequence[TargetError], question: Question) -> bool:
-    """Whether every error is within the question's tolerance."""
-    tolerance = question.options.tolerance
-    return all([error.within(tolerance) for error in errors])
+    """Whether every error is within its target's tolerance."""
+    return all([error.within(term.tolerance) for error, term in zip(errors, question.problem.terms, strict=True)])
 
 
 def _is_nearest(question: Question, errors: Sequence[TargetError]) -> bool:
@@ -72,13 +72,25 @@ def _is_nearest(question: Question, errors: Sequence[TargetError]) -> bool:
 
     This is so if its method is exact and the error exceeds the tolerance plus the inaccuracy of the method.
     """
-    least = question.options.tolerance.position + _EXACT * question.problem.size_of_chain
-    return question.solver.exact and any(error.position is not None and error.position > least for error in errors)
+    slack = _EXACT * question.problem.size_of_chain
+    return question.solver.exact and any(
+        error.position is not None and error.position > term.tolerance.farthest + slack
+        for error, term in zip(errors, question.problem.terms, strict=True)
+    )
 
 
-def measure_errors(robot: RobotModel, targets: Sequence[Target], q: Array) -> tuple[TargetError, ...]:
-    """The error of each target at `q`, by plain forward kinematics, without any code of the solvers."""
-    return tuple(_measure(robot, target, q) for target in targets)
+def measure_errors(
+    robot: RobotModel, targets: Sequence[Target], q: Array, tolerance: Tolerance
+) -> tuple[TargetError, ...]:
+    """The error of each target at `q`, by plain forward kinematics, without any code of the solvers.
+
+    Args:
+        robot: The robot.
+        targets: The targets.
+        q: The configuration (nq,).
+        tolerance: The tolerance of the targets that have none of their own.
+    """
+    return tuple(_measure(robot, target, q, target.tolerance or tolerance) for target in targets)
 
 
 def measure_positions(robot: RobotModel, target: Target, q: Array) -> Array:
@@ -96,13 +108,17 @@ def measure_positions(robot: RobotModel, target: Target, q: Array) -> Array:
     return positions
 
 
-def _measure(robot: RobotModel, target: Target, q: Array) -> TargetError:
+def _measure(robot: RobotModel, target: Target, q: Array, tolerance: Tolerance) -> TargetError:
     placement = robot.placement(target.frame, q, target.relative_to)
     if target.tool is not None:
         placement = placement * target.tool
-    position, orientation = None, None
+    position, orientation, offset = None, None, None
     if target.position is not None:
-        position = float(np.linalg.norm(target.position - placement.translation))
+        left = np.where(target.along, target.position - placement.translation, 0.0)
+        position = float(np.linalg.norm(left))
+        if tolerance.box is not None:
+            x, y, z = (left if target.rotation is None else target.rotation.T @ left).tolist()
+            offset = (x, y, z)
     if target.rotation is not None:
         orientation = float(np.linalg.norm(pinocchio.log3(target.rotation @ placement.rotation.T)))
     elif target.axis is not None:
@@ -110,6 +126,6 @@ def _measure(robot: RobotModel, target: Target, q: Array) -> TargetError:
         direction = target.direction if target.at is None else target.at - placement.translation
         assert direction is not None
         if target.at is not None and np.linalg.norm(direction) < NO_DIRECTION:
-            return TargetError(position, 0.0)
+            return TargetError(position, 0.0, offset)
         orientation = math.atan2(float(np.linalg.norm(np.cross(axis, direction))), float(axis @ direction))
-    return TargetError(position, orientation)
+    return TargetError(position, orientation, offset)

@@ -16,7 +16,8 @@ from ..errors import EngineError
 from ..model.robot_model import RobotModel
 from ..motion.figures import StepFigures
 from ..problem.kinematics import Kinematics
-from ..problem.targets import Target, Tolerance
+from ..problem.targets import Target
+from ..problem.tolerance import Tolerance
 from ..robot import Robot
 from ..solvers.base import Patience, Solver
 from ..solving.front import prepare
@@ -121,7 +122,7 @@ class BareChase:
         """Iterate until the place is reached or the iterations run out; zero iterations if it is already reached."""
         before, began = self._state, self._clock()
         target = self._target.moved_to(place)
-        (there,) = measure_errors(self._robot, (target,), before.q)
+        (there,) = measure_errors(self._robot, (target,), before.q, self._tolerance)
         if there.position is not None and there.within(self._tolerance):
             return StepFigures(self._clock() - began, 0, 0, True, there.position, 0.0)
         state = self._states.send(target)

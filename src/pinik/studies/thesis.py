@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..errors import InputError, UnknownNameError
-from ..problem.targets import Tolerance
+from ..problem.tolerance import Tolerance
 from ..robot import Robot
 from ..solvers.base import Solver
 from ..solvers.ccd import CCD

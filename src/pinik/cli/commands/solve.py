@@ -7,6 +7,7 @@ from typing import Any
 
 from ...errors import InputError, PinikError
 from ...problem.targets import Target
+from ...problem.tolerance import Tolerance
 from ...robot import Robot
 from ...solvers.base import Solver
 from ...solving.front import solve as solve_targets
@@ -15,7 +16,7 @@ from ..inputs import solve_options as given
 from ..inputs.assignments import configuration, solver_with
 from ..inputs.loading import load_robot
 from ..inputs.options import AsJson, Degrees, PackageDirs, RobotSource, Root
-from ..inputs.targets import check_frames, option_of, target_from_options, targets_from_file
+from ..inputs.targets import check_frames, option_of, read_position, target_from_options, targets_from_file
 from ..reports.solution_report import emit_solution
 from ..terminal import output
 from ..terminal.exits import CommandError, ExitStatus, in_words
@@ -40,6 +41,7 @@ def solve(
     method: given.Method = "dls",
     param: given.MethodParameter = None,
     tolerance: given.Tolerances = None,
+    tolerance_box: given.ToleranceBox = None,
     max_iterations: given.MaxIterations = None,
     time_limit: given.TimeLimit = None,
     restarts: given.Restarts = None,
@@ -66,7 +68,13 @@ def solve(
     """
     units = Units(degrees)
     rpy = rpy and tuple(map(units.radians, rpy))  # type: ignore[assignment]
-    wanted = {"position": position, "rpy": rpy, "quat_xyzw": quat_xyzw, "axis": axis, "direction": direction}
+    wanted = {
+        "position": read_position(position),
+        "rpy": rpy,
+        "quat_xyzw": quat_xyzw,
+        "axis": axis,
+        "direction": direction,
+    }
     wanted |= {"at": at, "tool": tool, "relative_to": relative_to}
     asked = _asked(frame, wanted, targets)
     solver = solver_with(method, param)
@@ -74,11 +82,22 @@ def solve(
     if targets is not None:
         check_frames(machine, asked, targets)
     options: dict[str, Any] = {"restarts": restarts, "max_iterations": max_iterations, "time_limit": time_limit}
-    options |= {"tolerance": tolerance, "seed": seed, "engine": engine, "limits": not no_limits, "locked": lock or ()}
+    options |= {
+        "tolerance": _tolerance(tolerance, tolerance_box),
+        "seed": seed,
+        "engine": engine,
+        "limits": not no_limits,
+        "locked": lock or (),
+    }
     options["q0"] = configuration(machine, pose, start, "--start", units, None if no_limits else "moved to the limit")
     solution = _solved(machine, asked, solver, method, options)
     _emit(solution, units, as_json)
     return ExitStatus.ANSWERED if solution.success else ExitStatus.MISSED
+
+
+def _tolerance(pair: tuple[float, float] | None, box: tuple[float, float, float] | None) -> Any:
+    """The tolerance, with the sides of a box in place of its metres."""
+    return pair if box is None else (box, pair[1] if pair else Tolerance().orientation)
 
 
 def _asked(frame: str | None, wanted: Mapping[str, Any], file: str | None) -> list[Target]:

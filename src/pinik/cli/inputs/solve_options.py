@@ -27,6 +27,7 @@ __all__ = [
     "StartPose",
     "TargetsFile",
     "TimeLimit",
+    "ToleranceBox",
     "Tolerances",
     "Tool",
 ]
@@ -47,7 +48,9 @@ def _start(help: str, metavar: str) -> Any:
 
 
 Frame = Annotated[str | None, _target("The frame to move.", "F")]
-Position = Annotated[Vector | None, _target("Target position, in metres.", "X Y Z")]
+Position = Annotated[
+    tuple[str, str, str] | None, _target("Target position, in metres; - leaves an axis free, as in - - 0.3.", "X Y Z")
+]
 Rpy = Annotated[Vector | None, _target("Target orientation as fixed-axis roll, pitch, yaw.", "R P Y")]
 QuatXyzw = Annotated[
     tuple[float, float, float, float] | None, _target("Target orientation as a quaternion, scalar last.", "X Y Z W")
@@ -84,6 +87,10 @@ MethodParameter = Annotated[
 Tolerances = Annotated[
     tuple[float, float] | None,
     _solver("The largest errors that count as solved, in metres and radians.", "M RAD", show_default="0.0001 0.001"),
+]
+ToleranceBox = Annotated[
+    Vector | None,
+    _solver("The largest position errors along the target's own axes, in metres, instead of M.", "X Y Z"),
 ]
 MaxIterations = Annotated[int | None, _solver("The most iterations of one attempt.", "N")]
 TimeLimit = Annotated[float | None, _solver("The most seconds in all.", "S")]

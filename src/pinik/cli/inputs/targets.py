@@ -4,24 +4,24 @@ from __future__ import annotations
 
 import json
 import sys
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
 from ...checks import as_point, as_unit_vector, as_vector
 from ...errors import PinikError
-from ...problem.targets import Target
+from ...problem.targets import Target, as_position
 from ...robot import Robot
 from ..terminal.exits import CommandError
 
-__all__ = ["check_frames", "option_of", "target_from_options", "targets_from_file"]
+__all__ = ["check_frames", "option_of", "read_position", "target_from_options", "targets_from_file"]
 
 _MOST_BYTES = 16 * 1024 * 1024
 _MOST_TARGETS = 100
 _ORIENTATIONS = ("rpy", "quat_xyzw", "axis")
 _FORM = 'must be a list of targets such as [{"frame": …, "position": [x, y, z]}], or {"targets": [...]}'
 _CHECKS: Mapping[str, Callable[[Any, str], object]] = {
-    "position": as_point,
+    "position": as_position,
     "rpy": lambda value, option: as_vector(value, 3, option),
     "quat_xyzw": lambda value, option: as_vector(value, 4, option),
     "direction": as_unit_vector,
@@ -59,6 +59,22 @@ def target_from_options(frame: str | None, wanted: Mapping[str, Any]) -> Target:
         if name in given:
             check(wanted[name], option_of(name))
     return Target(frame, **wanted)
+
+
+def read_position(words: Sequence[str] | None) -> list[float | None] | None:
+    """The coordinates [m] of `--position`, with None for "-".
+
+    Raises:
+        CommandError: A word is neither a number nor "-".
+    """
+    if words is None:
+        return None
+    try:
+        return [None if word == "-" else float(word) for word in words]
+    except ValueError:
+        raise CommandError(
+            f"--position must be three numbers, with - for an axis that is free; got {' '.join(words)}"
+        ) from None
 
 
 def option_of(keyword: str) -> str:

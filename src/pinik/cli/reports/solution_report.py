@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from ...problem.targets import TargetError
+from ...problem.tolerance import TargetError
 from ...solving.solution import Solution
 from ..terminal.output import emit, painted
 from ..terminal.tables import emit_table

@@ -22,7 +22,7 @@ def goals_of(targets: tuple[Target, ...]) -> Array:
     goals = np.zeros((len(targets), 18))
     for row, target in zip(goals, targets, strict=True):
         if target.position is not None:
-            row[:3] = target.position
+            row[:3] = np.where(target.along, target.position, 0.0)
         if target.rotation is not None:
             row[3:12] = target.rotation.ravel()
         if target.direction is not None:

@@ -13,6 +13,7 @@ from ...model.limits import Limits
 from ...model.robot_model import RobotModel
 from ...problem.problem import Problem
 from ...problem.reach import reach_bounds
+from ...problem.tolerance import Tolerance
 from ...solvers.base import JacobianSolver, Solver
 from ...solvers.ccd import CCD
 from ...solvers.damped_least_squares import DampedLeastSquares
@@ -40,7 +41,6 @@ def make_engine(question: Question) -> Engine:
     asked = module.Settings()
     asked.solver = _solver(question.solver, problem)
     asked.patience = module.Patience(question.solver.patience.iterations, question.solver.patience.progress)
-    asked.tolerance = module.Tolerance(*options.tolerance)
     asked.limits = options.limits
     asked.restarts = min(options.restarts_at_most, _MOST)
     asked.seed = options.seed & 0xFFFFFFFFFFFFFFFF
@@ -107,6 +107,8 @@ def _problem(robot: Any, asked: Problem) -> Any:
             asks_rotation=target.rotation is not None,
             asks_axis=target.axis is not None,
             asks_at=target.at is not None,
+            along=np.array(target.along, dtype=np.float64),
+            tolerance=_tolerance(term.tolerance),
             axis=np.array([1.0, 0.0, 0.0]) if target.axis is None else target.axis,
             weight=term.weight,
             has_bounds=any(b is not None for b in bounds),
@@ -123,8 +125,18 @@ def _problem(robot: Any, asked: Problem) -> Any:
             movers=[(mover.id, multiplier) for mover, multiplier in coordinate.movers],
             moved=[(j.id, j.multiplier) for j in asked.robot.joints if joint.name in (j.name, j.leader)],
         )
-    problem.finish(lightest=asked.lightest, size_of_chain=asked.size_of_chain)
+    problem.finish(lightest=asked.lightest, size_of_chain=asked.size_of_chain, is_wide=asked.is_wide)
     return problem
+
+
+def _tolerance(tolerance: Tolerance) -> Any:
+    box = tolerance.box
+    return load().Tolerance(
+        position=tolerance.farthest,
+        orientation=tolerance.orientation,
+        is_box=box is not None,
+        box=np.zeros(3) if box is None else np.array(box),
+    )
 
 
 def _solver(solver: Solver, problem: Problem) -> Any:
@@ -136,6 +148,7 @@ def _solver(solver: Solver, problem: Problem) -> Any:
         if solver.stiffness:
             native.stiffness = [solver.stiffness.get(c.joint.name, 1.0) for c in problem.coordinates]
         native.relaxation = solver.relaxation_for(problem)
+        native.loose_relaxation = solver.relaxation_for(problem, loose=True)
         native.position_weight = solver.position_weight
         native.printed_scaling = solver.scaling == "printed"
         return native

@@ -6,7 +6,7 @@ from typing import Any
 
 from ... import checks
 from ...model import configurations, joint
-from ...problem import problem, reach, targets
+from ...problem import problem, reach, slack, targets
 from ...solvers import ccd, damped_least_squares, pseudo_inverse
 from .. import attempts, run, starts
 from .module import load
@@ -20,6 +20,7 @@ CONSTANTS = {
     "radian": problem.RADIAN,
     "no_direction": targets.NO_DIRECTION,
     "reach_rounding": reach.ROUNDING,
+    "slack_share": slack.SHARE,
     "smallest_damping_squared": damped_least_squares.SMALLEST_DAMPING_SQUARED,
     "smallest_cutoff": pseudo_inverse.SMALLEST_CUTOFF,
     "ccd_rounding": ccd.ROUNDING,

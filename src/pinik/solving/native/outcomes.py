@@ -9,7 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...problem.reach import Shortfall
-from ...problem.targets import Target, TargetError
+from ...problem.targets import Target
+from ...problem.tolerance import TargetError
 from ..attempts import Outcomes
 from ..state import State, Status
 from .codec import targets_of
@@ -118,7 +119,7 @@ class NativeOutcome:
 
 
 def _errors(pairs: Any) -> tuple[TargetError, ...]:
-    return tuple([TargetError(position, orientation) for position, orientation in pairs])
+    return tuple([TargetError(*error) for error in pairs])
 
 
 def _state(q: Array, iteration: int, updates: int, errors: Any, residual: float, attempt: int, status: Any) -> State:

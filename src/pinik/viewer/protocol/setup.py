@@ -8,7 +8,7 @@ from typing import Any
 from urllib.parse import parse_qsl, quote, urlencode
 
 from ...errors import InputError, UnknownNameError
-from ...problem.targets import Tolerance
+from ...problem.tolerance import Tolerance
 from ..simulation.instance import StepSettings
 from ..simulation.session import Session
 from .messages import apply, read_json
@@ -45,7 +45,7 @@ def write_setup(session: Session) -> str:
     if not settings.until_reached:
         setup["iterations"] = str(settings.at_most)
     if settings.tolerance != default.tolerance:
-        setup["tolerance"] = ",".join(map(_short, settings.tolerance))
+        setup["tolerance"] = ",".join(map(_short, (settings.tolerance.farthest, settings.tolerance.orientation)))
     setup["balls"] = _compact([_ball(session, index) for index in range(len(session.balls))])
     setup["run"] = "on" if session.running else "off"
     return urlencode(setup, quote_via=quote, safe=",:[]{}")

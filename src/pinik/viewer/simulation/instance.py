@@ -15,7 +15,8 @@ from numpy.typing import NDArray
 from ...errors import InputError
 from ...model.limits import Limits
 from ...problem.kinematics import Kinematics
-from ...problem.targets import Target, Tolerance, largest_of
+from ...problem.targets import Target
+from ...problem.tolerance import Tolerance, largest_of
 from ...robot import Robot
 from ...solvers.base import Solver
 from ...solving.message import explain

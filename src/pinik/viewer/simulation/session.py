@@ -13,7 +13,7 @@ from ...errors import InputError, UnknownNameError
 from ...model.home import home_configuration, lowest_point
 from ...motion.curves import CURVES
 from ...motion.effectors import principal_frames
-from ...problem.targets import Tolerance
+from ...problem.tolerance import Tolerance
 from ...robot import Robot
 from ...solvers.base import Solver
 from ...solvers.registry import Method, known_methods, make_solver
