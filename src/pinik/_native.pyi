@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 pinocchio_version: str = "4.1.0"
 
-abi: str = "30fe9f972285d79a"
+abi: str = "2c06d2c08aa32b72"
 
 class JointKind(enum.Enum):
     revolute = 0
@@ -354,3 +354,25 @@ class Engine:
         NDArray[numpy.int64],
         NDArray[numpy.float64],
     ]: ...
+
+class ReferenceFrame(enum.Enum):
+    WORLD = 0
+
+    LOCAL = 1
+
+    LOCAL_WORLD_ALIGNED = 2
+
+class Walk:
+    def __init__(
+        self,
+        robot: Robot,
+        frame_joint: int,
+        frame_rotation: Annotated[NDArray[numpy.float64], dict(shape=(3, 3), order="F")],
+        frame_translation: Annotated[NDArray[numpy.float64], dict(shape=(3), order="C")],
+        reference_joint: int,
+        reference_rotation: Annotated[NDArray[numpy.float64], dict(shape=(3, 3), order="F")],
+        reference_translation: Annotated[NDArray[numpy.float64], dict(shape=(3), order="C")],
+        largest_unit_error: float,
+    ) -> None: ...
+    def placements(self, q: object, threads: int) -> NDArray[numpy.float64] | None: ...
+    def jacobians(self, q: object, axes: ReferenceFrame, threads: int) -> NDArray[numpy.float64] | None: ...
