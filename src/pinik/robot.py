@@ -5,13 +5,15 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from typing import Any
 
+import numpy as np
 import pinocchio
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 from .model.robot_model import RobotModel
 from .problem.targets import Target
 from .problem.tolerance import Tolerance
 from .solvers.registry import Method
+from .solving import batch
 from .solving.front import answer
 from .solving.solution import Solution
 from .solving.words import UNWEIGHTED
@@ -20,7 +22,53 @@ __all__ = ["Robot"]
 
 
 class Robot(RobotModel):
-    """A robot as returned by `pinik.load`: a `RobotModel` with the method `solve`."""
+    """A robot as returned by `pinik.load`: a `RobotModel` with the methods `solve`, `placements` and `jacobians`."""
+
+    def placements(self, frame: str, Q: ArrayLike, relative_to: str | None = None) -> NDArray[np.float64]:
+        """The placements of a frame at N configurations, as `placement` computes them one by one.
+
+        The compiled engine computes them on all processor cores: millions per second for an arm. Ctrl-C stops it.
+
+        Args:
+            frame: The name of the frame.
+            Q: N configurations (N, nq).
+            relative_to: The frame in which the placements are expressed; the world when None.
+
+        Returns:
+            The homogeneous matrices (N, 4, 4) of the frame [m].
+
+        Raises:
+            UnknownNameError: No such frame; the message lists near names.
+            InputError: `Q` has a wrong shape, or one of its rows is not a configuration; the message names the first.
+        """
+        return batch.placements(self, frame, Q, relative_to)
+
+    def jacobians(
+        self,
+        frame: str,
+        Q: ArrayLike,
+        axes: str | pinocchio.ReferenceFrame = "local_world_aligned",
+        relative_to: str | None = None,
+    ) -> NDArray[np.float64]:
+        """The Jacobians of a frame at N configurations, as `jacobian` computes them one by one.
+
+        The compiled engine computes them on all processor cores. Ctrl-C stops it.
+
+        Args:
+            frame: The name of the frame.
+            Q: N configurations (N, nq).
+            axes: Where and in which axes the velocities are expressed, as for `jacobian`.
+            relative_to: A frame that replaces the world, as for `jacobian`.
+
+        Returns:
+            J (N, 6, nv), with the linear rows first [m/rad or m/m], then the angular rows [rad/rad or rad/m].
+
+        Raises:
+            UnknownNameError: No such frame; the message lists near names.
+            InputError: Unknown axes, `Q` has a wrong shape, or one of its rows is not a configuration; the message
+                names the first.
+        """
+        return batch.jacobians(self, frame, Q, axes, relative_to)
 
     def solve(
         self,

@@ -6,8 +6,6 @@
 #include <nanobind/stl/vector.h>
 
 #include <array>
-#include <stdexcept>
-#include <string>
 
 #include "../problem/problem.hpp"
 #include "../solving/robot.hpp"
@@ -19,14 +17,6 @@ using namespace nb::literals;
 
 namespace {
 
-const Joint& joint_of(const Robot& robot, int number) {
-  const std::vector<Joint>& joints = robot.mechanism.joints;
-  if (number < 0 || static_cast<std::size_t>(number) >= joints.size())
-    throw std::invalid_argument("a joint's number must be at least 0 and less than " + std::to_string(joints.size()) +
-                                "; got " + std::to_string(number));
-  return joints[static_cast<std::size_t>(number)];
-}
-
 void add_joint(Robot& robot, JointKind kind, int parent, const Mat3& R, const Vec3& p, const Vec3& axis, int idx_q,
                int nq, int idx_v, int nv, bool follows, double multiplier, double offset, double lower, double upper,
                bool shared) {
@@ -35,7 +25,7 @@ void add_joint(Robot& robot, JointKind kind, int parent, const Mat3& R, const Ve
   joint.kind = kind;
   joint.parent = parent;
   if (joint.has_one_axis()) joint.to_line = Eigen::Quaterniond::FromTwoVectors(Vec3::UnitZ(), axis).toRotationMatrix();
-  const Mat3 from_parent = joint_of(robot, parent).to_line.transpose();
+  const Mat3 from_parent = robot.joint(parent).to_line.transpose();
   joint.placement = Placement{from_parent * R * joint.to_line, from_parent * p};
   joint.idx_q = idx_q;
   joint.nq = nq;
@@ -51,12 +41,6 @@ void add_joint(Robot& robot, JointKind kind, int parent, const Mat3& R, const Ve
   mechanism.joints.push_back(joint);
 }
 
-// A placement in a joint, in the joint's turned axes.
-Placement in_joint(const Robot& robot, int joint, const Mat3& R, const Vec3& p) {
-  const Mat3 turned = joint_of(robot, joint).to_line.transpose();
-  return {turned * R, turned * p};
-}
-
 void add_term(Problem& problem, const Robot& robot, int frame_joint, const Mat3& frame_R, const Vec3& frame_p,
               bool has_reference, int reference_joint, const Mat3& reference_R, const Vec3& reference_p,
               bool asks_position, bool asks_rotation, bool asks_axis, bool asks_at, const Vec3& along,
@@ -64,10 +48,10 @@ void add_term(Problem& problem, const Robot& robot, int frame_joint, const Mat3&
               bool has_bounds, const Vec3& base, std::array<double, 2> reach, std::array<double, 2> hole) {
   Term term;
   term.frame_joint = frame_joint;
-  term.frame = in_joint(robot, frame_joint, frame_R, frame_p);
+  term.frame = robot.in_joint(frame_joint, frame_R, frame_p);
   term.has_reference = has_reference;
   term.reference_joint = reference_joint;
-  term.reference = in_joint(robot, reference_joint, reference_R, reference_p);
+  term.reference = robot.in_joint(reference_joint, reference_R, reference_p);
   term.asks_position = asks_position;
   term.asks_rotation = asks_rotation;
   term.asks_axis = asks_axis;

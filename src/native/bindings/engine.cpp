@@ -11,17 +11,13 @@
 
 #include "interface.hpp"
 #include "numbers.hpp"
+#include "signals.hpp"
 
 namespace pinik {
 
 using namespace nb::literals;
 
 namespace {
-
-bool no_signal() {
-  const nb::gil_scoped_acquire acquire;
-  return PyErr_CheckSignals() == 0;
-}
 
 std::string expected(const Engine& engine) {
   return "a start must have " + std::to_string(engine.mechanism().nq) + " numbers, and there must be " +

@@ -48,12 +48,26 @@ const double* numbers_of(nb::handle array, std::initializer_list<std::ptrdiff_t>
   return fits ? static_cast<const double*>(PyArray_DATA(own)) : nullptr;
 }
 
+const double* rows_of(nb::handle array, std::ptrdiff_t columns, std::size_t& count) {
+  if (!PyArray_Check(array.ptr())) return nullptr;
+  auto* own = reinterpret_cast<PyArrayObject*>(array.ptr());
+  if (PyArray_NDIM(own) != 2) return nullptr;
+  count = static_cast<std::size_t>(PyArray_DIM(own, 0));
+  return numbers_of(array, {PyArray_DIM(own, 0), columns});
+}
+
 nb::object as_array(const Vector& numbers) {
-  npy_intp size = numbers.size();
-  nb::object array = nb::steal(PyArray_SimpleNew(1, &size, NPY_DOUBLE));
-  if (!array.is_valid()) throw nb::python_error();
-  std::copy_n(numbers.data(), size, static_cast<double*>(PyArray_DATA(reinterpret_cast<PyArrayObject*>(array.ptr()))));
+  const auto [array, own] = new_array({static_cast<std::size_t>(numbers.size())});
+  std::copy_n(numbers.data(), numbers.size(), own);
   return array;
+}
+
+std::pair<nb::object, double*> new_array(std::initializer_list<std::size_t> shape) {
+  npy_intp lengths[3];
+  std::copy(shape.begin(), shape.end(), lengths);
+  nb::object array = nb::steal(PyArray_SimpleNew(static_cast<int>(shape.size()), lengths, NPY_DOUBLE));
+  if (!array.is_valid()) throw nb::python_error();
+  return {array, static_cast<double*>(PyArray_DATA(reinterpret_cast<PyArrayObject*>(array.ptr())))};
 }
 
 }  // namespace pinik

@@ -29,7 +29,13 @@ nb::object as_array(const Goal& goal);
 // The numbers of a contiguous float64 array of this shape; null for anything else.
 const double* numbers_of(nb::handle array, std::initializer_list<std::ptrdiff_t> shape);
 
+// The numbers of a contiguous float64 array (count, columns), whose `count` is set; null for anything else.
+const double* rows_of(nb::handle array, std::ptrdiff_t columns, std::size_t& count);
+
 nb::object as_array(const Vector& numbers);
+
+// A new array of this shape, whose numbers are not set, and where they lie.
+std::pair<nb::object, double*> new_array(std::initializer_list<std::size_t> shape);
 
 // An array that takes over the values.
 template <class T>

@@ -24,6 +24,14 @@ struct Joint {
 
   bool has_one_axis() const { return kind != JointKind::floating && kind != JointKind::planar; }
   bool slides() const { return kind == JointKind::prismatic; }
+
+  // Whether a tangent coordinate of the joint moves along an axis instead of turning about it.
+  bool slides(int coordinate) const {
+    return slides() || (kind == JointKind::floating && coordinate < 3) || (kind == JointKind::planar && coordinate < 2);
+  }
+
+  // The joint axis along or about which a tangent coordinate moves: 0, 1 or 2.
+  int axis(int coordinate) const { return has_one_axis() ? 2 : coordinate % 3; }
 };
 
 // Apply a tangent step to the entries of a floating or planar joint, in place.

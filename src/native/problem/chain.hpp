@@ -4,6 +4,7 @@
 #include <cstring>
 #include <vector>
 
+#include "../model/axes.hpp"
 #include "../model/trigonometry.hpp"
 #include "problem.hpp"
 
@@ -48,11 +49,9 @@ class Chain {
     const int count = static_cast<int>(links_.size());
     for (int k = 0; k < count; ++k) angles_[k] = q[links_[k].entry];
     sines_and_cosines(angles_.data(), count, sines_.data(), cosines_.data());
-    Column x{1.0, 0.0, 0.0}, y{0.0, 1.0, 0.0}, z{0.0, 0.0, 1.0}, p{};
+    Axes at;
     for (int k = 0; k < count; ++k) {
       Link& link = links_[k];
-      const Mat3& R = link.placement.R;
-      const Vec3& t = link.placement.p;
       double cosine = cosines_[k], sine = sines_[k], shift = 0.0;
       if (link.slides) {
         shift = angles_[k];
@@ -62,23 +61,12 @@ class Chain {
         cosine = angles_[k];
         sine = q[link.entry + 1];
       }
-      // Applying the joint's rotation to its placement first shortens the dependency chain from link to link.
-      const Vec3 a = cosine * R.col(0) + sine * R.col(1), b = cosine * R.col(1) - sine * R.col(0), c = R.col(2);
-      const Vec3 moved = t + shift * c;
-      p += x * moved[0] + y * moved[1] + z * moved[2];
-      const Column next_x = x * a[0] + y * a[1] + z * a[2];
-      const Column next_y = x * b[0] + y * b[1] + z * b[2];
-      z = x * c[0] + y * c[1] + z * c[2];
-      x = next_x;
-      y = next_y;
-      std::memcpy(link.axis, &z, sizeof z);
-      std::memcpy(link.origin, &p, sizeof p);
+      at.go_to(link.placement, shift, cosine, sine);
+      std::memcpy(link.axis, &at.z, sizeof at.z);
+      std::memcpy(link.origin, &at.p, sizeof at.p);
     }
-    p += x * tip_.p[0] + y * tip_.p[1] + z * tip_.p[2];
-    Placement at;
-    at.p = as_vector(p);
-    for (int k = 0; k < 3; ++k) at.R.col(k) = as_vector(x * tip_.R(0, k) + y * tip_.R(1, k) + z * tip_.R(2, k));
-    return at;
+    at.go_to(tip_);
+    return at.placement();
   }
 
   // The Jacobian of a point that is fixed to the last link, at the configuration of the last forward().
@@ -94,10 +82,6 @@ class Chain {
   }
 
  private:
-  using Column = double __attribute__((vector_size(32)));  // a column of a matrix with three rows
-
-  static Vec3 as_vector(const Column& column) { return {column[0], column[1], column[2]}; }
-
   struct Link {
     Placement placement;  // in the previous link
     int entry = 0;  // in q

@@ -115,13 +115,10 @@ struct Problem {
     goals.resize(terms.size());
   }
 
-  bool slides(int joint, int index) const {
-    const Joint& j = mechanism->joints[joint];
-    return j.slides() || (j.kind == JointKind::floating && index < 3) || (j.kind == JointKind::planar && index < 2);
-  }
+  bool slides(int joint, int index) const { return mechanism->joints[joint].slides(index); }
 
   // The joint axis along or about which a tangent coordinate moves: 0, 1 or 2.
-  int axis_of(int joint, int index) const { return mechanism->joints[joint].has_one_axis() ? 2 : index % 3; }
+  int axis_of(int joint, int index) const { return mechanism->joints[joint].axis(index); }
 
  private:
   std::vector<char> support(int joint) const {

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 import time
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
@@ -25,6 +24,7 @@ from .native.codec import goals_of, targets_of
 from .native.outcomes import attempt_many
 from .options import OPTION_NAMES, Options
 from .prepared import Prepared, is_nearest
+from .processors import processors
 from .solution import Solution
 from .state import Status
 from .verdict import measure_errors
@@ -91,7 +91,7 @@ def solve_many(
         method, solver_parameters, limits=limits, locked=locked, restarts=restarts, seed=seed,
         max_iterations=max_iterations, tolerance=tolerance, time_limit=time_limit, engine=engine,
     )  # fmt: skip
-    count = _processors() if threads is None else min(as_count(threads, "threads"), _MOST_THREADS)
+    count = processors() if threads is None else min(as_count(threads, "threads"), _MOST_THREADS)
     began = time.perf_counter()
     pattern, goals = _questions(robot, targets, places, tool, relative_to)
     starts = _starts(robot, None if is_nearest(q0) else q0, len(goals))
@@ -279,7 +279,3 @@ def _attempt_one_by_one(prepared: Prepared, goals: Array, starts: Array, nearest
         np.array([outcome.restarts for outcome in outcomes], dtype=np.int64),
         np.array([outcome.time for outcome in outcomes]),
     )
-
-
-def _processors() -> int:
-    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1

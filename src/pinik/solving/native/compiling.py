@@ -23,7 +23,7 @@ from ..question import Question
 from .constants import make_constants
 from .module import load
 
-__all__ = ["make_engine"]
+__all__ = ["make_engine", "native_robot"]
 
 if TYPE_CHECKING:
     from ..._native import Engine
@@ -37,7 +37,7 @@ def make_engine(question: Question) -> Engine:
     """Build the compiled engine for a question."""
     module = load()
     options, problem = question.options, question.problem
-    robot = _robot(problem.robot)
+    robot = native_robot(problem.robot)
     asked = module.Settings()
     asked.solver = _solver(question.solver, problem)
     asked.patience = module.Patience(question.solver.patience.iterations, question.solver.patience.progress)
@@ -52,7 +52,7 @@ def make_engine(question: Question) -> Engine:
     return engine
 
 
-def _robot(robot: RobotModel) -> Any:
+def native_robot(robot: RobotModel) -> Any:
     """The engine's copy of a robot, which is built once and then cached."""
     if robot not in _ROBOTS:
         _ROBOTS[robot] = _make_robot(robot)
