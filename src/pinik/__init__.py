@@ -7,7 +7,16 @@ Where are its frames (`Robot.placement`, `Robot.jacobian`), and which joint valu
 from .closed_form.robot_bones import TwoBone, TwoBoneConfigurations
 from .closed_form.two_bone import TwoBoneAnswers, two_bone
 from .description.catalog import catalog
-from .errors import EngineError, InputError, PinikError, RobotLoadError, SolveError, UnknownNameError, UrdfWarning
+from .errors import (
+    EngineError,
+    InputError,
+    InputWarning,
+    PinikError,
+    RobotLoadError,
+    SolveError,
+    UnknownNameError,
+    UrdfWarning,
+)
 from .extras import MissingExtraError
 from .loading import load
 from .model.joint import Joint
@@ -41,6 +50,7 @@ __all__ = [
     "DampedLeastSquares",
     "EngineError",
     "InputError",
+    "InputWarning",
     "JacobianSolver",
     "JacobianTranspose",
     "Joint",

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import math
+import sys
+import warnings
 from collections.abc import Callable, Iterable
 from typing import Any
 
@@ -10,7 +12,7 @@ import numpy as np
 import pinocchio
 from numpy.typing import ArrayLike, NDArray
 
-from .errors import InputError
+from .errors import InputError, InputWarning
 
 __all__ = [
     "as_array",
@@ -31,6 +33,11 @@ __all__ = [
 ]
 
 FARTHEST = 1e9  # [m]: beyond it, squared distances lose all precision
+
+# Of rotation matrices. The first is the largest entry of R Rᵀ − I, the others differences to the nearest rotation.
+_EXACT = 1e-14
+_UNSAID_CHANGE = 1e-6  # replaced in silence up to here, such as numbers in single precision
+_FARTHEST_ROTATION = 1e-3  # refused from here on; numbers rounded to three digits are nearer
 
 _IDENTITY = np.eye(3)
 _NO_NUMBERS = (str, bytes, bool, np.bool_)
@@ -152,17 +159,32 @@ def as_unit_vector(value: ArrayLike, what: str) -> Array:
 
 
 def as_rotation(value: ArrayLike, what: str) -> Array:
-    """`value` as a rotation matrix (3, 3); InputError unless it is orthonormal to 1e-6 and right-handed."""
+    """`value` as a rotation matrix (3, 3); a rounded one is replaced by the nearest rotation.
+
+    Args:
+        value: The matrix. How far it is from the nearest rotation is measured by the largest difference of an entry.
+        what: The argument's name in messages.
+
+    Raises:
+        InputError: It is more than 1e-3 from the nearest rotation.
+
+    Warns:
+        InputWarning: It is more than 1e-6 from it.
+    """
     matrix = as_array(value, (3, 3), what, "a rotation matrix")
     small = np.abs(matrix).max() < 2.0  # otherwise the product could overflow
-    off = np.abs(matrix.dot(matrix.T) - _IDENTITY).max() if small else math.inf
-    if off > 1e-6 or _determinant(matrix) < 0.0:
-        requirement = f"must be a rotation matrix (orthonormal, determinant +1); got {matrix.tolist()}"
-        raise InputError(requirement, argument=what)
-    if off < 1e-14:
+    if small and np.abs(matrix.dot(matrix.T) - _IDENTITY).max() < _EXACT and _determinant(matrix) > 0.0:
         return matrix
-    left, _, right = np.linalg.svd(matrix)
-    return np.array(left @ right)
+    rotation, change = _nearest_rotations(matrix)
+    if change > _FARTHEST_ROTATION:
+        raise InputError(
+            f"must be a rotation matrix (orthonormal, determinant +1), or one whose entries are rounded by at most "
+            f"{_FARTHEST_ROTATION:g}; an entry is {change:.2g} away from the nearest one; got {matrix.tolist()}",
+            argument=what,
+        )
+    if change > _UNSAID_CHANGE:
+        _warn(f"{what} is replaced by the nearest rotation matrix; the largest change of an entry is {change:.1g}")
+    return rotation
 
 
 def as_points(values: ArrayLike, what: str) -> Array:
@@ -173,7 +195,7 @@ def as_points(values: ArrayLike, what: str) -> Array:
 
 
 def as_rotations(values: ArrayLike, what: str) -> Array:
-    """`values` as rotation matrices (n, 3, 3), each checked as by `as_rotation`."""
+    """`values` as rotation matrices (n, 3, 3), each checked and replaced as by `as_rotation`; one warning for all."""
     matrices = as_many(values, (3, 3), what)
     a, b, c = np.ascontiguousarray(
         matrices.transpose(1, 2, 0)
@@ -183,11 +205,37 @@ def as_rotations(values: ArrayLike, what: str) -> Array:
         for one, other, product in ((a, a, 1.0), (b, b, 1.0), (c, c, 1.0), (a, b, 0.0), (a, c, 0.0), (b, c, 0.0)):
             off = np.maximum(off, np.abs((one * other).sum(axis=0) - product))
         turned = np.stack((a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]))
-        wrong = ~(off <= 1e-6) | ~((turned * c).sum(axis=0) > 0.0)
-    _refuse_the_first(wrong, matrices, as_rotation, what)
-    for k in np.flatnonzero(off >= 1e-14):
-        matrices[k] = as_rotation(matrices[k], what)
+        exact = (off < _EXACT) & ((turned * c).sum(axis=0) > 0.0)
+    inexact = np.flatnonzero(~exact)
+    if len(inexact) == 0:
+        return matrices
+    rotations, changes = _nearest_rotations(matrices[inexact])
+    for k in inexact[changes > _FARTHEST_ROTATION][:1]:
+        as_rotation(matrices[k], f"{what}[{k}]")
+    matrices[inexact] = rotations
+    changed = inexact[changes > _UNSAID_CHANGE]
+    if len(changed) > 0:
+        ones = (
+            f"{len(changed)} of {len(matrices)} are replaced by the nearest rotation matrix, first {what}[{changed[0]}]"
+        )
+        _warn(f"{what}: {ones}; the largest change of an entry is {changes.max():.1g}")
     return matrices
+
+
+def _nearest_rotations(matrices: Array) -> tuple[Array, Array]:
+    """The nearest rotations (…, 3, 3), and the largest difference of an entry (…)."""
+    left, _, right = np.linalg.svd(matrices)
+    left[..., 2] *= np.sign(np.linalg.det(left @ right))[..., np.newaxis]  # −1 where the matrix mirrors
+    rotations = np.array(left @ right)
+    return rotations, np.abs(matrices - rotations).max(axis=(-2, -1))
+
+
+def _warn(message: str) -> None:
+    """Warn at the line outside pinik that called."""
+    level, frame = 1, sys._getframe()
+    while frame.f_back is not None and frame.f_globals["__name__"].partition(".")[0] == __package__:
+        level, frame = level + 1, frame.f_back
+    warnings.warn(message, InputWarning, stacklevel=level)
 
 
 def _refuse_the_first(
@@ -205,7 +253,7 @@ def _determinant(matrix: Array) -> float:
 
 
 def as_se3(value: pinocchio.SE3 | ArrayLike, what: str) -> pinocchio.SE3:
-    """`value`, a `pinocchio.SE3` or a homogeneous 4×4 matrix, as a new SE3."""
+    """`value`, a `pinocchio.SE3` or a homogeneous 4×4 matrix, as a new SE3; a rounded rotation as by `as_rotation`."""
     matrix = value.homogeneous if isinstance(value, pinocchio.SE3) else value
     array = as_array(matrix, (4, 4), what, "an SE3 or a homogeneous matrix")
     if np.abs(array[3] - (0.0, 0.0, 0.0, 1.0)).max() > 1e-9:

@@ -11,6 +11,7 @@ __all__ = [
     "EngineError",
     "Flaw",
     "InputError",
+    "InputWarning",
     "PinikError",
     "RobotLoadError",
     "SolveError",
@@ -135,6 +136,10 @@ class SolveError(PinikError, RuntimeError):
 
 class EngineError(PinikError, RuntimeError):
     """The requested engine is not available; the message says why."""
+
+
+class InputWarning(UserWarning):
+    """pinik changed an argument that was slightly off, such as a rounded rotation matrix."""
 
 
 class UrdfWarning(UserWarning):

@@ -131,15 +131,25 @@ FAULTS = {
         "joint 'j'",
         "mimic in a circle: 'j', 'k'",
     ),
-    "mimics that multiply to infinity": (
+    "a mimic that multiplies beyond the far limit": (
+        robot(*map(link, "abc"), joint("j", "a", "b"), joint("k", "b", "c", '<mimic joint="j" multiplier="1e308"/>')),
+        "joint 'k'",
+        "it mimics 'j' with multiplier 1e+308 and offset 0, which must be at most 1e+12",
+    ),
+    "a mimic whose offset lies beyond the far limit": (
+        robot(*map(link, "abc"), joint("j", "a", "b"), joint("k", "b", "c", '<mimic joint="j" offset="-2e12"/>')),
+        "joint 'k'",
+        "it mimics 'j' with multiplier 1 and offset -2e+12, which must be at most 1e+12",
+    ),
+    "mimics that together multiply beyond the far limit": (
         robot(
             *map(link, "abcd"),
-            joint("j", "a", "b", '<mimic joint="k" multiplier="1e200"/>'),
-            joint("k", "b", "c", '<mimic joint="l" multiplier="1e200"/>'),
+            joint("j", "a", "b", '<mimic joint="k" multiplier="1e7"/>'),
+            joint("k", "b", "c", '<mimic joint="l" multiplier="1e7"/>'),
             joint("l", "c", "d"),
         ),
         "joint 'j'",
-        "up to 'l' is not finite",
+        "it mimics 'l' with multiplier 1e+14 and offset 0, which must be at most 1e+12",
     ),
     "a negative mass": (robot(inertial('<mass value="-1"/>', INERTIA)), "link 'a'", "the mass is negative"),
     "a mass that is no number": (robot(inertial('<mass value="x"/>', INERTIA)), "link 'a'", "not a number"),

@@ -2,6 +2,7 @@ from __future__ import annotations
 
 import math
 import re
+from typing import Any
 
 import numpy as np
 import pytest
@@ -17,7 +18,7 @@ from urdf_texts import chain, joint, link, pair, robot
 def ask(tmp_path_factory):
     """The second opinion on a text, or on another text than the robot was loaded from."""
 
-    def asked(text: str, other: str | bytes | None = None, **options: str) -> SecondOpinion:
+    def asked(text: str, other: str | bytes | None = None, **options: Any) -> SecondOpinion:
         file = tmp_path_factory.mktemp("robot") / "robot.urdf"
         document = text if other is None else other
         file.write_bytes(document if isinstance(document, bytes) else document.encode())
@@ -40,10 +41,14 @@ class TestAgreement:
         found = load_quietly(name, root=root)
         check_agrees(ask_yourdfpy(found, found.description.path), len(found.description.links))
 
-    def test_on_followers_that_pinik_left_free(self):
-        found = load_quietly("romeo")
-        assert any("left free" in words for words in found.warnings)
+    @pytest.mark.parametrize("name", ["romeo", "talos_full", "talos_full_box"])
+    def test_on_followers_whose_leaders_come_later_by_name(self, name):
+        found = load_quietly(name)
         check_agrees(ask_yourdfpy(found, found.description.path), len(found.description.links))
+
+    def test_on_a_leader_that_hangs_from_its_follower(self, ask):
+        text = robot(*map(link, "abc"), joint("one", "a", "b", mimic("two", -2.0, 0.1)), joint("two", "b", "c"))
+        check_agrees(ask(text), 3)
 
     def test_on_every_kind_of_joint_but_the_motion_of_floating_and_planar_ones(self, ask):
         opinion = ask(ZOO)
@@ -120,6 +125,13 @@ class TestDisagreement:
             for multiplier in (0.5, 0.6)
         }
         assert ask(followed[0.5], followed[0.6]).disagreeing == ("c",)
+
+    def test_about_a_follower_that_pinik_leaves_free(self, ask):
+        text = robot(*map(link, "abc"), joint("one", "a", "b", mimic("two", 0.0, 0.1)), joint("two", "b", "c"))
+        assert ask(text).disagreeing == ("b", "c")
+        late = robot(*map(link, "abc"), joint("one", "a", "b", mimic("two", 0.5)), joint("two", "a", "c"))
+        assert ask(late).agrees
+        assert ask(late, mimic=False).disagreeing == ("b",)
 
     def test_about_what_links_there_are(self, ask):
         assert ask(pair(), pair().replace('"b"', '"other"')).disagreeing == ("b", "other")

@@ -29,6 +29,11 @@ class Mimic:
     multiplier: float
     offset: float
 
+    def after(self, leaders: Mimic) -> Mimic:
+        """The mimic of a joint whose leader follows another by the mimic `leaders`: how it follows that other joint."""
+        multiplier = self.multiplier * leaders.multiplier
+        return Mimic(leaders.leader, multiplier, self.multiplier * leaders.offset + self.offset)
+
 
 @dataclass(frozen=True)
 class JointTag:

@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 
 from ..errors import Flaw
 from .joints import ONE_AXIS_KINDS, JointTag, Mimic
-from .values import required_name
+from .values import FARTHEST, required_name
 from .xml import DocumentError, Element
 
 __all__ = ["check_unique", "resolved_mimics", "root_link"]
@@ -66,7 +65,8 @@ def resolved_mimics(joints: Sequence[JointTag], warnings: list[str]) -> list[Joi
     Mimics that have nothing to follow are removed and named in `warnings`, which is appended to.
 
     Raises:
-        DocumentError: A joint mimics itself, or joints mimic each other in a circle.
+        DocumentError: A joint mimics itself, joints mimic each other in a circle, or a multiplier or offset is so large
+            that placements would not be finite.
     """
     by_name = {joint.name: joint for joint in joints}
     followers: dict[str, Mimic] = {}
@@ -107,13 +107,13 @@ def _ultimate_leaders(followers: Mapping[str, Mimic]) -> dict[str, Mimic]:
             name = followers[name].leader
         for name in reversed(chain):
             mimic = followers[name]
-            above = resolved.get(mimic.leader)
-            if above is not None:
-                multiplier = mimic.multiplier * above.multiplier
-                offset = mimic.multiplier * above.offset + mimic.offset
-                mimic = Mimic(above.leader, multiplier, offset)
-            if not (math.isfinite(mimic.multiplier) and math.isfinite(mimic.offset)):
-                cause = f"the multiplier or offset of its chain of mimics up to {mimic.leader!r} is not finite"
+            if mimic.leader in resolved:
+                mimic = mimic.after(resolved[mimic.leader])
+            if not (abs(mimic.multiplier) <= FARTHEST and abs(mimic.offset) <= FARTHEST):
+                cause = (
+                    f"it mimics {mimic.leader!r} with multiplier {mimic.multiplier:g} and offset {mimic.offset:g}, "
+                    f"which must be at most {FARTHEST:g}"
+                )
                 raise DocumentError(cause, owner=f"joint {name!r}")
             resolved[name] = mimic
     return resolved

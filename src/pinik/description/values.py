@@ -8,6 +8,7 @@ import re
 from .xml import DocumentError, Element
 
 __all__ = [
+    "FARTHEST",
     "Vector",
     "attribute_text",
     "bad_value",

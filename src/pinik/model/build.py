@@ -1,17 +1,18 @@
-"""Build Pinocchio's model from a checked description, with the mimic joints that Pinocchio supports."""
+"""Build Pinocchio's model from a checked description, with its mimic joints."""
 
 from __future__ import annotations
 
 import threading
-from collections.abc import Callable, Collection
+from collections.abc import Callable, Sequence
 from xml.etree import ElementTree
 
 import pinocchio
 
-from ..description.reader import Description
+from ..description.reader import Description, JointTag
 from ..description.writer import UNLIMITED
-from ..errors import Flaw, InputError, RobotLoadError
+from ..errors import InputError, RobotLoadError
 from .joint import joints_of
+from .order import leaders_first
 from .ranges import set_position_limits
 
 __all__ = ["MAX_DEGREES_OF_FREEDOM", "MAX_LINKS", "build_model"]
@@ -48,8 +49,8 @@ def build_model(
         mimic: Whether mimic joints follow their leaders; if not, they are free.
 
     Returns:
-        The model, with the robot's position limits (`ranges.set_position_limits`), and warnings: mimic joints that are
-        left free because Pinocchio does not support them, and followers whose limits are ignored.
+        The model, with the robot's position limits (`ranges.set_position_limits`), and warnings: followers that changed
+        roles with their leader or are left free (`order.leaders_first`), and followers whose limits are ignored.
 
     Raises:
         InputError: Another root than these.
@@ -60,22 +61,12 @@ def build_model(
     root_joint = None if ROOT_JOINTS[root] is None else ROOT_JOINTS[root]()
     _check_names(description, root)
     _check_size(description, 0 if root_joint is None else root_joint.nv)
-    free = _built(description, description.xml, root_joint, mimic=False)
-    causes = {
-        tag.name: _why_left_free(tag.name, tag.mimic.leader, free)
-        for tag in description.joints
-        if mimic and tag.mimic is not None
-    }
-    common = "it mimics a joint that comes after it in Pinocchio's order of joints; it is left free"
-    warnings = tuple(
-        Flaw(f"joint {name!r}", f"{cause}; it is left free", common=common) for name, cause in causes.items() if cause
-    )
-    honoured = {name for name, cause in causes.items() if cause is None}
-    if honoured:
-        leaders = {tag.mimic.leader for tag in description.joints if tag.mimic is not None and tag.name in honoured}
-        model = _built(description, _with_mimics(description.xml, honoured, leaders), root_joint, mimic=True)
+    joints, warnings = leaders_first(description) if mimic else ((), ())
+    if any(tag.mimic is not None for tag in joints):
+        model = _built(description, _in_order(description.xml, joints), root_joint, mimic=True)
+        _restore_names(model, joints)
     else:
-        model = free
+        model = _built(description, description.xml, root_joint, mimic=False)
     return model, warnings + set_position_limits(model, joints_of(model, description))
 
 
@@ -110,31 +101,49 @@ def _check_size(description: Description, root_freedoms: int) -> None:
         )
 
 
-def _why_left_free(follower: str, leader: str, free: pinocchio.Model) -> str | None:
-    """Why Pinocchio cannot make this joint follow its leader; None if it can."""
-    if free.getJointId(follower) < free.getJointId(leader):
-        return f"it mimics {leader!r}, which comes after it in Pinocchio's order of joints"
-    return None
+def _in_order(xml: str, joints: Sequence[JointTag]) -> str:
+    """The text with the mimics of `joints`, renamed so that Pinocchio adds the joints in this order.
 
-
-def _with_mimics(xml: str, honoured: Collection[str], leaders: Collection[str]) -> str:
-    """The text with only the honoured mimics, and with revolute joints for continuous leaders and followers.
-
-    As (cos, sin), a leader would lose its whole turns, which its followers need, and could not have the limits that
-    they impose. Besides, Pinocchio pairs continuous joints only with each other.
+    Continuous leaders and followers become revolute joints. As (cos, sin), a leader would lose its whole turns, which
+    its followers need, and could not have the limits that they impose. Besides, Pinocchio pairs continuous joints only
+    with each other.
     """
+    names = _ordered_names(joints)
+    tags = {tag.name: tag for tag in joints}
+    leaders = {tag.mimic.leader for tag in joints if tag.mimic is not None}
     robot = ElementTree.fromstring(xml)
     for joint in robot.iter("joint"):
-        name, mimic = joint.attrib["name"], joint.find("mimic")
-        if mimic is not None and name not in honoured:
-            joint.remove(mimic)
-        if joint.attrib["type"] == "continuous" and (name in leaders or name in honoured):
+        name = joint.attrib["name"]
+        mimic, written = tags[name].mimic, joint.find("mimic")
+        joint.set("name", names[name])
+        if written is not None:
+            joint.remove(written)
+        if mimic is not None:
+            scale = {"multiplier": repr(mimic.multiplier), "offset": repr(mimic.offset)}
+            ElementTree.SubElement(joint, "mimic", joint=names[mimic.leader], attrib=scale)
+        if joint.attrib["type"] == "continuous" and (mimic is not None or name in leaders):
             joint.set("type", "revolute")
             limit = joint.find("limit")
             if limit is None:
                 limit = ElementTree.SubElement(joint, "limit", effort=repr(UNLIMITED), velocity=repr(UNLIMITED))
             limit.attrib.update(lower="0", upper="0")  # required by URDF; `set_position_limits` removes them
     return ElementTree.tostring(robot, encoding="unicode")
+
+
+def _ordered_names(joints: Sequence[JointTag]) -> dict[str, str]:
+    """Joint → a name that sorts by its place in `joints`."""
+    width = len(str(len(joints)))
+    return {tag.name: f"{place:0{width}} {tag.name}" for place, tag in enumerate(joints)}
+
+
+def _restore_names(model: pinocchio.Model, joints: Sequence[JointTag]) -> None:
+    """Give the joints of a model that was built from `_in_order` and their frames the names of the file again."""
+    names = {ordered: name for name, ordered in _ordered_names(joints).items()}
+    for joint_id, name in enumerate(model.names):
+        model.names[joint_id] = names.get(name, name)
+    for frame in model.frames:
+        if frame.type != pinocchio.BODY:
+            frame.name = names.get(frame.name, frame.name)
 
 
 def _built(

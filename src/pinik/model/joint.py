@@ -33,7 +33,7 @@ class Joint:
         idx_v, nv: The same for tangent vectors.
         axis: Unit axis (3,) in the joint's frame, for joints with one axis.
         lower, upper: Its own limits in the URDF [rad or m], infinite where there are none.
-        leader: The name of the joint that it mimics, or None.
+        leader: The name of the joint that it mimics, or None. It never mimics another joint itself.
         multiplier, offset: A follower's angle is multiplier · leader's angle + offset.
     """
 
@@ -143,14 +143,18 @@ class Joint:
 
 
 def joints_of(model: pinocchio.Model, description: Description) -> tuple[Joint, ...]:
-    """All movable joints of a model, in its order, with what only the description knows."""
+    """All movable joints of a model, in its order, with what only the description knows.
+
+    Who follows whom is read from the model.
+    """
     tags = {tag.name: tag for tag in description.joints}
+    owners: dict[int, str] = {}  # first entry of q → the joint that it belongs to
     joints = []
     for joint_id in range(1, model.njoints):
         name, shape = model.names[joint_id], model.joints[joint_id]
         tag = tags.get(name)
-        mimic = tag.mimic if tag and shape.nq == 0 else None
-        leader = model.joints[model.getJointId(mimic.leader)] if mimic else shape
+        leader = owners.setdefault(shape.idx_q, name)
+        mimic = None if leader == name else shape.extract()
         bounded = tag is not None and tag.kind in ("revolute", "prismatic")
         lower, upper = (tag.lower or 0.0, tag.upper or 0.0) if tag and bounded else _FREE
         joints.append(
@@ -158,15 +162,15 @@ def joints_of(model: pinocchio.Model, description: Description) -> tuple[Joint, 
                 name=name,
                 kind=tag.kind if tag else ("floating" if shape.nq == 7 else "planar"),
                 id=joint_id,
-                idx_q=leader.idx_q,
+                idx_q=shape.idx_q,
                 nq=shape.nq,
-                idx_v=leader.idx_v,
+                idx_v=shape.idx_v,
                 nv=shape.nv,
                 axis=tag.axis if tag else (0.0, 0.0, 1.0),
                 lower=lower,
                 upper=upper,
-                leader=mimic.leader if mimic else None,
-                multiplier=mimic.multiplier if mimic else 1.0,
+                leader=leader if mimic else None,
+                multiplier=mimic.scaling if mimic else 1.0,
                 offset=mimic.offset if mimic else 0.0,
             )
         )

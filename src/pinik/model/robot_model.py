@@ -47,10 +47,13 @@ class RobotModel:
         root: How the root link is attached to the world: "fixed", "free_flyer" or "planar".
         package_dirs: The folders that are searched first for the packages of meshes.
         warnings: What was repaired or left out while loading.
-        joints: All movable joints in the model's order, including followers and the root joint.
+        joints: All movable joints in the model's order, including followers and the root joint. Pinocchio reads the
+            tree depth first and the joints of a link by name, except that leaders come before their followers.
         joint_names: The names of the one-axis joints that are not followers, in the model's order.
         frame_names: The names of all frames, in the model's order.
-        mimics: Follower → (leader, multiplier, offset), where follower = multiplier · leader + offset.
+        mimics: Follower → (leader, multiplier, offset), where follower = multiplier · leader + offset. The leader of a
+            chain is the joint at its end, which follows no other. Where Pinocchio's model cannot have that joint before
+            its followers, it follows one of them instead, and a warning says so; all angles stay as the file says.
         lower, upper: Joint limits (n_joints,) in the order of `joint_names` [rad or m], infinite where there are none.
             Those of a leader also keep its followers inside their limits.
         lower_q, upper_q: The same limits for the entries of q (nq,), infinite for entries that are not an angle.

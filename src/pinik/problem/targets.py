@@ -81,7 +81,8 @@ class Target:
             frame: The frame to move.
             position: Where its origin should be (3,) [m]. A coordinate of None leaves that axis of `relative_to`, or of
                 the world, free.
-            rotation: Rotation matrix (3, 3).
+            rotation: Rotation matrix (3, 3). One that was rounded is replaced by the nearest rotation, if no entry
+                changes by more than 1e-3; the same holds for placements.
             rpy: Fixed-axis roll, pitch, yaw (3,) [rad]: Rz(yaw) Ry(pitch) Rx(roll).
             quat_xyzw: Quaternion, scalar last; scaled to unit length.
             quat_wxyz: Quaternion, scalar first; scaled to unit length.
@@ -98,6 +99,9 @@ class Target:
         Raises:
             InputError: Nothing is asked for, something is contradictory, not finite or of the wrong shape; a direction
                 or quaternion is zero; the weight is out of its range.
+
+        Warns:
+            InputWarning: An entry of a rotation matrix was changed by more than 1e-6.
         """
         what = _named(frame, relative_to)
         _check_combination(what, position, rotation, rpy, quat_xyzw, quat_wxyz, placement, axis, direction, at)

@@ -77,9 +77,10 @@ def ask_yourdfpy(robot: RobotModel, path: str | Path) -> SecondOpinion:
     """Compare a robot with yourdfpy's reading of its file.
 
     Placements are compared in the root link, at the neutral configuration and at two random ones, which are always the
-    same. Followers move as yourdfpy reads their mimic tags; those that pinik left free have angles of their own. Known
-    deviations of yourdfpy are excluded: it multiplies the travel of a prismatic joint by the length of its axis, and
-    does not move floating joints, planar joints or mimics of mimics.
+    same. Every joint whose mimic tag names a joint with one axis follows it here as yourdfpy reads the tag, also where
+    pinik leaves it free, which then is a disagreement. Known deviations of yourdfpy are excluded: it multiplies the
+    travel of a prismatic joint by the length of its axis, and does not move floating joints, planar joints or mimics of
+    mimics.
 
     Args:
         robot: The robot, with any root joint.
@@ -133,7 +134,7 @@ def _read(path: Path) -> tuple[yourdfpy.URDF, dict[str, Any]]:
     """yourdfpy's reading of the file, without shapes and mimic tags and with unit axes; and the mimic tags.
 
     yourdfpy itself would place followers wrongly where they follow a follower, or a leader that comes after a floating
-    or planar joint.
+    or planar joint. Tags that name no joint with one axis are left out, as yourdfpy has nothing to follow there either.
     """
     document = io.BytesIO(path.read_bytes())
     read = yourdfpy.URDF.load(document, load_meshes=False, build_scene_graph=False).robot
@@ -148,7 +149,9 @@ def _read(path: Path) -> tuple[yourdfpy.URDF, dict[str, Any]]:
         elif joint.type != "fixed":
             axis = joint.axis / np.abs(joint.axis).max()  # first, so that squares neither overflow nor underflow
             joint.axis = axis / np.linalg.norm(axis)
-    return yourdfpy.URDF(robot=read, load_meshes=False, build_scene_graph=True), mimics
+    leaders = {joint.name for joint in read.joints if joint.type != "fixed"}
+    followed = {name: mimic for name, mimic in mimics.items() if mimic.joint in leaders}
+    return yourdfpy.URDF(robot=read, load_meshes=False, build_scene_graph=True), followed
 
 
 def _their_links(reader: yourdfpy.URDF, mimics: Mapping[str, Any], robot: RobotModel, q: Array) -> dict[str, Array]:
@@ -158,11 +161,10 @@ def _their_links(reader: yourdfpy.URDF, mimics: Mapping[str, Any], robot: RobotM
     takes minutes for a thousand links.
     """
     angles = robot.angles(q)
-    settable = {name: angles[name] for name in robot.joint_names}
 
     def angle(joint: str) -> float:
-        if joint in settable or joint not in mimics:
-            return settable.get(joint, 0.0)
+        if joint not in mimics:
+            return angles.get(joint, 0.0)
         mimic = mimics[joint]
         return float(mimic.multiplier * angle(mimic.joint) + mimic.offset)
 

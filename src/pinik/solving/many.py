@@ -11,7 +11,7 @@ import numpy as np
 import pinocchio
 from numpy.typing import ArrayLike, NDArray
 
-from ..checks import as_count, as_many, as_numbers, as_points, as_rotations, as_se3
+from ..checks import as_array, as_count, as_many, as_numbers, as_points, as_rotations, as_se3
 from ..errors import InputError
 from ..model.robot_model import RobotModel
 from ..problem.reach import shortfall
@@ -81,6 +81,9 @@ def solve_many(
 
     Raises:
         UnknownNameError, InputError, EngineError: As for `pinik.solve`, with the index of the first faulty target.
+
+    Warns:
+        InputWarning: Rotation matrices in `places` were rounded and replaced, as by `Target`; one warning for all.
     """
     if not isinstance(robot, RobotModel):
         raise InputError(f"robot must be what pinik.load returns; got {robot!r}")
@@ -215,7 +218,7 @@ def _listed(targets: Any) -> tuple[tuple[Target, ...], Array]:
 def _read_places(places: Any) -> tuple[Array | None, Array]:
     """(rotations (N, 3, 3) or None, points (N, 3) [m])."""
     if isinstance(places, Sequence) and any(isinstance(place, pinocchio.SE3) for place in places):
-        places = np.array([as_se3(place, f"places[{k}]").homogeneous for k, place in enumerate(places)])
+        places = np.array([_matrix_of(place, f"places[{k}]") for k, place in enumerate(places)])
     numbers = as_numbers(places, "places")
     if numbers.shape == (0,):
         return np.zeros((0, 3, 3)), np.zeros((0, 3))
@@ -225,6 +228,11 @@ def _read_places(places: Any) -> tuple[Array | None, Array]:
     for k in np.flatnonzero((np.abs(matrices[:, 3] - (0.0, 0.0, 0.0, 1.0)) > 1e-9).any(axis=1))[:1]:
         as_se3(matrices[k], f"places[{k}]")
     return as_rotations(matrices[:, :3, :3], "places"), as_points(matrices[:, :3, 3], "places")
+
+
+def _matrix_of(place: Any, what: str) -> Array:
+    """A place (4, 4) in a list with SE3s; whether it is a placement is checked later, for all at once."""
+    return np.array(place.homogeneous) if isinstance(place, pinocchio.SE3) else as_array(place, (4, 4), what)
 
 
 def _placed(

@@ -152,3 +152,25 @@ def test_joints_with_the_same_flaw_share_a_line_whatever_their_names(run, urdf):
     assert [line for line in lines if line.startswith("warning")] == [
         """warning: joint "j'1", joint "j'2": it mimics a joint that does not exist; it is left free"""
     ]
+
+
+class TestFollowers:
+    """Two joints beside each other; the first by name follows the second, or has it hang from itself."""
+
+    LINKS = '<link name="a"/><link name="b"/><link name="c"/>'
+    JOINTS = (
+        '<joint name="one" type="revolute"><parent link="a"/><child link="b"/><axis xyz="0 0 1"/>'
+        '<limit lower="-1" upper="1" effort="1" velocity="1"/><mimic joint="two" multiplier="{multiplier}"/></joint>'
+        '<joint name="two" type="revolute"><parent link="{parent}"/><child link="c"/><axis xyz="0 1 0"/>'
+        '<limit lower="-1" upper="1" effort="1" velocity="1"/></joint>'
+    )
+
+    def test_whose_leader_comes_later_by_name_agree_with_yourdfpy(self, run, urdf):
+        answer = run("check", urdf(self.LINKS + self.JOINTS.format(parent="a", multiplier=0.5)), "--json").json
+        assert answer["second_opinion"]["agrees"]
+        assert (answer["warnings"], answer["second_opinion"]["links"]) == ([], 3)
+
+    def test_that_are_left_free_are_a_disagreement(self, run, urdf):
+        answer = run("check", urdf(self.LINKS + self.JOINTS.format(parent="b", multiplier=0)), "--json").json
+        assert "it is left free" in answer["warnings"][0]
+        assert answer["second_opinion"]["disagreeing"] == ["b", "c"]

@@ -390,3 +390,15 @@ def test_a_robot_that_cannot_be_loaded_is_status_3(run, source):
     assert (result.status, result.out) == (3, "")
     assert result.err.startswith("error: ")
     assert "Traceback" not in result.err
+
+
+def test_a_rounded_rotation_in_a_file_is_a_warning_in_one_line_on_stderr(run, tmp_path):
+    turn = [[0.86603, -0.5, 0.0], [0.5, 0.86603, 0.0], [0.0, 0.0, 1.0]]
+    file = tmp_path / "targets.json"
+    file.write_text(json.dumps([{"frame": "tip", "rotation": turn}]))
+    answer = run("solve", "arm", "--targets", file, "--json")
+    (line,) = answer.err.splitlines()
+    where = f"warning: {file}: target 0: target 'tip': rotation is replaced by the nearest rotation matrix"
+    assert line == f"{where}; the largest change of an entry is 3e-06"  # 0.86603 · (1 − 1 / √(0.86603² + 0.25))
+    expected = [[3**0.5 / 2, -0.5, 0.0], [0.5, 3**0.5 / 2, 0.0], [0.0, 0.0, 1.0]]
+    np.testing.assert_allclose(answer.json["targets"][0]["rotation"], expected, atol=2e-6)

@@ -47,6 +47,6 @@ def test_a_first_robot_with_a_name_of_the_catalogue_stands_for_it():
 
 
 def test_warnings_of_a_robot_do_not_get_out(arm):
-    assert RobotMenu(arm).load("romeo", "free_flyer").warnings
+    assert RobotMenu(arm).load("quadruped", "free_flyer").warnings
     with pytest.raises(pinik.RobotLoadError):
         RobotMenu(arm).load("ur3_empty", "fixed")

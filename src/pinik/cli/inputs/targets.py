@@ -4,14 +4,16 @@ from __future__ import annotations
 
 import json
 import sys
+import warnings
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
 from ...checks import as_point, as_unit_vector, as_vector
-from ...errors import PinikError
+from ...errors import InputWarning, PinikError
 from ...problem.targets import Target, as_position
 from ...robot import Robot
+from ..terminal import output
 from ..terminal.exits import CommandError
 
 __all__ = ["check_frames", "option_of", "read_position", "target_from_options", "targets_from_file"]
@@ -155,7 +157,12 @@ def _without_duplicates(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
 
 
 def _target(item: Any, where: str) -> Target:
-    try:
-        return Target.from_dict(item)
-    except PinikError as error:
-        raise CommandError(f"{where}: {error}") from None
+    with warnings.catch_warnings(record=True) as given:
+        warnings.simplefilter("always", InputWarning)
+        try:
+            target = Target.from_dict(item)
+        except PinikError as error:
+            raise CommandError(f"{where}: {error}") from None
+    for warning in given:
+        output.warn(f"{where}: {warning.message}")
+    return target
