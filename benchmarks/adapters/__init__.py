@@ -3,12 +3,16 @@
 An adapter is a class made with an arm as JSON (`comparison.arms.Arm.as_json`) and the peer's options. What a user
 would write once beforehand belongs into `__init__`, `target` and `start`; only `solve` is timed:
 
-    target(matrix)        a 4×4 placement of the tip in the base, as the peer takes it
+    target(matrix)        a 4×4 placement of the tip in the base; moved to the frame that the peer places
     start(q)              joint values (n,), as the peer takes them
-    solve(target, start)  the peer's own call
+    solve(target, start)  the peer's own call, from arrays to an array
     answer(solved)        its result as joint values (n,) in the arm's order, or None
 
-A batch adapter has `solve_all(targets, starts)` in the place of `solve`, and `answers(solved)`, which gives the
-joint values and the time of each target [s]. Files here import nothing of pinik's or each other's: they run where
-only their peer is installed.
+A batch adapter has instead:
+
+    targets(matrices), starts(q)   N placements (N, 4, 4) and N rows of joint values (N, n), as the peer takes them
+    solve_all(targets, starts)     the peer's own call
+    answers(solved)                its results (N, …), and the time of each target [s] or None where it reports none
+
+Files here import nothing of pinik's or each other's: they run where only their peer is installed.
 """

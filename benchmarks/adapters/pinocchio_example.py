@@ -1,4 +1,4 @@
-"""Pinocchio's own example of inverse kinematics (CLIK), as its documentation has it."""
+"""Pinocchio's own example of inverse kinematics (CLIK), as its documentation has it, and its forward kinematics."""
 
 from __future__ import annotations
 
@@ -48,3 +48,18 @@ class PinocchioExample:
 
     def answer(self, solved: np.ndarray) -> np.ndarray:
         return solved[self._places]
+
+
+class Forward(PinocchioExample):
+    """`forwardKinematics` and `updateFramePlacement`, one configuration a call."""
+
+    def __init__(self, arm: dict[str, Any]) -> None:
+        super().__init__(arm)
+        self._frame = self._model.getFrameId(arm["tip"], pinocchio.BODY)
+
+    def solve(self, target: pinocchio.SE3, start: np.ndarray) -> np.ndarray:
+        pinocchio.forwardKinematics(self._model, self._data, start)
+        return pinocchio.updateFramePlacement(self._model, self._data, self._frame).homogeneous
+
+    def answer(self, solved: np.ndarray) -> np.ndarray:
+        return solved

@@ -11,15 +11,13 @@ from trac_ik import TracIK
 class Tracik:
     """`TracIK.ik` as its documentation shows it: solver type "Speed", 5 ms at most.
 
-    Its tolerance holds for each of the six rows of the twist alone, so 1e-4 / √3 is the loosest that keeps the
-    distance within 1e-4 m.
+    Its tolerance holds for each of the six rows of the twist alone, so a tolerance divided by √3 is the loosest
+    that keeps the distance within it.
     """
 
-    EPSILON = 1e-4 / 3**0.5
-
-    def __init__(self, arm: dict[str, Any]) -> None:
+    def __init__(self, arm: dict[str, Any], tolerance: float = 1e-4) -> None:
         self._solver = TracIK(
-            arm["base"], arm["tip"], arm["urdf"], timeout=0.005, epsilon=self.EPSILON, solver_type="Speed"
+            arm["base"], arm["tip"], arm["urdf"], timeout=0.005, epsilon=tolerance / 3**0.5, solver_type="Speed"
         )
         # It reads limits in single precision, and would stop up to 1e-7 rad beyond them.
         self._solver.joint_limits = (arm["lower"], arm["upper"])

@@ -2,8 +2,9 @@
 
     python worker.py ADAPTER_FILE CLASS
 
-Requests: {"load": arm, "options": …, "packages": […], "warm_up": […]} once, then {"solve": targets, "starts": …,
-"seconds": …} again and again; with "carry" each start is the last answer, and "starts" has the first one or is null.
+Requests: {"load": arm, "options": …, "packages": […], "core": …, "warm_up": […]} once, then {"solve": targets,
+"starts": …, "seconds": …} again and again; with "carry" each start is the last answer, and "starts" has the first one
+or is null. Arrays travel as `wire` packs them.
 """
 
 from __future__ import annotations
@@ -19,6 +20,7 @@ import time
 from typing import Any, TextIO
 
 import numpy as np
+from wire import pack, unpack
 
 
 def main() -> None:
@@ -48,41 +50,44 @@ class Worker:
         self._lower = self._upper = np.empty(0)
 
     def load(
-        self, load: dict[str, Any], options: dict[str, Any], packages: list[str], warm_up: list[Any]
+        self, load: dict[str, Any], options: dict[str, Any], packages: list[str], core: int | None, warm_up: list[Any]
     ) -> dict[str, Any]:
-        """Make the adapter, and let it solve a few problems."""
+        """Stay on one core if there is one given, make the adapter, and let it solve a few problems."""
+        if core is not None:
+            os.sched_setaffinity(0, {core})
         specification = importlib.util.spec_from_file_location("adapter", self._file)
         module = importlib.util.module_from_spec(specification)
         specification.loader.exec_module(module)
         self._adapter = getattr(module, self._class)(load, **options)
         self._lower, self._upper = np.array(load["lower"]), np.array(load["upper"])
-        self._warm_up = [(_matrix(target), np.array(start)) for target, start in warm_up]
+        self._warm_up = list(zip(*map(unpack, warm_up), strict=True))
         self._run_warm_up(seconds=2.0)
         return {"versions": {package: importlib.metadata.version(package) for package in packages}}
 
-    def solve(self, solve: list[Any], starts: list[Any] | None, seconds: float, carry: bool = False) -> dict[str, Any]:
+    def solve(
+        self, solve: dict[str, Any], starts: dict[str, Any] | None, seconds: float, carry: bool = False
+    ) -> dict[str, Any]:
         """Solve as many of the targets as the time allows, at least one; a batch is solved whole.
 
-        The times are those of the single targets [ns], and of all together.
+        The times are those of the single targets [ns], none where a batch reports none, and of all together. An
+        answer that is none is a row of NaN.
         """
-        targets = [_matrix(target) for target in solve]
-        if starts is not None:
-            self._last = np.array(starts[0])
+        targets, first = unpack(solve), None if starts is None else unpack(starts)
+        if first is not None:
+            self._last = first[0]
         gc.collect()
         gc.disable()
         try:
             self._run_warm_up(seconds=0.02)
             if hasattr(self._adapter, "solve_all"):
-                return self._solve_batch(targets, np.array(starts))
-            return self._solve_one_by_one(targets, None if carry else np.array(starts), seconds)
+                return self._solve_batch(targets, first)
+            return self._solve_one_by_one(targets, None if carry else first, seconds)
         finally:
             gc.enable()
 
-    def _solve_one_by_one(
-        self, matrices: list[np.ndarray], starts: np.ndarray | None, seconds: float
-    ) -> dict[str, Any]:
+    def _solve_one_by_one(self, matrices: np.ndarray, starts: np.ndarray | None, seconds: float) -> dict[str, Any]:
         adapter, clock = self._adapter, time.perf_counter_ns
-        answers, nanoseconds, errors = [], [], []
+        answers, nanoseconds, errors, wall = [], [], [], 0
         for number, matrix in enumerate(matrices):
             target = adapter.target(matrix)
             start = adapter.start(self._last.copy() if starts is None else starts[number])
@@ -93,30 +98,31 @@ class Worker:
             except Exception as error:
                 errors.append(f"{type(error).__name__}: {error}")
             nanoseconds.append(clock() - began)
+            wall += nanoseconds[-1]
             if solved is not None:
                 answer = adapter.answer(solved)
-            answers.append(None if answer is None else [float(value) for value in answer])
-            if answer is not None and np.isfinite(answer).all():
-                self._last = np.clip(answer, self._lower, self._upper)
-            if sum(nanoseconds) > 1e9 * seconds:
+            answers.append(np.full(len(self._last), np.nan) if answer is None else np.array(answer, dtype=np.float64))
+            if starts is None and np.isfinite(answers[-1]).all():
+                self._last = np.clip(answers[-1], self._lower, self._upper)
+            if wall > 1e9 * seconds:
                 break
-        return {"answers": answers, "nanoseconds": nanoseconds, "wall": sum(nanoseconds), "errors": errors[:1]}
+        return {"answers": pack(answers), "nanoseconds": nanoseconds, "wall": wall, "errors": errors[:1]}
 
-    def _solve_batch(self, matrices: list[np.ndarray], starts: np.ndarray) -> dict[str, Any]:
+    def _solve_batch(self, matrices: np.ndarray, starts: np.ndarray) -> dict[str, Any]:
         adapter = self._adapter
         targets, first = adapter.targets(matrices), adapter.starts(starts)
         began = time.perf_counter_ns()
         solved = adapter.solve_all(targets, first)
         wall = time.perf_counter_ns() - began
         answers, seconds = adapter.answers(solved)
-        nanoseconds = [int(1e9 * value) for value in seconds]
-        return {"answers": answers, "nanoseconds": nanoseconds, "wall": wall, "errors": []}
+        nanoseconds = [] if seconds is None else [int(1e9 * value) for value in seconds]
+        return {"answers": pack(answers), "nanoseconds": nanoseconds, "wall": wall, "errors": []}
 
     def _run_warm_up(self, seconds: float) -> None:
         adapter, until = self._adapter, time.perf_counter() + seconds
         if hasattr(adapter, "solve_all"):
             targets, starts = zip(*self._warm_up, strict=True)
-            adapter.solve_all(adapter.targets(list(targets)), adapter.starts(np.array(starts)))
+            adapter.solve_all(adapter.targets(np.array(targets)), adapter.starts(np.array(starts)))
             return
         for target, start in self._warm_up:
             # One that fails here is of no concern; those that count are counted.
@@ -124,10 +130,6 @@ class Worker:
                 adapter.solve(adapter.target(target), adapter.start(start))
             if time.perf_counter() > until:
                 break
-
-
-def _matrix(rows: list[list[float]]) -> np.ndarray:
-    return np.array(rows, dtype=np.float64)
 
 
 def _own_stdout() -> TextIO:

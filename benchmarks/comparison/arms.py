@@ -21,6 +21,7 @@ Array = NDArray[np.float64]
 LEFT_OUT_OF_ROBOT = ("gazebo", "transmission", "material")
 LEFT_OUT_OF_LINK = ("visual", "collision")
 LEFT_OUT_OF_JOINT = ("safety_controller",)
+LEFT_OUT_OF_CHAIN = ("inertial",)
 
 
 @dataclass(frozen=True)
@@ -54,7 +55,8 @@ class Arm:
 
     Attributes:
         name: Its short name.
-        urdf: The file that all peers read.
+        urdf: The file that the peers read: the whole robot.
+        chain: A file of the links and joints from base to tip alone, without masses, for peers that read no other.
         base: The root link.
         tip: The link that is placed.
         elements: Link, joint, link, …, from base to tip.
@@ -64,9 +66,9 @@ class Arm:
         plain: Pinocchio's model of the file, and the limits in it.
     """
 
-    def __init__(self, name: str, source: ArmSource, urdf: Path) -> None:
+    def __init__(self, name: str, source: ArmSource, urdf: Path, chain: Path) -> None:
         self.name = name
-        self.urdf = urdf
+        self.urdf, self.chain = urdf, chain
         self.base, self.tip = source.base, source.tip
         joints = _joints_between(ElementTree.parse(urdf).getroot(), self.base, self.tip)
         self.elements = [self.base]
@@ -92,6 +94,7 @@ class Arm:
         return {
             "name": self.name,
             "urdf": str(self.urdf),
+            "chain": str(self.chain),
             "base": self.base,
             "tip": self.tip,
             "elements": self.elements,
@@ -102,7 +105,7 @@ class Arm:
 
 
 def write_arm(name: str, folder: Path) -> Arm:
-    """Write the URDF file of an arm into a folder: the robot's own, without shapes."""
+    """Write the URDF files of an arm into a folder: the robot's own without shapes, and one of its chain alone."""
     source = ARMS[name]
     robot = ElementTree.parse(robot_catalog.find(source.robot).urdf).getroot()
     _leave_out(robot, LEFT_OUT_OF_ROBOT)
@@ -112,9 +115,13 @@ def write_arm(name: str, folder: Path) -> Arm:
         _leave_out(joint, LEFT_OUT_OF_JOINT)
     if source.alone:
         _keep_chain(robot, source)
-    urdf = folder / f"{name}.urdf"
+    urdf, chain = folder / f"{name}.urdf", folder / f"{name}_chain.urdf"
     ElementTree.ElementTree(robot).write(urdf, encoding="utf-8", xml_declaration=True)
-    return Arm(name, source, urdf)
+    _keep_chain(robot, source)
+    for link in robot.iter("link"):
+        _leave_out(link, LEFT_OUT_OF_CHAIN)
+    ElementTree.ElementTree(robot).write(chain, encoding="utf-8", xml_declaration=True)
+    return Arm(name, source, urdf, chain)
 
 
 def _leave_out(element: ElementTree.Element, tags: tuple[str, ...]) -> None:

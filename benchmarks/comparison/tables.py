@@ -3,15 +3,18 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import asdict, dataclass
 from typing import Any
 
 import numpy as np
 
-from .peer_list import REFERENCES, Peer
+from .peer import Peer
+from .peer_list import REFERENCES
+from .problems import TASKS
 from .verdicts import Verdict
 
-__all__ = ["Measured", "Row", "as_json", "as_text", "row_of"]
+__all__ = ["Measured", "Row", "as_json", "as_text", "row_of", "times_as_fast"]
 
 
 @dataclass
@@ -20,7 +23,7 @@ class Measured:
 
     Attributes:
         verdicts: One for each target that it got to.
-        nanoseconds: The time of each.
+        nanoseconds: The time of each; none where one call answered all and reports no times.
         wall: The time of all together [ns]; what counts for the mean of a batch on several threads.
         note: What went wrong with some of its targets.
         reason: Why there is nothing to report; empty when there is.
@@ -35,13 +38,19 @@ class Measured:
 
 @dataclass
 class Row:
-    """One peer's figures for one arm and task: shares [%], times [µs]."""
+    """One peer's figures for one arm and task: shares [%], times [µs].
+
+    `placed` counts answers outside the limits, too; `strict` those within the tolerance [m] that was asked for.
+    """
 
     robot: str
     task: str
     peer: str
     label: str
+    lacks: str
+    tolerance: float
     count: int = 0
+    placed: float = math.nan
     solved: float = math.nan
     strict: float = math.nan
     median: float = math.nan
@@ -54,67 +63,66 @@ class Row:
 
 def row_of(robot: str, task: str, peer: Peer, measured: Measured) -> Row:
     """Figures out of what was measured."""
-    row = Row(robot, task, peer.key, peer.label, note=measured.note, reason=measured.reason)
-    if measured.nanoseconds:
-        verdicts, times = np.array(measured.verdicts), np.array(measured.nanoseconds) / 1e3
-        row.count = len(times)
+    row = Row(robot, task, peer.key, peer.label, peer.lacks, peer.tolerance, note=measured.note, reason=measured.reason)
+    if measured.verdicts:
+        verdicts = np.array(measured.verdicts)
+        row.count = len(verdicts)
+        row.placed = 100 * float((verdicts > Verdict.MISSED).mean())
         row.solved = 100 * float((verdicts >= Verdict.SOLVED).mean())
         row.strict = 100 * float((verdicts >= Verdict.STRICTLY_SOLVED).mean())
-        row.mean = measured.wall / 1e3 / len(times)
+        row.mean = row.median = measured.wall / 1e3 / row.count
+    if measured.nanoseconds:
+        times = np.array(measured.nanoseconds) / 1e3
         row.median, row.p90, row.p99 = (float(value) for value in np.percentile(times, [50, 90, 99]))
     return row
 
 
-def as_text(rows: list[Row]) -> str:
+def as_text(rows: Sequence[Row], noise: tuple[float, float]) -> str:
     """A table of the rows of one arm and task."""
-    ratios = "".join(f"{name + ' med':>11}{name + ' mean':>11}" for name, _ in REFERENCES)
     lines = [
-        f"## {rows[0].robot}, {rows[0].task}; at the right: how many times as fast as …, by median and by mean",
-        f"{'':27} {'count':>6} {'solved':>7} {'strict':>7} {'median':>9} {'mean':>9} {'p90':>9} {'p99':>9} µs {ratios}",
+        f"## {rows[0].robot}, {rows[0].task}: {TASKS[rows[0].task]}",
+        f"   the machine meanwhile: the same work took {noise[0]:+.0f} % to {noise[1]:+.0f} % of its median time",
+        f"{'':31} {'count':>6} {'placed':>7} {'solved':>7} {'strict':>7} "
+        f"{'median':>9} {'mean':>9} {'p90':>9} {'p99':>9} µs {'÷ first':>8}  does not, or needs",
     ]
-    lines += [_line(row, rows) for row in rows]
+    lines += [_line(row, _first_like(row, rows)) for row in rows]
     return "\n".join(lines)
 
 
-def as_json(rows: list[Row]) -> list[dict[str, Any]]:
+def as_json(rows: Sequence[Row]) -> list[dict[str, Any]]:
     """The rows with their ratios; what is not known is null."""
     found = []
     for row in rows:
-        ratios = {
-            name: {"median": median, "mean": mean}
-            for name, (median, mean) in _ratios(row, [other for other in rows if _same_problems(row, other)]).items()
-        }
+        ratios = {}
+        for _, key in REFERENCES:
+            median, mean = times_as_fast(row, key, rows)
+            ratios[key] = {"median": median, "mean": mean}
         found.append(_without_nan({**asdict(row), "times_as_fast_as": ratios}))
     return found
 
 
-def _line(row: Row, rows: list[Row]) -> str:
+def times_as_fast(row: Row, key: str, rows: Sequence[Row]) -> tuple[float, float]:
+    """How many times as fast as another peer a row is on the same problems, by median and by mean."""
+    for other in rows:
+        if (other.robot, other.task, other.peer) == (row.robot, row.task, key):
+            return other.median / row.median, other.mean / row.mean
+    return math.nan, math.nan
+
+
+def _first_like(row: Row, rows: Sequence[Row]) -> Row:
+    """The first row that was asked for the same tolerance."""
+    return next(other for other in rows if other.tolerance == row.tolerance)
+
+
+def _line(row: Row, first: Row) -> str:
     if not row.count:
-        return f"{row.label:27} {row.reason}"
-    ratios = "".join(f"{_short(median):>11}{_short(mean):>11}" for median, mean in _ratios(row, rows).values())
+        return f"{row.label:31} skipped: {row.reason}"
     note = f"  ({row.note})" if row.note else ""
+    p90, p99 = (f"{'–':>9}" if math.isnan(value) else f"{value:9.1f}" for value in (row.p90, row.p99))
     return (
-        f"{row.label:27} {row.count:6} {row.solved:6.2f}% {row.strict:6.2f}% "
-        f"{row.median:9.1f} {row.mean:9.1f} {row.p90:9.1f} {row.p99:9.1f}    {ratios}{note}"
+        f"{row.label:31} {row.count:6} {row.placed:6.2f}% {row.solved:6.2f}% {row.strict:6.2f}% "
+        f"{row.median:9.2f} {row.mean:9.2f} {p90} {p99}    {row.median / first.median:8.2f}  {row.lacks}{note}"
     )
-
-
-def _ratios(row: Row, rows: list[Row]) -> dict[str, tuple[float, float]]:
-    """How many times as fast as each reference a row is, by median and by mean."""
-    by_key = {other.peer: other for other in rows}
-    ratios = {}
-    for _, key in REFERENCES:
-        reference = by_key.get(key, Row("", "", "", ""))
-        ratios[key] = (reference.median / row.median, reference.mean / row.mean)
-    return ratios
-
-
-def _same_problems(row: Row, other: Row) -> bool:
-    return (row.robot, row.task) == (other.robot, other.task)
-
-
-def _short(ratio: float) -> str:
-    return "–" if math.isnan(ratio) else f"{ratio:.3g}"
 
 
 def _without_nan(value: Any) -> Any:

@@ -13,10 +13,11 @@ from typing import Any
 
 import numpy as np
 import pinocchio
+from adapters.wire import pack, unpack
 from numpy.typing import NDArray
 
 from .arms import Arm
-from .peer_list import Peer
+from .peer import Peer
 
 __all__ = ["Worker", "WorkerError"]
 
@@ -37,7 +38,12 @@ class Worker:
     """
 
     def __init__(
-        self, python: Path, peer: Peer, arm: Arm, warm_up: Sequence[tuple[pinocchio.SE3, NDArray[np.float64]]]
+        self,
+        python: Path,
+        peer: Peer,
+        arm: Arm,
+        warm_up: tuple[Sequence[pinocchio.SE3], NDArray[np.float64]],
+        core: int | None,
     ) -> None:
         self._log = tempfile.TemporaryFile("w+")  # noqa: SIM115 (`close` closes it)
         file, class_name = peer.adapter
@@ -55,7 +61,8 @@ class Worker:
                     "load": arm.as_json(),
                     "options": peer.options,
                     "packages": peer.packages,
-                    "warm_up": [(target.homogeneous.tolist(), start.tolist()) for target, start in warm_up],
+                    "core": core,
+                    "warm_up": [_packed(warm_up[0]), pack(warm_up[1])],
                 },
                 LOAD_AT_MOST,
             )
@@ -87,12 +94,13 @@ class Worker:
             seconds: What the peer may take.
         """
         request = {
-            "solve": [target.homogeneous.tolist() for target in targets],
-            "starts": None if starts is None else starts.tolist(),
+            "solve": _packed(targets),
+            "starts": None if starts is None else pack(starts),
             "carry": carry,
             "seconds": seconds,
         }
-        return self._ask(request, seconds + SOLVE_AT_MOST)
+        reply = self._ask(request, seconds + SOLVE_AT_MOST)
+        return {**reply, "answers": unpack(reply["answers"])}
 
     def close(self) -> None:
         """End the process."""
@@ -126,6 +134,10 @@ class Worker:
         self._log.seek(0)
         said = self._log.read().strip().splitlines()
         return f"its process ended with status {status}" + (f": {said[-1]}" if said else "")
+
+
+def _packed(targets: Sequence[pinocchio.SE3]) -> dict[str, Any]:
+    return pack([target.homogeneous for target in targets])
 
 
 def _environment(peer: Peer) -> dict[str, str]:
