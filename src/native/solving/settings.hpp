@@ -20,6 +20,7 @@ struct Settings {
   Tolerance tolerance;
   double time_limit = infinity;  // [s]
   bool trace = false;
+  bool polish = true;  // whether a run goes on once it has reached the targets
 };
 
 }  // namespace pinik

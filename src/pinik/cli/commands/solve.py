@@ -45,6 +45,7 @@ def solve(
     restarts: given.Restarts = None,
     seed: given.Seed = 0,
     engine: given.Engine = "auto",
+    no_polish: given.NoPolish = False,
     start: given.Start = None,
     pose: given.StartPose = None,
     lock: given.Lock = None,
@@ -75,6 +76,7 @@ def solve(
         check_frames(machine, asked, targets)
     options: dict[str, Any] = {"restarts": restarts, "max_iterations": max_iterations, "time_limit": time_limit}
     options |= {"tolerance": tolerance, "seed": seed, "engine": engine, "limits": not no_limits, "locked": lock or ()}
+    options["polish"] = not no_polish
     options["q0"] = configuration(machine, pose, start, "--start", units, None if no_limits else "moved to the limit")
     solution = _solved(machine, asked, solver, method, options)
     _emit(solution, units, as_json)
