@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 pinocchio_version: str = "4.1.0"
 
-abi: str = "2c06d2c08aa32b72"
+abi: str = "c18a3550357a7ce4"
 
 class JointKind(enum.Enum):
     revolute = 0
@@ -39,6 +39,10 @@ class Constants:
     def largest_unit_error(self) -> float: ...
     @largest_unit_error.setter
     def largest_unit_error(self, arg: float, /) -> None: ...
+    @property
+    def barely_outside(self) -> float: ...
+    @barely_outside.setter
+    def barely_outside(self, arg: float, /) -> None: ...
     @property
     def radian(self) -> float: ...
     @radian.setter
@@ -84,6 +88,14 @@ class Constants:
     @part_of_chain.setter
     def part_of_chain(self, arg: float, /) -> None: ...
     @property
+    def polishing_gain(self) -> float: ...
+    @polishing_gain.setter
+    def polishing_gain(self, arg: float, /) -> None: ...
+    @property
+    def exact_part_of_chain(self) -> float: ...
+    @exact_part_of_chain.setter
+    def exact_part_of_chain(self, arg: float, /) -> None: ...
+    @property
     def to_the_end(self) -> Patience: ...
     @to_the_end.setter
     def to_the_end(self, arg: Patience, /) -> None: ...
@@ -122,7 +134,7 @@ class Robot:
         offset: float,
         lower: float,
         upper: float,
-        shared: bool,
+        turns: bool,
     ) -> None: ...
     def finish(self) -> None: ...
 
@@ -293,6 +305,10 @@ class Settings:
     def trace(self) -> bool: ...
     @trace.setter
     def trace(self, arg: bool, /) -> None: ...
+    @property
+    def polish(self) -> bool: ...
+    @polish.setter
+    def polish(self, arg: bool, /) -> None: ...
 
 class Status(enum.Enum):
     CONVERGED = 0
@@ -354,25 +370,3 @@ class Engine:
         NDArray[numpy.int64],
         NDArray[numpy.float64],
     ]: ...
-
-class ReferenceFrame(enum.Enum):
-    WORLD = 0
-
-    LOCAL = 1
-
-    LOCAL_WORLD_ALIGNED = 2
-
-class Walk:
-    def __init__(
-        self,
-        robot: Robot,
-        frame_joint: int,
-        frame_rotation: Annotated[NDArray[numpy.float64], dict(shape=(3, 3), order="F")],
-        frame_translation: Annotated[NDArray[numpy.float64], dict(shape=(3), order="C")],
-        reference_joint: int,
-        reference_rotation: Annotated[NDArray[numpy.float64], dict(shape=(3, 3), order="F")],
-        reference_translation: Annotated[NDArray[numpy.float64], dict(shape=(3), order="C")],
-        largest_unit_error: float,
-    ) -> None: ...
-    def placements(self, q: object, threads: int) -> NDArray[numpy.float64] | None: ...
-    def jacobians(self, q: object, axes: ReferenceFrame, threads: int) -> NDArray[numpy.float64] | None: ...

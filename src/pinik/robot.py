@@ -97,6 +97,7 @@ class Robot(RobotModel):
         time_limit: float | None = None,
         engine: str = "auto",
         trace: bool = False,
+        polish: bool = True,
         **solver_parameters: Any,
     ) -> Solution:
         """Find joint values that move frames of the robot to their targets.
@@ -107,5 +108,5 @@ class Robot(RobotModel):
         wanted = (
             position, rotation, rpy, quat_xyzw, quat_wxyz, placement, axis, direction, at, tool, relative_to, weight,
         )  # fmt: skip
-        given = (limits, locked, restarts, seed, max_iterations, tolerance, time_limit, engine, trace)
+        given = (limits, locked, restarts, seed, max_iterations, tolerance, time_limit, engine, trace, polish)
         return answer(self, targets, method, wanted, q0, given, solver_parameters)

@@ -38,17 +38,25 @@ HINGES_AND_A_SLIDE = robot(
 class TestWrap:
     @given(
         low=st.floats(-8, 8).map(lambda x: round(x, 2)),
-        width=st.floats(0, 8).map(lambda x: round(x, 2)),
+        width=st.floats(0, 15).map(lambda x: round(x, 2)),
         angle=st.floats(-30, 30),
+        near=st.floats(-30, 30),
     )
-    def test_turns_an_angle_by_whole_turns_inside_or_as_near_as_they_get(self, low, width, angle):
+    def test_takes_the_angle_nearest_to_another_among_those_inside(self, low, width, angle, near):
         limits = hinge(low, low + width)
         low, high = float(limits.lower[0]), float(limits.upper[0])
-        wrapped = limits.wrap(np.array([angle]))[0]
-        turns = (wrapped - angle) / TURN
-        assert turns == pytest.approx(round(turns), abs=1e-9)
-        nearest = min(outside(angle + k * TURN, low, high) for k in range(-12, 13))
-        assert outside(wrapped, low, high) == pytest.approx(nearest, abs=1e-9)
+        wrapped = limits.wrap(np.array([angle]), np.array([near]))[0]
+        assert low <= wrapped <= high
+        same = [angle + k * TURN for k in range(-12, 13)]
+        nearest = min(same, key=lambda x: abs(x - near))
+        inside = [x for x in same if low <= x <= high]
+        if not low <= angle <= high and 0.0 < outside(nearest, low, high) <= 0.1:
+            assert wrapped == (low if nearest < low else high)
+        elif inside:
+            assert abs(wrapped - near) == pytest.approx(min(abs(x - near) for x in inside), abs=1e-9)
+            assert min(abs(wrapped - x) for x in inside) < 1e-9
+        else:
+            assert min(abs(wrapped - x) for x in same) == pytest.approx(min(outside(x, low, high) for x in same))
 
     @pytest.mark.parametrize(
         ("low", "high", "angle", "expected"),
@@ -57,38 +65,81 @@ class TestWrap:
             (-1.0, 1.0, 0.5 + TURN, 0.5),
             (-1.0, 1.0, 0.5 - 3 * TURN, 0.5),
             (3.0, 4.0, 3.5 - TURN, 3.5),
-            (-1.0, 1.0, 1.2, 1.2),
-            (-1.0, 1.0, 1.2 + TURN, 1.2),
-            (-1.0, 1.0, TURN - 1.2, -1.2),
-            (-0.1, 7.0, -0.2, TURN - 0.2),
+            (-1.0, 1.0, 1.2, 1.0),
+            (-1.0, 1.0, 1.2 + TURN, 1.0),
+            (-1.0, 1.0, TURN - 1.2, -1.0),
+            (-0.1, 7.0, -0.15, -0.1),
+            (-0.1, 7.0, -0.25, TURN - 0.25),
             (-1.0, 8.0, 3.0 - TURN, 3.0),
+            (-3.14159, 3.14159, 3.1420, 3.14159),
+            (-3.14159, 3.14159, 3.3, 3.3 - TURN),
+            (-TURN, TURN, 20.0, 20.0 - 3 * TURN),
+            (-TURN, TURN, 3 * TURN + 0.15, 0.15),
         ],
     )
     def test_of_chosen_angles(self, low, high, angle, expected):
         assert hinge(low, high).wrap(np.array([angle]))[0] == pytest.approx(expected)
 
+    @pytest.mark.parametrize(
+        ("angle", "near", "expected"),
+        [
+            (5.0, 0.0, 5.0 - TURN),
+            (5.0, 3.0, 5.0),
+            (-6.0, 6.0, TURN - 6.0),
+            (6.2, -6.2, 6.2 - TURN),
+            (6.4, 0.0, 6.4 - TURN),
+            (6.1, 6.2 + TURN, 6.1),
+        ],
+    )
+    def test_near_another_angle(self, angle, near, expected):
+        assert hinge(-TURN, TURN).wrap(np.array([angle]), np.array([near]))[0] == pytest.approx(expected)
+
+    def test_of_many_configurations_is_that_of_each(self, panda):
+        limits, rng = Limits.of(panda), np.random.default_rng(7)
+        q, near = rng.uniform(-9, 9, (2, 40, panda.model.nq))
+        wrapped = limits.wrap(q, near)
+        for k in range(len(q)):
+            assert (wrapped[k] == limits.wrap(q[k], near[k])).all()
+
     @given(seed=st.integers(0, 2**32 - 1))
-    def test_leaves_what_is_inside_and_what_does_not_turn_to_the_last_bit(self, seed):
+    def test_leaves_what_is_inside_to_the_last_bit_and_turns_what_can_turn(self, seed):
         loaded = load_quietly(HINGES_AND_A_SLIDE)
         limits = Limits.of(loaded)
         rng = np.random.default_rng(seed)
         q = loaded.random(rng)
         assert (limits.wrap(q) == q).all()
-        hinge_, slide = loaded.joint("hinge").idx_q, loaded.joint("slide").idx_q
-        q[loaded.joint("leader").idx_q] += TURN  # its follower would turn by half as much: another configuration
+        hinge_, slide, leader = (loaded.joint(name).idx_q for name in ("hinge", "slide", "leader"))
+        q[leader] += TURN  # its follower would turn by half as much: another configuration
         q[hinge_] += rng.choice([-2, -1, 1, 2]) * TURN
         q[slide] += rng.choice([-TURN, TURN])
         kept = q.copy()
         wrapped = limits.wrap(q)
         assert (q == kept).all()
-        others = np.delete(np.arange(len(q)), hinge_)
-        assert (wrapped[others] == q[others]).all()
+        assert wrapped[leader] == limits.upper[leader]
+        assert wrapped[slide] in (limits.lower[slide], limits.upper[slide])
         assert limits.lower[hinge_] <= wrapped[hinge_] <= limits.upper[hinge_]
+        assert math.cos(wrapped[hinge_] - q[hinge_]) == pytest.approx(1.0, abs=1e-12)
 
-    def test_switched_off_leaves_everything(self):
+    def test_switched_off_only_turns_towards_another_configuration(self):
         loaded = load_quietly(two_hinges(1, 1))
-        q = np.array([1.0, 0.0, 100.0])
-        assert (Limits.of(loaded, False).wrap(q) == q).all()
+        q, near = np.array([1.0, 0.0, 100.0]), np.array([1.0, 0.0, 1.0])
+        limits = Limits.of(loaded, False)
+        assert (limits.wrap(q) == q).all()
+        moved = limits.wrap(q, near)
+        assert moved[2] == pytest.approx(100.0 - 16 * TURN)
+        assert (moved[:2] == q[:2]).all()
+
+    @pytest.mark.parametrize(("multiplier", "turns"), [(1.0, True), (-2.0, True), (0.5, False), (0.0, True)])
+    def test_turns_a_leader_if_its_followers_come_back_with_it(self, multiplier, turns):
+        text = robot(
+            *map(link, "abc"),
+            joint("lead", "a", "b", axis(0, 0, 1), limit=limit(-20, 20)),
+            joint("tail", "b", "c", axis(0, 0, 1), mimic("lead", multiplier), limit=limit(-90, 90)),
+        )
+        loaded = load_quietly(text)
+        assert Limits.of(loaded).turning.tolist() == [turns]
+        wrapped = Limits.of(loaded).wrap(np.array([7.0]), np.array([0.0]))
+        assert loaded.placement("c", wrapped).isApprox(loaded.placement("c", np.array([7.0])), 1e-12)
 
 
 class TestBox:
@@ -100,7 +151,6 @@ class TestBox:
         for name in bounded:
             assert limits.entry[loaded.joint(name).idx_v] == loaded.joint(name).idx_q
         assert np.isfinite(limits.lower).sum() == np.isfinite(limits.upper).sum() == 2
-        assert not limits.turning.any()  # its hinge leads others
         plain = load_quietly(HINGES_AND_A_SLIDE)
         assert np.flatnonzero(Limits.of(plain).turning).tolist() == [plain.joint("hinge").idx_q]
 

@@ -19,7 +19,7 @@ namespace {
 
 void add_joint(Robot& robot, JointKind kind, int parent, const Mat3& R, const Vec3& p, const Vec3& axis, int idx_q,
                int nq, int idx_v, int nv, bool follows, double multiplier, double offset, double lower, double upper,
-               bool shared) {
+               bool turns) {
   Mechanism& mechanism = robot.mechanism;
   Joint joint;
   joint.kind = kind;
@@ -36,7 +36,7 @@ void add_joint(Robot& robot, JointKind kind, int parent, const Mat3& R, const Ve
   joint.offset = offset;
   joint.lower = lower;
   joint.upper = upper;
-  joint.shared = shared;
+  joint.turns = turns;
   mechanism.nq += nq;
   mechanism.joints.push_back(joint);
 }
@@ -88,6 +88,7 @@ void register_constants(nb::module_& m) {
       .def_rw("farthest", &Constants::farthest)
       .def_rw("widest_range", &Constants::widest_range)
       .def_rw("largest_unit_error", &Constants::largest_unit_error)
+      .def_rw("barely_outside", &Constants::barely_outside)
       .def_rw("radian", &Constants::radian)
       .def_rw("no_direction", &Constants::no_direction)
       .def_rw("reach_rounding", &Constants::reach_rounding)
@@ -100,6 +101,8 @@ void register_constants(nb::module_& m) {
       .def_rw("ccd_halvings", &Constants::ccd_halvings)
       .def_rw("bold_part_of_distance", &Constants::bold_part_of_distance)
       .def_rw("part_of_chain", &Constants::part_of_chain)
+      .def_rw("polishing_gain", &Constants::polishing_gain)
+      .def_rw("exact_part_of_chain", &Constants::exact_part_of_chain)
       .def_rw("to_the_end", &Constants::to_the_end)
       .def_rw("restarts_when_unreachable", &Constants::restarts_when_unreachable)
       .def_rw("table_size", &Constants::table_size)
@@ -128,7 +131,7 @@ void register_descriptions(nb::module_& m) {
   nb::class_<Robot>(m, "Robot")
       .def(nb::init<>())
       .def("add_joint", &add_joint, "kind"_a, "parent"_a, "rotation"_a, "translation"_a, "axis"_a, "idx_q"_a, "nq"_a,
-           "idx_v"_a, "nv"_a, "follows"_a, "multiplier"_a, "offset"_a, "lower"_a, "upper"_a, "shared"_a)
+           "idx_v"_a, "nv"_a, "follows"_a, "multiplier"_a, "offset"_a, "lower"_a, "upper"_a, "turns"_a)
       .def("finish", &Robot::finish);
   nb::class_<Problem>(m, "Problem")
       .def("__init__",

@@ -50,7 +50,8 @@ void register_settings(nb::module_& m) {
       .def_rw("max_iterations", &Settings::max_iterations)
       .def_rw("iterations_to_the_end", &Settings::iterations_to_the_end)
       .def_rw("time_limit", &Settings::time_limit)
-      .def_rw("trace", &Settings::trace);
+      .def_rw("trace", &Settings::trace)
+      .def_rw("polish", &Settings::polish);
 }
 
 }  // namespace pinik

@@ -20,7 +20,7 @@ struct Joint {
   bool follows = false;
   double multiplier = 1.0, offset = 0.0;
   double lower = 0.0, upper = 0.0;  // [rad or m]; infinite if there are none
-  bool shared = false;              // whether other joints follow it
+  bool turns = false;               // whether a whole turn of it changes nothing
 
   bool has_one_axis() const { return kind != JointKind::floating && kind != JointKind::planar; }
   bool slides() const { return kind == JointKind::prismatic; }

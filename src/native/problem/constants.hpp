@@ -20,6 +20,7 @@ struct Constants {
   double farthest = not_given;
   double widest_range = not_given;
   double largest_unit_error = not_given;
+  double barely_outside = not_given;
   // pinik.problem
   double radian = not_given;
   double no_direction = not_given;
@@ -35,6 +36,8 @@ struct Constants {
   // pinik.solving
   double bold_part_of_distance = not_given;
   double part_of_chain = not_given;
+  double polishing_gain = not_given;
+  double exact_part_of_chain = not_given;
   Patience to_the_end;
   int restarts_when_unreachable = 0;
   int table_size = 0;

@@ -27,7 +27,9 @@ class Attempts {
  public:
   Attempts(const Problem& problem, const Settings& settings, const Interrupts& interrupts)
       : problem_(problem), settings_(settings), interrupts_(interrupts), kinematics_(problem),
-        run_(settings_.solver, kinematics_), limits_(Limits::of(*problem.mechanism, settings.limits)), loose_(limits_.loosened()),
+        run_(settings_.solver, kinematics_),
+        limits_(Limits::of(*problem.mechanism, settings.limits, problem.constants.barely_outside)),
+        loose_(limits_.loosened()),
         starts_(problem, limits_, settings.seed) {
     kinematics_.target_jacobian = settings.solver.target_jacobian;
   }
@@ -39,8 +41,9 @@ class Attempts {
     states_seen_ = 0;
     outcome_ = Outcome();
     least_miss_ = infinity;
-    limits_.wrap(start);
-    limits_.clip(start);
+    given_ = start;
+    limits_.wrap(start, given_);
+    given_ = start;
     target_ = target;
     first_number_ = nearest ? 1 : 0;
     outcome_.q = start;
@@ -54,6 +57,7 @@ class Attempts {
     } else {
       outcome_.status = attempt_and_restart(start);
     }
+    limits_.wrap(outcome_.q, given_);
     return std::move(outcome_);
   }
 
@@ -71,7 +75,7 @@ class Attempts {
   Clock::time_point began_, paused_;
   std::int64_t states_seen_ = 0;
   Starts<Rows> starts_;
-  Vector drawn_;
+  Vector given_, drawn_;
   Linearization<Rows> inside_;
 
   Status attempt_and_restart(const Vector& start) {
@@ -98,7 +102,7 @@ class Attempts {
 
   Status attempt(const Vector& start, Patience patience, std::int64_t max_iterations, bool bold, bool downhill,
                  std::int64_t number) {
-    RunSettings run{max_iterations, patience, bold, downhill, outcome_.proof.has_value()};
+    RunSettings run{max_iterations, patience, bold, downhill, outcome_.proof.has_value(), settings_.polish};
     Status ended = Status::running;
     std::int64_t iterations = 0, updates = 0;
     const auto see = [&](const Linearization<Rows>& at, std::int64_t iteration, std::int64_t updated, Status status) {
@@ -112,7 +116,7 @@ class Attempts {
       if (ended != Status::running && ended != Status::converged && !limits_.contains(at.q)) consider_inside(at);
       return ended == Status::running;
     };
-    run_(start, limits_, loose_, run, see);
+    run_(start, given_, limits_, loose_, run, see);
     outcome_.iterations += iterations;
     outcome_.joint_updates += updates;
     return ended;
@@ -133,8 +137,7 @@ class Attempts {
   // Keep a state outside the limits if it is the best so far after it has been put inside.
   void consider_inside(const Linearization<Rows>& at) {
     inside_.q = at.q;
-    limits_.wrap(inside_.q);
-    limits_.clip(inside_.q);
+    limits_.wrap(inside_.q, given_);
     kinematics_.linearize(inside_);
     if (miss(inside_) < least_miss_) keep(inside_);
   }

@@ -19,6 +19,7 @@ struct Settings {
   std::int64_t iterations_to_the_end = 0;  // of the last run, which continues the best of the failed attempts
   double time_limit = infinity;  // [s]
   bool trace = false;
+  bool polish = true;  // whether a run goes on once it has reached the targets
 };
 
 }  // namespace pinik

@@ -25,14 +25,14 @@ def home_configuration(robot: RobotModel) -> Array:
     limits = Limits.of(robot)
     for name in (*_HOME_POSES, *poses):
         if name in poses:
-            return limits.clip(limits.wrap(poses[name]))
+            return limits.wrap(poses[name])
     q = robot.neutral()
     if len(robot.joint_names) <= 8:
         for name in robot.joint_names:
             joint = robot.joint(name)
             if joint.kind != "prismatic":
                 joint.set_angle(q, _BEND)
-    return limits.clip(limits.wrap(q))
+    return limits.wrap(q)
 
 
 def lowest_point(robot: RobotModel, q: Array) -> float:

@@ -16,6 +16,10 @@ __all__ = ["Limits"]
 Array = NDArray[np.float64]
 
 _AT_LIMIT = 1e-6  # [rad or m]: a joint nearer to its limit than this is at its limit
+_TURN = 2.0 * math.pi
+
+BARELY_OUTSIDE = 0.1
+"""The largest distance beyond a limit [rad] from which a hinge goes back to that limit, instead of making a turn."""
 
 
 @dataclass(frozen=True)
@@ -27,8 +31,8 @@ class Limits:
         enabled: Whether the limits are enforced.
         lower, upper: Limits of the entries of q (nq,) [rad or m]; infinite for entries without limits.
         entry: For each tangent coordinate (nv,), the index of the entry of q that carries its limits, or −1.
-        turning: For each entry of q (nq,), whether it is the angle of a hinge that no joint mimics, for which angles 2π
-            apart are equivalent.
+        turning: For each entry of q (nq,), whether it is the angle of a hinge for which angles 2π apart are equivalent.
+            So they are if every joint that mimics it is a hinge too and has a whole number as its multiplier.
     """
 
     robot: RobotModel
@@ -43,10 +47,10 @@ class Limits:
         """The limits of a robot; all infinite unless `enabled`."""
         entry = np.full(robot.model.nv, -1, dtype=np.intp)
         turning = np.zeros(robot.model.nq, dtype=bool)
-        leaders = {joint.leader for joint in robot.joints}
+        tied = {joint.leader for joint in robot.joints if joint.kind == "prismatic" or joint.multiplier % 1.0 != 0.0}
         for joint in robot.joints:
             if joint.nq == 1:
-                turning[joint.idx_q] = joint.kind != "prismatic" and joint.name not in leaders
+                turning[joint.idx_q] = joint.kind != "prismatic" and joint.name not in tied
                 if enabled:
                     entry[joint.idx_v] = joint.idx_q
         if enabled:
@@ -69,17 +73,39 @@ class Limits:
         """Whether `q` is inside the limits."""
         return bool(((q >= self.lower) & (q <= self.upper)).all())
 
-    def wrap(self, q: Array) -> Array:
-        """`q` (…, nq), with hinges outside their limits moved by whole turns, as near to the limits as possible."""
-        outside = self.turning & ((q < self.lower) | (q > self.upper))
-        if not outside.any():
-            return q
-        entry = np.nonzero(outside)[-1]
-        middle = 0.5 * (self.lower[entry] + self.upper[entry])
-        turn = 2.0 * math.pi
-        wrapped = q.copy()
-        wrapped[outside] -= turn * np.round((q[outside] - middle) / turn)
-        return wrapped
+    def wrap(self, q: Array, near: Array | None = None) -> Array:
+        """`q` moved inside the limits, with its hinges turned by whole turns to be as near to `near` as possible.
+
+        A hinge whose angle in `q` is outside the limits, and barely beyond a limit where it is nearest to `near`, goes
+        to that limit. If no whole turn leads inside, it goes to the limit that needs the smallest rotation.
+
+        Args:
+            q: Configurations (…, nq).
+            near: The configurations to be near to (…, nq); `q` itself when None.
+        """
+        near = q if near is None else near
+        inside = self.clip(q)
+        entry = np.flatnonzero(
+            self.turning & ((np.abs(q - near) > math.pi) | (inside != q)).reshape(-1, q.shape[-1]).any(0)
+        )
+        if entry.size:
+            inside[..., entry] = self._turned(q[..., entry], near[..., entry], self.lower[entry], self.upper[entry])
+        return inside
+
+    @staticmethod
+    def _turned(angle: Array, near: Array, lower: Array, upper: Array) -> Array:
+        """The angles (…, n) [rad] of hinges after `wrap`."""
+        nearest = angle - _TURN * np.round((angle - near) / _TURN)
+        above, below = np.maximum(nearest - upper, 0.0), np.maximum(lower - nearest, 0.0)
+        turned = nearest - _TURN * np.ceil(above / _TURN) + _TURN * np.ceil(below / _TURN)
+        was_outside = (angle < lower) | (angle > upper)
+        stays = was_outside & (above + below <= BARELY_OUTSIDE)
+        with np.errstate(invalid="ignore"):
+            middle = 0.5 * (lower + upper)
+            about_middle = angle - _TURN * np.round((angle - middle) / _TURN)
+        misses = ((turned < lower) | (turned > upper)) & np.isfinite(middle)
+        chosen = np.where(stays, nearest, np.where(misses, about_middle, turned))
+        return np.asarray(np.minimum(np.maximum(chosen, lower), upper))
 
     def blocked(self, q: Array, wanted: Array, inside: Array) -> NDArray[np.bool_]:
         """Whether each tangent coordinate (nv,) is at a limit at `q` and would cross it in a step to `wanted`.

@@ -86,7 +86,7 @@ def _plane(kinematics: Kinematics, robot: Robot, q: Array) -> Array | None:
 
 
 def _follows(robot: Robot, frame: str, q: Array, points: Array) -> bool:
-    states = iterate(robot, Target(frame, points[0]), "dls", q, max_iterations=60, tolerance=(1e-3, 1e-3))
+    states = iterate(robot, Target(frame, points[0]), "dls", q, max_iterations=60, tolerance=(1e-3, 1e-3), polish=False)
     state = next(states)
     for point in points:
         state = states.send(Target(frame, point))

@@ -67,6 +67,8 @@ class Solver:
     """The default maximum number of restarts after the first attempt."""
     patience: ClassVar[Patience] = Patience(5, 0.05)
     """The condition under which an attempt counts as stalled."""
+    converges_quadratically: ClassVar[bool] = False
+    """Whether steps near a reachable target gain so much that runs go on within the tolerance (option `polish`)."""
 
     max_step: float = max_step_parameter(math.inf)
     max_residual: float = parameter(

@@ -46,6 +46,7 @@ class DampedLeastSquares(JacobianSolver):
     max_iterations = 200
     restarts = 100
     patience = Patience(3, 0.2)
+    converges_quadratically = True
 
     damping: float = parameter(
         math.sqrt(0.5), "λ, or the factor from which the rule computes λ", low=1e-9, high=100.0, slider=(1e-3, 10.0)

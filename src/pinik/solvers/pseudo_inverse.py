@@ -38,6 +38,7 @@ class PseudoInverse(JacobianSolver):
     max_iterations = 200
     restarts = 100
     patience = Patience(6, 0.05)
+    converges_quadratically = True
 
     max_step: float = max_step_parameter(0.5)
     cutoff: float = parameter(

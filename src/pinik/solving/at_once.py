@@ -36,7 +36,7 @@ def attempt_at_once(question: Question, goals: Array, starts: Array) -> Outcomes
     """What `Attempts` would find for goals (N, 1, 18) from starts (N or 1, nq), one after another."""
     began = time.perf_counter()
     count, positions, limits = len(goals), goals[:, 0, :3], question.limits
-    starts = np.broadcast_to(limits.clip(limits.wrap(starts)), (count, starts.shape[1]))
+    starts = np.broadcast_to(limits.wrap(starts), (count, starts.shape[1]))
     q, missed, rests = np.empty(starts.shape), np.empty(count), np.empty(count, dtype=bool)
     for begin in range(0, count, _BLOCK):
         part = slice(begin, begin + _BLOCK)
@@ -54,7 +54,7 @@ def _answered(question: Question, positions: Array, starts: Array) -> tuple[Arra
     """(nearest configurations (N, nq), their position errors (N,) [m], whether they equal their starts (N,))."""
     solver, problem = question.solver, question.problem
     assert isinstance(solver, TwoBoneSolver)
-    q = solver.answers(positions, starts, problem, question.limits)
+    q = question.limits.wrap(solver.answers(positions, starts, problem, question.limits), starts)
     reached = measure_positions(problem.robot, problem.targets[0], q)
     rests = np.abs(q - starts).max(axis=1) < AT_REST
     return q, np.linalg.norm(reached - positions, axis=1), rests

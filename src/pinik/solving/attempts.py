@@ -103,8 +103,7 @@ class Attempts:
             began: The time at which the solve began, from `time.perf_counter` [s]; now when None.
         """
         self.kinematics.retarget(targets)
-        limits = self.question.limits
-        return _Search(self, limits.clip(limits.wrap(start)), number, nearest, began).outcome()
+        return _Search(self, self.question.limits.wrap(start), number, nearest, began).outcome()
 
     def start(self, given: Array, attempt: int, number: int) -> Array:
         """The start of an attempt: as given for attempt 0, otherwise from the table or drawn at random."""
@@ -169,7 +168,7 @@ class _Search:
 
     def _attempt(self, start: Array, pace: Pace) -> Status:
         limits, options = self.question.limits, self.question.options
-        for state in run(self.question, self.kinematics, start, pace):
+        for state in run(self.question, self.kinematics, start, pace, self.given):
             if options.trace:
                 self.states.append(state)
             if (self.best is None or self._miss(state) < self._miss(self.best)) and limits.contains(state.q):
@@ -204,7 +203,7 @@ class _Search:
     def _consider_inside(self, state: State) -> None:
         """Move a state from outside the limits to the inside, and keep it if it is the best so far."""
         limits = self.question.limits
-        at = self.kinematics.linearize(limits.clip(limits.wrap(state.q)))
+        at = self.kinematics.linearize(limits.wrap(state.q, self.given))
         inside = state._replace(q=at.q, errors=tuple(at.errors), residual=at.residual)
         if self.best is None or self._miss(inside) < self._miss(self.best):
             self.best = inside
@@ -212,7 +211,7 @@ class _Search:
     def _judged(self, ended: Status) -> Outcome:
         """The outcome with the best state, judged by plain forward kinematics."""
         assert self.best is not None
-        q, targets = self.best.q.copy(), self.kinematics.targets
+        q, targets = self.question.limits.wrap(self.best.q, self.given), self.kinematics.targets
         status, errors, proof = judge(self.question, targets, q, ended)
         return Outcome(
             status, q, errors, self.iterations, self.joint_updates, self.restarts, proof, tuple(self.states), targets,

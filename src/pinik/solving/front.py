@@ -28,7 +28,7 @@ from .words import UNWEIGHTED, Wanted, asked_targets
 __all__ = ["answer", "iterate", "prepare", "solve"]
 
 
-_OPTIONS_OF_ITERATE = ("q0", "limits", "locked", "max_iterations", "tolerance")
+_OPTIONS_OF_ITERATE = ("q0", "limits", "locked", "max_iterations", "tolerance", "polish")
 
 
 def solve(
@@ -58,6 +58,7 @@ def solve(
     time_limit: float | None = None,
     engine: str = "auto",
     trace: bool = False,
+    polish: bool = True,
     **solver_parameters: Any,
 ) -> Solution:
     """Find joint values that move frames of the robot to their targets.
@@ -92,6 +93,8 @@ def solve(
         engine: "auto", "python" or "native".
         trace: Whether to keep every state. With restarts, attempts of Jacobian methods may leave the limits in between;
             the answer does not.
+        polish: Whether "dls" and "pinv" go on once every target is within tolerance, while a step still halves the
+            residual. This makes the answer exact to nanometres, usually by one more step.
         **solver_parameters: Parameters of the solver, such as `damping=0.1`.
 
     Returns:
@@ -107,7 +110,7 @@ def solve(
     wanted = (
         position, rotation, rpy, quat_xyzw, quat_wxyz, placement, axis, direction, at, tool, relative_to, weight,
     )  # fmt: skip
-    given = (limits, locked, restarts, seed, max_iterations, tolerance, time_limit, engine, trace)
+    given = (limits, locked, restarts, seed, max_iterations, tolerance, time_limit, engine, trace, polish)
     return answer(robot, targets, method, wanted, q0, given, solver_parameters)
 
 
@@ -137,6 +140,7 @@ def prepare(
     time_limit: float | None = None,
     engine: str = "auto",
     trace: bool = False,
+    polish: bool = True,
     **solver_parameters: Any,
 ) -> Prepared:
     """Check and compile a problem once, to solve it many times for other target positions and starts.
@@ -148,7 +152,7 @@ def prepare(
         position, rotation, rpy, quat_xyzw, quat_wxyz, placement, axis, direction, at, tool, relative_to, weight,
     )  # fmt: skip
     asked = asked_targets(targets, wanted, method, solver_parameters, OPTION_NAMES)
-    given = (limits, locked, restarts, seed, max_iterations, tolerance, time_limit, engine, trace)
+    given = (limits, locked, restarts, seed, max_iterations, tolerance, time_limit, engine, trace, polish)
     return Prepared(robot, asked, _options(method, given, solver_parameters))
 
 
@@ -174,6 +178,7 @@ def iterate(
     locked: Iterable[str] = (),
     max_iterations: int | None = None,
     tolerance: Tolerance | ArrayLike | None = None,
+    polish: bool = True,
     **solver_parameters: Any,
 ) -> States:
     """Run one solver from one start, and yield a State per iteration, beginning with the start.
@@ -195,6 +200,7 @@ def iterate(
         locked: Names of joints that must not move.
         max_iterations: The maximum number of iterations; the solver's default when None.
         tolerance: The errors that count as reached (metres, radians); 1e-4 m and 1e-3 rad when None.
+        polish: As for `solve`; the steps within the tolerance count as iterations.
         **solver_parameters: Parameters of the solver.
 
     Raises:
@@ -210,11 +216,12 @@ def iterate(
     )  # fmt: skip
     asked = asked_targets(targets, wanted, method, solver_parameters, _OPTIONS_OF_ITERATE)
     options = Options.of(
-        method, solver_parameters, limits=limits, locked=locked, max_iterations=max_iterations, tolerance=tolerance
-    )
+        method, solver_parameters, limits=limits, locked=locked, max_iterations=max_iterations, tolerance=tolerance,
+        polish=polish,
+    )  # fmt: skip
     question = Question.of(robot, asked, options)
     q = robot.neutral() if q0 is None else robot.check_configuration(q0, "q0")
-    start = question.limits.clip(question.limits.wrap(q))
+    start = question.limits.wrap(q)
     return run(question, Kinematics.of(question.problem), start, Pace(options.iterations_at_most))
 
 

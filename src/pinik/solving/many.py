@@ -57,6 +57,7 @@ def solve_many(
     tolerance: Tolerance | ArrayLike | None = None,
     time_limit: float | None = None,
     engine: str = "auto",
+    polish: bool = True,
     **solver_parameters: Any,
 ) -> Solutions:
     """Solve N problems of the same kind, independently of each other.
@@ -75,7 +76,7 @@ def solve_many(
             table.
         threads: The number of threads; one for each processor available to this process when None. The Python engine
             uses one thread.
-        limits, locked, restarts, seed, max_iterations, tolerance, engine: As for `pinik.solve`.
+        limits, locked, restarts, seed, max_iterations, tolerance, engine, polish: As for `pinik.solve`.
         time_limit: Time limit for each problem [s].
         **solver_parameters: Parameters of the solver.
 
@@ -93,6 +94,7 @@ def solve_many(
     options = Options.of(
         method, solver_parameters, limits=limits, locked=locked, restarts=restarts, seed=seed,
         max_iterations=max_iterations, tolerance=tolerance, time_limit=time_limit, engine=engine,
+        polish=polish,
     )  # fmt: skip
     count = processors() if threads is None else min(as_count(threads, "threads"), _MOST_THREADS)
     began = time.perf_counter()

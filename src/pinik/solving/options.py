@@ -74,6 +74,7 @@ class Options:
         time_limit: Time limit for one problem [s]; infinite, or None, for no limit.
         engine: "auto", "python" or "native".
         trace: Whether to keep every state.
+        polish: Whether methods that converge quadratically go on within the tolerance while a step still halves the residual.
 
     Raises:
         UnknownNameError: There is no such method or engine.
@@ -90,6 +91,7 @@ class Options:
     time_limit: float = field(default=math.inf, metadata={"check": _seconds})
     engine: str = field(default="auto", metadata={"check": _engine})
     trace: bool = field(default=False, metadata={"check": _truth})
+    polish: bool = field(default=True, metadata={"check": _truth})
 
     def __post_init__(self) -> None:
         """Check every option."""

@@ -36,6 +36,13 @@ SHARE_OF_CHAIN = 0.5
 """For targets out of reach: the smallest distance in the geometric mean that sets damping, per length of the chain."""
 
 
+POLISHING_GAIN = 0.5
+"""The fraction to which a polishing step must reduce the residual; otherwise it is the last one."""
+
+EXACT_SHARE_OF_CHAIN = 3e-9
+"""The residual of the lightest target, per length of the chain, below which no polishing step follows."""
+
+
 class Pace(NamedTuple):
     """How a run proceeds, and when it gives up.
 
@@ -58,7 +65,7 @@ class Pace(NamedTuple):
     attempt: int = 0
 
 
-def run(question: Question, kinematics: Kinematics, start: Array, pace: Pace) -> States:
+def run(question: Question, kinematics: Kinematics, start: Array, pace: Pace, near: Array | None = None) -> States:
     """Yield the states of one run, beginning with the start; the last one has a status.
 
     If a target is provably out of reach, √(d · max(d, L/2)) replaces the distance d in the damping, where L is the
@@ -72,8 +79,9 @@ def run(question: Question, kinematics: Kinematics, start: Array, pace: Pace) ->
         kinematics: The kinematics of the targets; the run modifies it.
         start: The start (nq,), inside the limits.
         pace: How the run proceeds and when it gives up.
+        near: The configuration (nq,) to which hinges that are moved by whole turns should be near; the start when None.
     """
-    loop = _Loop(question, kinematics, start, pace)
+    loop = _Loop(question, kinematics, start, pace, start if near is None else near)
     while True:
         state = loop.look()
         moved = yield state
@@ -87,8 +95,8 @@ def run(question: Question, kinematics: Kinematics, start: Array, pace: Pace) ->
 class _Loop:
     """A run in progress: its present linearization, and the iterations since its last progress."""
 
-    def __init__(self, question: Question, kinematics: Kinematics, start: Array, pace: Pace) -> None:
-        self.question, self.kinematics, self.pace = question, kinematics, pace
+    def __init__(self, question: Question, kinematics: Kinematics, start: Array, pace: Pace, near: Array) -> None:
+        self.question, self.kinematics, self.pace, self.near = question, kinematics, pace, near
         solver, limits = question.solver, question.limits
         self.takes_directions = isinstance(solver, JacobianSolver)
         self.bold = pace.bold and self.takes_directions
@@ -100,6 +108,13 @@ class _Loop:
         kinematics.loose = False
         self.at = kinematics.linearize(start)
         self.milestone, self.since = self.at.residual, 0
+        self.polishes = question.options.polish and solver.converges_quadratically
+        self.before: Linearization | None = None  # the state before the last polishing step
+
+    @property
+    def exact(self) -> float:
+        """The residual [m] that polishing does not reduce any further."""
+        return EXACT_SHARE_OF_CHAIN * self.problem.size_of_chain * self.problem.lightest
 
     @property
     def damps(self) -> bool:
@@ -119,6 +134,8 @@ class _Loop:
         if reached and not limits.contains(self.at.q):  # only a bold run leaves the limits
             self.move_inside()
             reached = self.is_reached()
+        if self.polishes and not self.kinematics.loose and (reached or self.before is not None):
+            reached = not self.is_worth_another_step(reached)
         if self.at.residual < self.milestone * (1.0 - patience.progress):
             self.milestone, self.since = self.at.residual, 0
         status: Status | None
@@ -139,12 +156,23 @@ class _Loop:
         """Move the configuration inside the limits, and keep it there from now on."""
         limits = self.question.limits
         self.box = limits
-        self.at = self.kinematics.linearize(limits.clip(limits.wrap(self.at.q)))
+        self.at = self.kinematics.linearize(limits.wrap(self.at.q, self.near))
         self.milestone, self.since = self.at.residual, 0
 
     def can_loosen(self) -> bool:
         """Whether an answer inside wide tolerances remains to be looked for."""
         return self.problem.is_wide and not (self.kinematics.loose or self.beyond or self.question.solver.exact)
+    def is_worth_another_step(self, reached: bool) -> bool:
+        """Whether to go on although the targets are or were within tolerance; if not, keep the better of two states."""
+        at, before = self.at, self.before
+        gains = reached and (before is None or at.residual <= POLISHING_GAIN * before.residual)
+        if gains and at.residual > self.exact and self.iteration < self.last:
+            self.before, self.box, self.since = at, self.question.limits, 0
+            return True
+        if before is not None and not (reached and at.residual <= before.residual):
+            self.at = before
+        self.before = None
+        return False
 
     def aim_at(self, targets: Target | Sequence[Target]) -> None:
         """Move the targets, and reset the iteration limit."""
@@ -156,6 +184,7 @@ class _Loop:
         self.beyond = self.is_beyond()
         self.at = self.kinematics.linearize(self.at.q)
         self.milestone, self.since, self.last = math.inf, 0, self.iteration + self.pace.max_iterations
+        self.before = None
 
     def step(self) -> None:
         """Take the next step."""

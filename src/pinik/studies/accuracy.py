@@ -130,6 +130,7 @@ def asked_of(
         max_iterations=max_iterations,
         tolerance=(tolerance, 1.0),
         engine=engine,
+        polish=False,
     )
 
 

@@ -110,10 +110,12 @@ class BareChase:
     ) -> None:
         """Start at the configuration `start` (nq,)."""
         target = Target(frame, robot.placement(frame, start).translation)
-        options = Options(solver, limits=limits, tolerance=rules.tolerance, max_iterations=rules.max_iterations)
+        options = Options(
+            solver, limits=limits, tolerance=rules.tolerance, max_iterations=rules.max_iterations, polish=False
+        )
         question = Question.of(robot, target, options)
         self._target, self._robot, self._tolerance, self._clock = target, robot, rules.tolerance, clock
-        inside = question.limits.clip(question.limits.wrap(start))
+        inside = question.limits.wrap(start)
         pace = Pace(options.iterations_at_most, NEVER_STALLED)
         self._states = run(question, Kinematics.of(question.problem), inside, pace)
         self._state = next(self._states)  # reached: the ball begins where the frame is
@@ -177,6 +179,7 @@ def chase_with(
         max_iterations=rules.max_iterations,
         tolerance=rules.tolerance,
         engine=engine,
+        polish=False,
     )
     return EngineChase(prepared, start)
 

@@ -48,6 +48,8 @@ def pull_inwards(chain: Robot, solvers: Mapping[str, Solver], engine: str = "aut
         place = np.array([part * length, 0.0, 0.0])
         for method, solver in solvers.items():
             alone = asked_of(chain, solver, engine=engine)(place, straight)
-            restarted = chain.solve(Target(TIP, place), method=solver, q0=straight, limits=False, engine=engine)
+            restarted = chain.solve(
+                Target(TIP, place), method=solver, q0=straight, limits=False, engine=engine, polish=False
+            )
             pulls.append(Pull(method, part, alone, restarted))
     return pulls

@@ -47,6 +47,7 @@ def solve(
     restarts: given.Restarts = None,
     seed: given.Seed = 0,
     engine: given.Engine = "auto",
+    no_polish: given.NoPolish = False,
     start: given.Start = None,
     pose: given.StartPose = None,
     lock: given.Lock = None,
@@ -88,6 +89,7 @@ def solve(
         "engine": engine,
         "limits": not no_limits,
         "locked": lock or (),
+        "polish": not no_polish,
     }
     options["q0"] = configuration(machine, pose, start, "--start", units, None if no_limits else "moved to the limit")
     solution = _solved(machine, asked, solver, method, options)

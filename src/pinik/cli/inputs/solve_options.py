@@ -17,6 +17,7 @@ __all__ = [
     "Method",
     "MethodParameter",
     "NoLimits",
+    "NoPolish",
     "Position",
     "QuatXyzw",
     "RelativeTo",
@@ -106,6 +107,14 @@ Start = Annotated[
 ]
 StartPose = Annotated[str | None, _start("Start from this named pose ('pinik info' lists them).", "NAME")]
 Lock = Annotated[list[str] | None, _start("Keep this joint at its start value; repeatable.", "JOINT")]
+NoPolish = Annotated[
+    bool,
+    typer.Option(
+        "--no-polish",
+        help="Stop as soon as the target is within tolerance; dls and pinv otherwise go on to nanometres.",
+        rich_help_panel="The solver",
+    ),
+]
 NoLimits = Annotated[
     bool, typer.Option("--no-limits", help="Ignore the joint limits.", rich_help_panel="Start and limits")
 ]

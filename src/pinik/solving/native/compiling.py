@@ -48,6 +48,7 @@ def make_engine(question: Question) -> Engine:
     asked.iterations_to_the_end = min(options.iterations_to_the_end, _MOST)
     asked.time_limit = options.time_limit
     asked.trace = options.trace
+    asked.polish = options.polish and question.solver.converges_quadratically
     engine: Engine = module.Engine(robot, _problem(robot, problem), asked)
     return engine
 
@@ -61,7 +62,7 @@ def native_robot(robot: RobotModel) -> Any:
 
 def _make_robot(robot: RobotModel) -> Any:
     native, kinds = load().Robot(), load().JointKind
-    leaders = {joint.leader for joint in robot.joints}
+    turning = Limits.of(robot).turning
     model = robot.model
     for joint in robot.joints:
         placement = model.jointPlacements[joint.id]
@@ -80,7 +81,7 @@ def _make_robot(robot: RobotModel) -> Any:
             offset=joint.offset,
             lower=float(robot.lower_q[joint.idx_q]) if joint.nq == 1 else -math.inf,
             upper=float(robot.upper_q[joint.idx_q]) if joint.nq == 1 else math.inf,
-            shared=joint.name in leaders,
+            turns=joint.nq == 1 and bool(turning[joint.idx_q]),
         )
     native.finish()
     return native

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from ... import checks
-from ...model import configurations, joint
+from ...model import configurations, joint, limits
 from ...problem import problem, reach, slack, targets
 from ...solvers import ccd, damped_least_squares, pseudo_inverse
 from .. import attempts, run, starts
@@ -17,6 +17,7 @@ CONSTANTS = {
     "farthest": checks.FARTHEST,
     "widest_range": joint.WIDEST_RANGE,
     "largest_unit_error": configurations.LARGEST_UNIT_ERROR,
+    "barely_outside": limits.BARELY_OUTSIDE,
     "radian": problem.RADIAN,
     "no_direction": targets.NO_DIRECTION,
     "reach_rounding": reach.ROUNDING,
@@ -29,6 +30,8 @@ CONSTANTS = {
     "ccd_halvings": ccd.HALVINGS,
     "bold_part_of_distance": run.BOLD_SHARE,
     "part_of_chain": run.SHARE_OF_CHAIN,
+    "polishing_gain": run.POLISHING_GAIN,
+    "exact_part_of_chain": run.EXACT_SHARE_OF_CHAIN,
     "restarts_when_unreachable": attempts.RESTARTS_WHEN_UNREACHABLE,
     "table_size": starts.SIZE,
     "table_nearest": starts.NEAREST,

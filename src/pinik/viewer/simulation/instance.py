@@ -45,12 +45,15 @@ class StepSettings:
         tolerance: The errors that count as reached.
         until_reached: Whether a step runs until the targets are reached or the method gives up.
         at_most: The maximum number of iterations per step if `until_reached` is False.
+        polish: Whether methods that converge quadratically go on within the tolerance; off, so that the methods are
+            compared by their iterations until the tolerance.
     """
 
     limits: bool = True
     tolerance: Tolerance = field(default_factory=Tolerance)
     until_reached: bool = True
     at_most: int = 20
+    polish: bool = False
 
 
 class Standing(NamedTuple):
@@ -197,14 +200,14 @@ class Instance:
 
     def _begin(self, targets: tuple[Target, ...]) -> States:
         solver, settings = self._solver, self._settings
-        options = Options(solver, limits=settings.limits, tolerance=settings.tolerance)
+        options = Options(solver, limits=settings.limits, tolerance=settings.tolerance, polish=settings.polish)
         try:
             self._question = Question.of(self.robot, targets, options)
         except InputError as error:
             raise _RefusedError(str(error)) from None
         limits, kinematics = self._question.limits, Kinematics.of(self._question.problem)
         most = solver.max_iterations if settings.until_reached else settings.at_most
-        return run(self._question, kinematics, limits.clip(limits.wrap(self.q)), Pace(most))
+        return run(self._question, kinematics, limits.wrap(self.q), Pace(most))
 
     def _fail(self, error: Exception, spent: float) -> None:
         """Count a step in which the solver raised an exception as a miss."""
