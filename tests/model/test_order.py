@@ -226,6 +226,43 @@ def test_a_follower_at_rest_is_left_free_only_where_its_leader_cannot_come_first
     )
 
 
+def test_names_with_any_characters_come_back_as_they_were() -> None:
+    strange = {"left_finger": "0 &lt;left&gt; &amp; &#39;ünder&#39;", "right_finger": " 1 right "}
+    text = TWO_FINGERS
+    for name, other in strange.items():
+        text = text.replace(f'"{name}"', f'"{other}"')
+    assert check_follows(text).mimics == {"0 <left> & 'ünder'": (" 1 right ", 1.0, 0.0)}
+
+
+def test_followers_far_down_a_deep_tree_follow() -> None:
+    count = 200
+    text = robot(
+        *(link(f"l{i}") for i in range(count + 1)),
+        *(joint(f"f{i:03}", f"l{i}", f"l{i + 1}", origin((0.01, 0, 0)), kind="fixed", limit="") for i in range(count)),
+        *map(link, ("one", "two")),
+        joint("one", f"l{count}", "one", origin((0.1, 0, 0)), axis(0, 1, 0), mimic("two", -2.0, 0.1)),
+        joint("two", f"l{count}", "two", axis(0, 0, 1)),
+    )
+    assert check_follows(text).joint_names == ("two",)
+
+
+@pytest.mark.parametrize("root", ["fixed", "free_flyer", "planar"])
+@pytest.mark.parametrize(
+    ("text", "frame"),
+    [(HAND, "little_tip"), (LEADER_BEYOND, "foot"), (CROSSED, "a2")],
+    ids=["hand", "beyond", "crossed"],
+)
+def test_the_jacobian_is_the_derivative_of_the_placement(text: str, frame: str, root: str) -> None:
+    loaded, step = load_quietly(text, root=root), 1e-6
+    q, _ = with_random_angles(loaded, np.random.default_rng(8))
+    J = loaded.jacobian(frame, q)
+    for k, along in enumerate(step * np.eye(loaded.model.nv)):
+        ahead, behind = (loaded.placement(frame, pinocchio.integrate(loaded.model, q, way)) for way in (along, -along))
+        linear = (ahead.translation - behind.translation) / (2 * step)
+        angular = pinocchio.log3(ahead.rotation @ behind.rotation.T) / (2 * step)
+        np.testing.assert_allclose(J[:, k], [*linear, *angular], atol=1e-8)
+
+
 def test_a_pickled_robot_is_the_same() -> None:
     loaded = load_quietly(HAND, root="planar")
     copy = pickle.loads(pickle.dumps(loaded))
