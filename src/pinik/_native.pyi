@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 pinocchio_version: str = "4.1.0"
 
-abi: str = "c18a3550357a7ce4"
+abi: str = "2b1fa6b21ff9e799"
 
 class JointKind(enum.Enum):
     revolute = 0
@@ -55,6 +55,10 @@ class Constants:
     def reach_rounding(self) -> float: ...
     @reach_rounding.setter
     def reach_rounding(self, arg: float, /) -> None: ...
+    @property
+    def slack_share(self) -> float: ...
+    @slack_share.setter
+    def slack_share(self, arg: float, /) -> None: ...
     @property
     def smallest_damping_squared(self) -> float: ...
     @smallest_damping_squared.setter
@@ -116,6 +120,15 @@ class Constants:
     @table_key.setter
     def table_key(self, arg: int, /) -> None: ...
 
+class Tolerance:
+    def __init__(
+        self,
+        position: float,
+        orientation: float,
+        is_box: bool,
+        box: Annotated[NDArray[numpy.float64], dict(shape=(3), order="C")],
+    ) -> None: ...
+
 class Robot:
     def __init__(self) -> None: ...
     def add_joint(
@@ -154,6 +167,8 @@ class Problem:
         asks_rotation: bool,
         asks_axis: bool,
         asks_at: bool,
+        along: Annotated[NDArray[numpy.float64], dict(shape=(3), order="C")],
+        tolerance: Tolerance,
         axis: Annotated[NDArray[numpy.float64], dict(shape=(3), order="C")],
         weight: float,
         has_bounds: bool,
@@ -169,7 +184,7 @@ class Problem:
         movers: Sequence[tuple[int, float]],
         moved: Sequence[tuple[int, float]],
     ) -> None: ...
-    def finish(self, lightest: float, size_of_chain: float) -> None: ...
+    def finish(self, lightest: float, size_of_chain: float, is_wide: bool) -> None: ...
 
 class Method(enum.Enum):
     ccd = 0
@@ -252,6 +267,10 @@ class Solver:
     @relaxation.setter
     def relaxation(self, arg: float, /) -> None: ...
     @property
+    def loose_relaxation(self) -> float: ...
+    @loose_relaxation.setter
+    def loose_relaxation(self, arg: float, /) -> None: ...
+    @property
     def position_weight(self) -> float: ...
     @position_weight.setter
     def position_weight(self, arg: float, /) -> None: ...
@@ -259,9 +278,6 @@ class Solver:
     def printed_scaling(self) -> bool: ...
     @printed_scaling.setter
     def printed_scaling(self, arg: bool, /) -> None: ...
-
-class Tolerance:
-    def __init__(self, position: float, orientation: float) -> None: ...
 
 class Settings:
     def __init__(self) -> None: ...
@@ -273,10 +289,6 @@ class Settings:
     def patience(self) -> Patience: ...
     @patience.setter
     def patience(self, arg: Patience, /) -> None: ...
-    @property
-    def tolerance(self) -> Tolerance: ...
-    @tolerance.setter
-    def tolerance(self, arg: Tolerance, /) -> None: ...
     @property
     def limits(self) -> bool: ...
     @limits.setter
@@ -329,7 +341,7 @@ class Answer:
     @property
     def q(self) -> NDArray[numpy.float64]: ...
     @property
-    def errors(self) -> tuple[tuple[float | None, float | None], ...]: ...
+    def errors(self) -> tuple[tuple[float | None, float | None, tuple[float, float, float] | None], ...]: ...
     @property
     def iterations(self) -> int: ...
     @property
@@ -346,7 +358,16 @@ class Answer:
     def states(
         self,
     ) -> tuple[
-        tuple[NDArray[numpy.float64], int, int, tuple[tuple[float | None, float | None], ...], float, int, Status], ...
+        tuple[
+            NDArray[numpy.float64],
+            int,
+            int,
+            tuple[tuple[float | None, float | None, tuple[float, float, float] | None], ...],
+            float,
+            int,
+            Status,
+        ],
+        ...,
     ]: ...
 
 class Engine:
@@ -370,3 +391,25 @@ class Engine:
         NDArray[numpy.int64],
         NDArray[numpy.float64],
     ]: ...
+
+class ReferenceFrame(enum.Enum):
+    WORLD = 0
+
+    LOCAL = 1
+
+    LOCAL_WORLD_ALIGNED = 2
+
+class Walk:
+    def __init__(
+        self,
+        robot: Robot,
+        frame_joint: int,
+        frame_rotation: Annotated[NDArray[numpy.float64], dict(shape=(3, 3), order="F")],
+        frame_translation: Annotated[NDArray[numpy.float64], dict(shape=(3), order="C")],
+        reference_joint: int,
+        reference_rotation: Annotated[NDArray[numpy.float64], dict(shape=(3, 3), order="F")],
+        reference_translation: Annotated[NDArray[numpy.float64], dict(shape=(3), order="C")],
+        largest_unit_error: float,
+    ) -> None: ...
+    def placements(self, q: object, threads: int) -> NDArray[numpy.float64] | None: ...
+    def jacobians(self, q: object, axes: ReferenceFrame, threads: int) -> NDArray[numpy.float64] | None: ...

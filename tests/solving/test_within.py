@@ -64,7 +64,7 @@ def test_each_target_has_its_own_tolerance():
     robot = load_quietly("ur5")
     q = robot.configuration({"shoulder_lift_joint": -1.0, "elbow_joint": 1.2})
     near = robot.placement("tool0", q)
-    beside = near.translation + (0.0, 0.0, 0.02)
+    beside = near.translation + np.array([0.0, 0.0, 0.02])
     loose, tight = Target("tool0", beside, tolerance=(0.03, 0.1)), Target("tool0", beside)
     assert robot.solve(loose, q0=q, restarts=0, max_iterations=1, polish=False).iterations == 0
     solution = robot.solve([loose, Target("wrist_3_link", rotation=near.rotation)], q0=q)
@@ -90,8 +90,8 @@ def test_a_box_is_not_its_surrounding_ball():
     robot = load_quietly("ur5")
     q = robot.neutral()
     p = robot.placement("tool0", q).translation
-    inside = Target("tool0", p + (0.02, 0.0, 0.0), tolerance=((0.03, 1e-3, 1e-3), 1e-3))
-    outside = Target("tool0", p + (0.0, 0.02, 0.0), tolerance=((0.03, 1e-3, 1e-3), 1e-3))
+    inside = Target("tool0", p + np.array([0.02, 0.0, 0.0]), tolerance=((0.03, 1e-3, 1e-3), 1e-3))
+    outside = Target("tool0", p + np.array([0.0, 0.02, 0.0]), tolerance=((0.03, 1e-3, 1e-3), 1e-3))
     for target, inner in ((inside, True), (outside, False)):
         assert judge(robot, target, q).are_within() is inner
         assert (robot.solve(target, q0=q, restarts=0, polish=False).iterations == 0) is inner
@@ -113,7 +113,7 @@ def test_axes_of_a_position_can_be_left_free(engine, method, relative_to):
 def test_a_height_is_reached_by_a_shorter_way_than_a_point():
     robot = load_quietly("ur5")
     q = robot.configuration({"shoulder_lift_joint": -1.0, "elbow_joint": 1.2})
-    p = robot.placement("tool0", q).translation + (0.2, 0.2, 0.1)
+    p = robot.placement("tool0", q).translation + np.array([0.2, 0.2, 0.1])
     height, point = robot.solve("tool0", [None, None, p[2]], q0=q), robot.solve("tool0", p, q0=q)
     assert_good(height)
     assert np.linalg.norm(height.q - q) < 0.7 * np.linalg.norm(point.q - q)

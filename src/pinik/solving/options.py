@@ -74,7 +74,7 @@ class Options:
         time_limit: Time limit for one problem [s]; infinite, or None, for no limit.
         engine: "auto", "python" or "native".
         trace: Whether to keep every state.
-        polish: Whether methods that converge quadratically go on within the tolerance while a step still halves the residual.
+        polish: Whether methods that converge quadratically go on within the tolerance while a step still gains.
 
     Raises:
         UnknownNameError: There is no such method or engine.

@@ -162,6 +162,7 @@ class _Loop:
     def can_loosen(self) -> bool:
         """Whether an answer inside wide tolerances remains to be looked for."""
         return self.problem.is_wide and not (self.kinematics.loose or self.beyond or self.question.solver.exact)
+
     def is_worth_another_step(self, reached: bool) -> bool:
         """Whether to go on although the targets are or were within tolerance; if not, keep the better of two states."""
         at, before = self.at, self.before
