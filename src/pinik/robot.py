@@ -10,7 +10,7 @@ import pinocchio
 from numpy.typing import ArrayLike, NDArray
 
 from .model.robot_model import RobotModel
-from .problem.targets import Target
+from .problem.targets import Position, Target
 from .problem.tolerance import Tolerance
 from .solvers.registry import Method
 from .solving import batch
@@ -73,7 +73,7 @@ class Robot(RobotModel):
     def solve(
         self,
         targets: str | Target | Sequence[Target],
-        position: ArrayLike | None = None,
+        position: Position | None = None,
         *,
         rotation: ArrayLike | None = None,
         rpy: ArrayLike | None = None,

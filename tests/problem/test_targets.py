@@ -145,7 +145,7 @@ class TestContradictions:
             ({"position": "here"}, "position must be 3 finite numbers; got 'here'"),
             ({"position": ("1", "2", "3")}, "position must be 3 finite numbers"),
             ({"position": (True, False, True)}, "position must be 3 finite numbers"),
-            ({"position": (1, 2, None)}, "position must be 3 finite numbers"),
+            ({"position": (None, None, None)}, "position must have a coordinate that is not None"),
             ({"position": (1, 2, [3])}, "position must be 3 finite numbers"),
             ({"position": (1, 2, 10**400)}, "position must be 3 finite numbers"),
             ({"position": (1, 2, 3j)}, "position must be 3 finite numbers"),

@@ -22,7 +22,7 @@ FRONTS = {
     "solve_many": (
         pinik.solve_many,
         tuple(name for name in OPTION_NAMES if name != "trace"),
-        ["tool", "relative_to"],
+        ["tool", "relative_to", "tolerance"],
     ),
 }
 

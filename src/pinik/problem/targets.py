@@ -15,9 +15,12 @@ from ..checks import as_finite_number, as_point, as_rotation, as_se3, as_unit_ve
 from ..errors import InputError, UnknownNameError
 from .tolerance import Tolerance
 
-__all__ = ["NO_DIRECTION", "TARGET_KEYWORDS", "Target", "as_position", "as_targets"]
+__all__ = ["NO_DIRECTION", "TARGET_KEYWORDS", "Position", "Target", "as_position", "as_targets"]
 
 Array = NDArray[np.float64]
+
+Position = ArrayLike | Sequence[float | None]
+"""A position (3,), with None for axes that are free."""
 
 NO_DIRECTION = 1e-9
 """[m] A frame nearer than this to the point that it should look at counts as looking at it."""
@@ -60,7 +63,7 @@ class Target:
     def __init__(
         self,
         frame: str,
-        position: ArrayLike | Sequence[float | None] | None = None,
+        position: Position | None = None,
         *,
         rotation: ArrayLike | None = None,
         rpy: ArrayLike | None = None,
@@ -356,7 +359,7 @@ def _rotation(
     return np.array(pinocchio.Quaternion(quaternion / np.linalg.norm(quaternion)).toRotationMatrix())
 
 
-def as_position(position: ArrayLike | Sequence[float | None], what: str) -> Array:
+def as_position(position: Position, what: str) -> Array:
     """A point (3,) [m], with NaN for coordinates of None."""
     if not isinstance(position, (list, tuple)) or len(position) != 3 or not any(x is None for x in position):
         return as_point(position, what)  # type: ignore[arg-type]

@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike
 from ..errors import InputError
 from ..model.robot_model import RobotModel
 from ..problem.kinematics import Kinematics
-from ..problem.targets import Target
+from ..problem.targets import Position, Target
 from ..problem.tolerance import Tolerance
 from ..solvers.registry import Method
 from .kept import Kept, Key, kept_of
@@ -36,7 +36,7 @@ def solve(
     targets: str | Target | Sequence[Target],
     method: Method = "dls",
     *,
-    position: ArrayLike | None = None,
+    position: Position | None = None,
     rotation: ArrayLike | None = None,
     rpy: ArrayLike | None = None,
     quat_xyzw: ArrayLike | None = None,
@@ -72,7 +72,8 @@ def solve(
             Target objects.
         method: "ccd", "jt", "pinv", "dls", another name in `pinik.SOLVERS`, a Solver class or an instance; "two_bone"
             if two parallel hinges move the frame.
-        position: Target position of the frame's origin (3,) [m]; `Target` explains this and the next eleven keywords.
+        position: Target position of the frame's origin (3,) [m], with None for axes that are free; `Target` explains
+            this and the next eleven keywords.
         rotation, rpy, quat_xyzw, quat_wxyz: Target orientation.
         placement: Target position and orientation together.
         axis, direction, at: An axis of the frame, and the direction or the point at which it should point.
@@ -119,7 +120,7 @@ def prepare(
     targets: str | Target | Sequence[Target],
     method: Method = "dls",
     *,
-    position: ArrayLike | None = None,
+    position: Position | None = None,
     rotation: ArrayLike | None = None,
     rpy: ArrayLike | None = None,
     quat_xyzw: ArrayLike | None = None,
@@ -162,7 +163,7 @@ def iterate(
     method: Method = "dls",
     q0: ArrayLike | None = None,
     *,
-    position: ArrayLike | None = None,
+    position: Position | None = None,
     rotation: ArrayLike | None = None,
     rpy: ArrayLike | None = None,
     quat_xyzw: ArrayLike | None = None,
@@ -293,7 +294,7 @@ def _options(method: Method, given: tuple[Any, ...], parameters: dict[str, Any])
     return Options.of(method, parameters, **dict(zip(OPTION_NAMES, given, strict=True)))
 
 
-def _as_point(position: ArrayLike) -> object:
+def _as_point(position: Position) -> object:
     """Three floats as an array, or a vector unchanged; None for anything that must be checked first."""
     if isinstance(position, (list, tuple)) and [type(x) for x in position] == [float, float, float]:
         return np.array(position)
