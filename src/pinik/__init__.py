@@ -25,11 +25,14 @@ from .solvers.registry import CLOSED_FORMS, SOLVERS
 from .solvers.transpose import JacobianTranspose
 from .solvers.two_bone import TwoBoneSolver
 from .solving.front import iterate, prepare, solve
+from .solving.jumps import Excess, Jump
 from .solving.many import Solutions, solve_many
 from .solving.options import Options
 from .solving.prepared import Prepared
 from .solving.solution import Solution
 from .solving.state import State, Status
+from .solving.track import Track, track
+from .solving.tracker import Tracker, TrackerStatus
 from .version import __version__ as __version__
 from .viewer.live import live
 
@@ -39,10 +42,12 @@ __all__ = [
     "SOLVERS",
     "DampedLeastSquares",
     "EngineError",
+    "Excess",
     "InputError",
     "JacobianSolver",
     "JacobianTranspose",
     "Joint",
+    "Jump",
     "Kinematics",
     "Linearization",
     "MissingExtraError",
@@ -64,6 +69,9 @@ __all__ = [
     "Target",
     "TargetError",
     "Tolerance",
+    "Track",
+    "Tracker",
+    "TrackerStatus",
     "TwoBone",
     "TwoBoneAnswers",
     "TwoBoneConfigurations",
@@ -79,5 +87,6 @@ __all__ = [
     "prepare",
     "solve",
     "solve_many",
+    "track",
     "two_bone",
 ]

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 pinocchio_version: str = "4.1.0"
 
-abi: str = "30fe9f972285d79a"
+abi: str = "ee61751d4b13742c"
 
 class JointKind(enum.Enum):
     revolute = 0
@@ -103,6 +103,26 @@ class Constants:
     def table_key(self) -> int: ...
     @table_key.setter
     def table_key(self, arg: int, /) -> None: ...
+    @property
+    def jump_floor(self) -> float: ...
+    @jump_floor.setter
+    def jump_floor(self, arg: float, /) -> None: ...
+    @property
+    def jump_factor(self) -> float: ...
+    @jump_factor.setter
+    def jump_factor(self, arg: float, /) -> None: ...
+    @property
+    def jump_damping(self) -> float: ...
+    @jump_damping.setter
+    def jump_damping(self, arg: float, /) -> None: ...
+    @property
+    def creep_halvings(self) -> int: ...
+    @creep_halvings.setter
+    def creep_halvings(self, arg: int, /) -> None: ...
+    @property
+    def tick_iterations(self) -> int: ...
+    @tick_iterations.setter
+    def tick_iterations(self, arg: int, /) -> None: ...
 
 class Robot:
     def __init__(self) -> None: ...
@@ -354,3 +374,31 @@ class Engine:
         NDArray[numpy.int64],
         NDArray[numpy.float64],
     ]: ...
+
+class OnMiss(enum.Enum):
+    hold = 0
+
+    nearest = 1
+
+    stop = 2
+
+class Track:
+    def __init__(self, engine: Engine) -> None: ...
+    def follow(
+        self, start: NDArray[numpy.float64], goals: NDArray[numpy.float64], on_miss: OnMiss
+    ) -> tuple[
+        NDArray[numpy.float64],
+        NDArray[numpy.int32],
+        NDArray[numpy.float64],
+        NDArray[numpy.float64],
+        NDArray[numpy.int64],
+        NDArray[numpy.int64],
+        NDArray[numpy.int64],
+        NDArray[numpy.float64],
+    ]: ...
+    def tick(
+        self, start: NDArray[numpy.float64], most: NDArray[numpy.float64], goals: NDArray[numpy.float64]
+    ) -> tuple[NDArray[numpy.float64], bool, bool, float, float]: ...
+    def tick_at(
+        self, start: NDArray[numpy.float64], most: NDArray[numpy.float64], place: object
+    ) -> tuple[NDArray[numpy.float64], bool, bool, float, float] | None: ...

@@ -11,5 +11,9 @@ void register_descriptions(nb::module_& m);  // Constants, Robot and Problem
 void register_settings(nb::module_& m);      // Solver and Settings
 void register_answers(nb::module_& m);       // Status and Answer
 void register_engine(nb::module_& m);        // Engine
+void register_track(nb::module_& m);         // OnMiss and Track
+
+// Whether the process has received no signal, such as that of Ctrl-C; otherwise a Python exception is set.
+bool no_signal();
 
 }  // namespace pinik

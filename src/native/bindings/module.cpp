@@ -16,4 +16,5 @@ NB_MODULE(_native, m) {
   pinik::register_settings(m);
   pinik::register_answers(m);
   pinik::register_engine(m);
+  pinik::register_track(m);
 }
