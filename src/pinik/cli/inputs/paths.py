@@ -168,9 +168,9 @@ def _json_points(lines: list[tuple[int, str]], given: _Given, label: str) -> Ite
         time = item.pop("t", None) if isinstance(item, dict) else None
         if time is not None and not (isinstance(time, (int, float)) and not isinstance(time, bool)):
             raise CommandError(f"{where}: t must be a number of seconds; got {time!r}")
-        items = item["targets"] if isinstance(item, dict) and set(item) == {"targets"} else [item]
-        if not isinstance(items, list) or not items:
-            raise CommandError(f"{where}: targets must be a list with at least one target")
+        items = item["targets"] if isinstance(item, dict) and set(item) == {"targets"} else item
+        if not (isinstance(items, list) and items and all(isinstance(one, dict) for one in items)):
+            items = [items]
         yield number, tuple(_target(_with_frame(one, given, where), where) for one in items), time
 
 
