@@ -8,8 +8,12 @@ import subprocess
 import sys
 from pathlib import Path
 
+import numpy as np
+import pinocchio
+
 import pinik
 from judge import assert_honest
+from pinik.description.catalog import find
 
 ROOT = Path(__file__).parents[1]
 
@@ -46,3 +50,52 @@ def test_the_tour_shows_every_robot_by_every_method_plainly_when_piped():
     unreachable = sections[3]
     assert len(re.findall(r"^  \w+ +unreachable ", unreachable, re.MULTILINE)) == len(pinik.SOLVERS)
     assert "beyond its chain's reach" in unreachable
+
+
+ARM = ["shoulder_pan", "shoulder_lift", "elbow_flex", "wrist_flex", "wrist_roll"]
+
+
+def lerobot_kinematics(**options):
+    spec = importlib.util.spec_from_file_location("lerobot_kinematics", ROOT / "examples" / "lerobot_kinematics.py")
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module.RobotKinematics("so101", "gripper_frame_link", **options)
+
+
+def pose_by_pinocchio(degrees):
+    """The pose (4, 4) of the gripper's frame at the values of ARM, by Pinocchio alone."""
+    model = pinocchio.buildModelFromUrdf(str(find("so101").urdf))
+    q = pinocchio.neutral(model)
+    for name, value in zip(ARM, degrees[: len(ARM)], strict=True):
+        q[model.joints[model.getJointId(name)].idx_q] = np.radians(value)
+    data = model.createData()
+    pinocchio.framesForwardKinematics(model, data, q)
+    return data.oMf[model.getFrameId("gripper_frame_link", pinocchio.BODY)].homogeneous
+
+
+def test_lerobots_kinematics_takes_and_gives_degrees_and_keeps_the_gripper():
+    kinematics = lerobot_kinematics(joint_names=ARM)
+    rng = np.random.default_rng(5)
+    for _ in range(20):
+        there = np.append(rng.uniform(-60.0, 60.0, 5), 33.0)
+        pose = pose_by_pinocchio(there)
+        np.testing.assert_allclose(kinematics.forward_kinematics(there), pose, atol=1e-9)
+        start = there + np.append(rng.uniform(-5.0, 5.0, 5), 9.0)
+        values = kinematics.inverse_kinematics(start, pose)
+        assert values.shape == (6,)
+        assert values[5] == start[5]
+        reached = pose_by_pinocchio(values)
+        assert np.linalg.norm(reached[:3, 3] - pose[:3, 3]) < 1e-3
+        assert np.linalg.norm(pinocchio.log3(pose[:3, :3] @ reached[:3, :3].T)) < 0.02
+        assert np.abs(values[:5] - start[:5]).max() < 20.0
+
+
+def test_lerobots_kinematics_prefers_the_position_of_a_pose_that_five_joints_cannot_reach():
+    kinematics = lerobot_kinematics()
+    there = np.array([10.0, -20.0, 40.0, 30.0, 0.0, 25.0])
+    pose = pose_by_pinocchio(there)
+    pose[:3, :3] = pinocchio.exp3(np.array([0.0, 0.0, 0.25])) @ pose[:3, :3]
+    reached = pose_by_pinocchio(kinematics.inverse_kinematics(there, pose))
+    assert np.linalg.norm(reached[:3, 3] - pose[:3, 3]) < 1e-3
+    free = pose_by_pinocchio(kinematics.inverse_kinematics(there, pose, orientation_weight=0.0))
+    assert np.linalg.norm(free[:3, 3] - pose[:3, 3]) < 1e-3

@@ -35,11 +35,14 @@ from .solvers.registry import CLOSED_FORMS, SOLVERS
 from .solvers.transpose import JacobianTranspose
 from .solvers.two_bone import TwoBoneSolver
 from .solving.front import iterate, prepare, solve
+from .solving.jumps import Excess, Jump
 from .solving.many import Solutions, solve_many
 from .solving.options import Options
 from .solving.prepared import Prepared
 from .solving.solution import Solution
 from .solving.state import State, Status
+from .solving.track import Track, track
+from .solving.tracker import Tracker, TrackerStatus
 from .version import __version__ as __version__
 from .viewer.live import live
 
@@ -49,11 +52,13 @@ __all__ = [
     "SOLVERS",
     "DampedLeastSquares",
     "EngineError",
+    "Excess",
     "InputError",
     "InputWarning",
     "JacobianSolver",
     "JacobianTranspose",
     "Joint",
+    "Jump",
     "Kinematics",
     "Linearization",
     "MissingExtraError",
@@ -75,6 +80,9 @@ __all__ = [
     "Target",
     "TargetError",
     "Tolerance",
+    "Track",
+    "Tracker",
+    "TrackerStatus",
     "TwoBone",
     "TwoBoneAnswers",
     "TwoBoneConfigurations",
@@ -90,5 +98,6 @@ __all__ = [
     "prepare",
     "solve",
     "solve_many",
+    "track",
     "two_bone",
 ]

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 pinocchio_version: str = "4.1.0"
 
-abi: str = "2b1fa6b21ff9e799"
+abi: str = "ee61751d4b13742c"
 
 class JointKind(enum.Enum):
     revolute = 0
@@ -40,10 +40,6 @@ class Constants:
     @largest_unit_error.setter
     def largest_unit_error(self, arg: float, /) -> None: ...
     @property
-    def barely_outside(self) -> float: ...
-    @barely_outside.setter
-    def barely_outside(self, arg: float, /) -> None: ...
-    @property
     def radian(self) -> float: ...
     @radian.setter
     def radian(self, arg: float, /) -> None: ...
@@ -55,10 +51,6 @@ class Constants:
     def reach_rounding(self) -> float: ...
     @reach_rounding.setter
     def reach_rounding(self, arg: float, /) -> None: ...
-    @property
-    def slack_share(self) -> float: ...
-    @slack_share.setter
-    def slack_share(self, arg: float, /) -> None: ...
     @property
     def smallest_damping_squared(self) -> float: ...
     @smallest_damping_squared.setter
@@ -92,14 +84,6 @@ class Constants:
     @part_of_chain.setter
     def part_of_chain(self, arg: float, /) -> None: ...
     @property
-    def polishing_gain(self) -> float: ...
-    @polishing_gain.setter
-    def polishing_gain(self, arg: float, /) -> None: ...
-    @property
-    def exact_part_of_chain(self) -> float: ...
-    @exact_part_of_chain.setter
-    def exact_part_of_chain(self, arg: float, /) -> None: ...
-    @property
     def to_the_end(self) -> Patience: ...
     @to_the_end.setter
     def to_the_end(self, arg: Patience, /) -> None: ...
@@ -119,15 +103,26 @@ class Constants:
     def table_key(self) -> int: ...
     @table_key.setter
     def table_key(self, arg: int, /) -> None: ...
-
-class Tolerance:
-    def __init__(
-        self,
-        position: float,
-        orientation: float,
-        is_box: bool,
-        box: Annotated[NDArray[numpy.float64], dict(shape=(3), order="C")],
-    ) -> None: ...
+    @property
+    def jump_floor(self) -> float: ...
+    @jump_floor.setter
+    def jump_floor(self, arg: float, /) -> None: ...
+    @property
+    def jump_factor(self) -> float: ...
+    @jump_factor.setter
+    def jump_factor(self, arg: float, /) -> None: ...
+    @property
+    def jump_damping(self) -> float: ...
+    @jump_damping.setter
+    def jump_damping(self, arg: float, /) -> None: ...
+    @property
+    def creep_halvings(self) -> int: ...
+    @creep_halvings.setter
+    def creep_halvings(self, arg: int, /) -> None: ...
+    @property
+    def tick_iterations(self) -> int: ...
+    @tick_iterations.setter
+    def tick_iterations(self, arg: int, /) -> None: ...
 
 class Robot:
     def __init__(self) -> None: ...
@@ -147,7 +142,7 @@ class Robot:
         offset: float,
         lower: float,
         upper: float,
-        turns: bool,
+        shared: bool,
     ) -> None: ...
     def finish(self) -> None: ...
 
@@ -167,8 +162,6 @@ class Problem:
         asks_rotation: bool,
         asks_axis: bool,
         asks_at: bool,
-        along: Annotated[NDArray[numpy.float64], dict(shape=(3), order="C")],
-        tolerance: Tolerance,
         axis: Annotated[NDArray[numpy.float64], dict(shape=(3), order="C")],
         weight: float,
         has_bounds: bool,
@@ -184,7 +177,7 @@ class Problem:
         movers: Sequence[tuple[int, float]],
         moved: Sequence[tuple[int, float]],
     ) -> None: ...
-    def finish(self, lightest: float, size_of_chain: float, is_wide: bool) -> None: ...
+    def finish(self, lightest: float, size_of_chain: float) -> None: ...
 
 class Method(enum.Enum):
     ccd = 0
@@ -267,10 +260,6 @@ class Solver:
     @relaxation.setter
     def relaxation(self, arg: float, /) -> None: ...
     @property
-    def loose_relaxation(self) -> float: ...
-    @loose_relaxation.setter
-    def loose_relaxation(self, arg: float, /) -> None: ...
-    @property
     def position_weight(self) -> float: ...
     @position_weight.setter
     def position_weight(self, arg: float, /) -> None: ...
@@ -278,6 +267,9 @@ class Solver:
     def printed_scaling(self) -> bool: ...
     @printed_scaling.setter
     def printed_scaling(self, arg: bool, /) -> None: ...
+
+class Tolerance:
+    def __init__(self, position: float, orientation: float) -> None: ...
 
 class Settings:
     def __init__(self) -> None: ...
@@ -289,6 +281,10 @@ class Settings:
     def patience(self) -> Patience: ...
     @patience.setter
     def patience(self, arg: Patience, /) -> None: ...
+    @property
+    def tolerance(self) -> Tolerance: ...
+    @tolerance.setter
+    def tolerance(self, arg: Tolerance, /) -> None: ...
     @property
     def limits(self) -> bool: ...
     @limits.setter
@@ -317,10 +313,6 @@ class Settings:
     def trace(self) -> bool: ...
     @trace.setter
     def trace(self, arg: bool, /) -> None: ...
-    @property
-    def polish(self) -> bool: ...
-    @polish.setter
-    def polish(self, arg: bool, /) -> None: ...
 
 class Status(enum.Enum):
     CONVERGED = 0
@@ -341,7 +333,7 @@ class Answer:
     @property
     def q(self) -> NDArray[numpy.float64]: ...
     @property
-    def errors(self) -> tuple[tuple[float | None, float | None, tuple[float, float, float] | None], ...]: ...
+    def errors(self) -> tuple[tuple[float | None, float | None], ...]: ...
     @property
     def iterations(self) -> int: ...
     @property
@@ -358,16 +350,7 @@ class Answer:
     def states(
         self,
     ) -> tuple[
-        tuple[
-            NDArray[numpy.float64],
-            int,
-            int,
-            tuple[tuple[float | None, float | None, tuple[float, float, float] | None], ...],
-            float,
-            int,
-            Status,
-        ],
-        ...,
+        tuple[NDArray[numpy.float64], int, int, tuple[tuple[float | None, float | None], ...], float, int, Status], ...
     ]: ...
 
 class Engine:
@@ -392,24 +375,30 @@ class Engine:
         NDArray[numpy.float64],
     ]: ...
 
-class ReferenceFrame(enum.Enum):
-    WORLD = 0
+class OnMiss(enum.Enum):
+    hold = 0
 
-    LOCAL = 1
+    nearest = 1
 
-    LOCAL_WORLD_ALIGNED = 2
+    stop = 2
 
-class Walk:
-    def __init__(
-        self,
-        robot: Robot,
-        frame_joint: int,
-        frame_rotation: Annotated[NDArray[numpy.float64], dict(shape=(3, 3), order="F")],
-        frame_translation: Annotated[NDArray[numpy.float64], dict(shape=(3), order="C")],
-        reference_joint: int,
-        reference_rotation: Annotated[NDArray[numpy.float64], dict(shape=(3, 3), order="F")],
-        reference_translation: Annotated[NDArray[numpy.float64], dict(shape=(3), order="C")],
-        largest_unit_error: float,
-    ) -> None: ...
-    def placements(self, q: object, threads: int) -> NDArray[numpy.float64] | None: ...
-    def jacobians(self, q: object, axes: ReferenceFrame, threads: int) -> NDArray[numpy.float64] | None: ...
+class Track:
+    def __init__(self, engine: Engine) -> None: ...
+    def follow(
+        self, start: NDArray[numpy.float64], goals: NDArray[numpy.float64], on_miss: OnMiss
+    ) -> tuple[
+        NDArray[numpy.float64],
+        NDArray[numpy.int32],
+        NDArray[numpy.float64],
+        NDArray[numpy.float64],
+        NDArray[numpy.int64],
+        NDArray[numpy.int64],
+        NDArray[numpy.int64],
+        NDArray[numpy.float64],
+    ]: ...
+    def tick(
+        self, start: NDArray[numpy.float64], most: NDArray[numpy.float64], goals: NDArray[numpy.float64]
+    ) -> tuple[NDArray[numpy.float64], bool, bool, float, float]: ...
+    def tick_at(
+        self, start: NDArray[numpy.float64], most: NDArray[numpy.float64], place: object
+    ) -> tuple[NDArray[numpy.float64], bool, bool, float, float] | None: ...

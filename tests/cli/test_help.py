@@ -9,7 +9,7 @@ import pytest
 
 import pinik
 
-COMMANDS = ("solve", "fk", "jacobian", "info", "check", "robots", "compare")
+COMMANDS = ("solve", "track", "fk", "jacobian", "info", "check", "robots", "compare")
 
 
 def examples(text: str) -> list[str]:

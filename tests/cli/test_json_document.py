@@ -13,11 +13,14 @@ import pytest
 
 import pinik
 
-DOCUMENT = Path(__file__).parents[2] / "docs" / "json.md"
+ROOT = Path(__file__).parents[2]
+DOCUMENT = ROOT / "docs" / "json.md"
 PLACEHOLDERS = {
     "angles": "JOINT",
     "joint_placements": "JOINT",
     "mimics": "JOINT",
+    "changes": "JOINT",
+    "limits": "JOINT",
     "answers": "NAME",
     "parameters": "NAME",
     "poses": "POSE",
@@ -32,6 +35,10 @@ RUNS = {
     "solve": [
         ("solve", "arm", "--targets", "-", "--root", "planar", "--json"),
         ("solve", "arm", "--frame", "tip", "--position", "0", "0", "9", "--method", "ccd", "--json"),
+    ],
+    "track": [
+        ("track", "two_link", ROOT / "examples" / "jump.csv", "--frame", "tip", "--start", "joint1=-2.64")
+        + ("--start", "joint2=1.5", "--json"),
     ],
     "fk": [("fk", "panda", "--root", "free_flyer", "--json")],
     "jacobian": [("jacobian", "panda", "--frame", "panda_hand", "--root", "free_flyer", "--json")],

@@ -107,7 +107,12 @@ void register_constants(nb::module_& m) {
       .def_rw("restarts_when_unreachable", &Constants::restarts_when_unreachable)
       .def_rw("table_size", &Constants::table_size)
       .def_rw("table_nearest", &Constants::table_nearest)
-      .def_rw("table_key", &Constants::table_key);
+      .def_rw("table_key", &Constants::table_key)
+      .def_rw("jump_floor", &Constants::jump_floor)
+      .def_rw("jump_factor", &Constants::jump_factor)
+      .def_rw("jump_damping", &Constants::jump_damping)
+      .def_rw("creep_halvings", &Constants::creep_halvings)
+      .def_rw("tick_iterations", &Constants::tick_iterations);
 }
 
 }  // namespace

@@ -9,6 +9,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "columns.hpp"
 #include "interface.hpp"
 #include "numbers.hpp"
 #include "signals.hpp"
@@ -37,30 +38,6 @@ Answer solve(Engine& engine, Vector start, std::vector<Goal> goals, bool nearest
   return answer;
 }
 
-// A rotation matrix up to the last bits. Python checks anything less exact, since it also reports what is wrong.
-bool is_rotation(const Mat3& R) {
-  return (R * R.transpose() - Mat3::Identity()).cwiseAbs().maxCoeff() < 1e-14 && R.determinant() > 0.0;
-}
-
-// The goal of a target that asks for a position, a rotation or both, from a 4×4 matrix or from a position alone. Nothing
-// if there is any doubt about the numbers.
-std::optional<Goal> goal_at(const Term& term, nb::handle place, double farthest) {
-  Goal goal;
-  if (term.asks_axis) return std::nullopt;
-  if (const double* matrix = numbers_of(place, {4, 4})) {
-    const Eigen::Map<const Eigen::Matrix<double, 4, 4, Eigen::RowMajor>> M(matrix);
-    goal.position = M.topRightCorner<3, 1>();
-    goal.rotation = M.topLeftCorner<3, 3>();
-    if (M.row(3) != Eigen::RowVector4d(0.0, 0.0, 0.0, 1.0) || !is_rotation(goal.rotation)) return std::nullopt;
-  } else if (const double* point = numbers_of(place, {3}); point && !term.asks_rotation) {
-    goal.position = Eigen::Map<const Vec3>(point);
-  } else {
-    return std::nullopt;
-  }
-  if (!goal.position.allFinite() || goal.position.cwiseAbs().maxCoeff() > farthest) return std::nullopt;
-  return goal;
-}
-
 std::optional<Answer> solve_at(Engine& engine, nb::handle place, nb::handle start, bool nearest) {
   const int nq = engine.mechanism().nq;
   const Problem& problem = engine.problem();
@@ -71,40 +48,6 @@ std::optional<Answer> solve_at(Engine& engine, nb::handle place, nb::handle star
   if (!goal || !engine.mechanism().normalize(q, problem.constants.largest_unit_error)) return std::nullopt;
   return solve(engine, std::move(q), {*goal}, nearest);
 }
-
-// For each problem: q, status, the largest position and orientation error, iterations, joint updates, restarts, seconds.
-struct Columns {
-  std::vector<double> q, position, orientation, seconds;
-  std::vector<int> status;
-  std::vector<std::int64_t> iterations, updates, restarts;
-
-  Columns(std::size_t count, std::size_t nq)
-      : q(count * nq), position(count), orientation(count), seconds(count), status(count), iterations(count),
-        updates(count), restarts(count) {}
-
-  void put(std::uint64_t i, const Answer& answer) {
-    Eigen::Map<Vector>(q.data() + i * static_cast<std::size_t>(answer.q.size()), answer.q.size()) = answer.q;
-    TargetError largest;
-    for (const TargetError& error : answer.errors) {
-      largest.position = std::fmax(largest.position, error.position);
-      largest.orientation = std::fmax(largest.orientation, error.orientation);
-    }
-    position[i] = largest.position;
-    orientation[i] = largest.orientation;
-    status[i] = static_cast<int>(answer.status);
-    iterations[i] = answer.iterations;
-    updates[i] = answer.joint_updates;
-    restarts[i] = answer.restarts;
-    seconds[i] = answer.seconds;
-  }
-
-  nb::tuple arrays(std::size_t count, std::size_t nq) && {
-    return nb::make_tuple(as_array(std::move(q), {count, nq}), as_array(std::move(status), {count}),
-                          as_array(std::move(position), {count}), as_array(std::move(orientation), {count}),
-                          as_array(std::move(iterations), {count}), as_array(std::move(updates), {count}),
-                          as_array(std::move(restarts), {count}), as_array(std::move(seconds), {count}));
-  }
-};
 
 nb::tuple solve_many(Engine& engine, nb::ndarray<const double, nb::ndim<2>, nb::c_contig> starts,
                      nb::ndarray<const double, nb::ndim<3>, nb::c_contig> goals, bool nearest, int threads) {

@@ -11,6 +11,7 @@ void register_descriptions(nb::module_& m);  // Constants, Robot and Problem
 void register_settings(nb::module_& m);      // Solver and Settings
 void register_answers(nb::module_& m);       // Status and Answer
 void register_engine(nb::module_& m);        // Engine
-void register_kinematics(nb::module_& m);    // ReferenceFrame and Walk
+void register_kinematics(nb::module_& m);    // ReferenceFrame and FrameWalk
+void register_track(nb::module_& m);         // OnMiss and Track
 
 }  // namespace pinik

@@ -17,4 +17,5 @@ NB_MODULE(_native, m) {
   pinik::register_answers(m);
   pinik::register_engine(m);
   pinik::register_kinematics(m);
+  pinik::register_track(m);
 }

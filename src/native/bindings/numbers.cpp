@@ -11,6 +11,11 @@ namespace {
 
 using RowMajor = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
 
+// A rotation matrix up to the last bits. Python checks anything less exact, since it also reports what is wrong.
+bool is_rotation(const Mat3& R) {
+  return (R * R.transpose() - Mat3::Identity()).cwiseAbs().maxCoeff() < 1e-14 && R.determinant() > 0.0;
+}
+
 }  // namespace
 
 void import_numpy() {
@@ -54,6 +59,23 @@ const double* rows_of(nb::handle array, std::ptrdiff_t columns, std::size_t& cou
   if (PyArray_NDIM(own) != 2) return nullptr;
   count = static_cast<std::size_t>(PyArray_DIM(own, 0));
   return numbers_of(array, {PyArray_DIM(own, 0), columns});
+}
+
+std::optional<Goal> goal_at(const Term& term, nb::handle place, double farthest) {
+  Goal goal;
+  if (term.asks_axis) return std::nullopt;
+  if (const double* matrix = numbers_of(place, {4, 4})) {
+    const Eigen::Map<const Eigen::Matrix<double, 4, 4, Eigen::RowMajor>> M(matrix);
+    goal.position = M.topRightCorner<3, 1>();
+    goal.rotation = M.topLeftCorner<3, 3>();
+    if (M.row(3) != Eigen::RowVector4d(0.0, 0.0, 0.0, 1.0) || !is_rotation(goal.rotation)) return std::nullopt;
+  } else if (const double* point = numbers_of(place, {3}); point && !term.asks_rotation) {
+    goal.position = Eigen::Map<const Vec3>(point);
+  } else {
+    return std::nullopt;
+  }
+  if (!goal.position.allFinite() || goal.position.cwiseAbs().maxCoeff() > farthest) return std::nullopt;
+  return goal;
 }
 
 nb::object as_array(const Vector& numbers) {

@@ -7,10 +7,11 @@
 #include <cstddef>
 #include <initializer_list>
 #include <memory>
+#include <optional>
 #include <utility>
 #include <vector>
 
-#include "../problem/targets.hpp"
+#include "../problem/problem.hpp"
 
 namespace pinik {
 
@@ -31,6 +32,9 @@ const double* numbers_of(nb::handle array, std::initializer_list<std::ptrdiff_t>
 
 // The numbers of a contiguous float64 array (count, columns), whose `count` is set; null for anything else.
 const double* rows_of(nb::handle array, std::ptrdiff_t columns, std::size_t& count);
+// The goal of a target that asks for a position, a rotation or both, from a 4×4 matrix or from a position alone. Nothing
+// if there is any doubt about the numbers.
+std::optional<Goal> goal_at(const Term& term, nb::handle place, double farthest);
 
 nb::object as_array(const Vector& numbers);
 

@@ -37,6 +37,9 @@ struct Joint {
 // Apply a tangent step to the entries of a floating or planar joint, in place.
 void integrate_free(JointKind kind, double* own, const double* step);
 
+// Write the entries of a floating or planar joint at a part of the way between two placements into `own`.
+void interpolate_free(JointKind kind, const double* from, const double* to, double part, double* own);
+
 // The joints of a robot, in the order of Pinocchio's model.
 class Mechanism {
  public:

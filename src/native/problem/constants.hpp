@@ -43,6 +43,11 @@ struct Constants {
   int table_size = 0;
   int table_nearest = 0;
   std::uint64_t table_key = 0;
+  double jump_floor = not_given;
+  double jump_factor = not_given;
+  double jump_damping = not_given;
+  int creep_halvings = 0;
+  std::int64_t tick_iterations = 0;
 };
 
 }  // namespace pinik

@@ -1,32 +1,20 @@
 // The attempts of one solve: restarts, and the best state so far; follows pinik.solving.attempts.
 #pragma once
 
-#include <atomic>
-#include <chrono>
-
 #include "outcome.hpp"
 #include "run.hpp"
 #include "settings.hpp"
 #include "starts.hpp"
+#include "watch.hpp"
 
 namespace pinik {
-
-using Clock = std::chrono::steady_clock;
-using StopFlag = const std::atomic<bool>*;
-using Pause = bool (*)();  // called now and then; returns whether to continue
-
-// What may end a solve from outside: a flag and a call, either of which may be missing.
-struct Interrupts {
-  StopFlag stop = nullptr;
-  Pause pause = nullptr;
-};
 
 // Solves one problem after another, with the working memory of one thread.
 template <int Rows>
 class Attempts {
  public:
   Attempts(const Problem& problem, const Settings& settings, const Interrupts& interrupts)
-      : problem_(problem), settings_(settings), interrupts_(interrupts), kinematics_(problem),
+      : problem_(problem), settings_(settings), watch_(interrupts, settings.time_limit), kinematics_(problem),
         run_(settings_.solver, kinematics_),
         limits_(Limits::of(*problem.mechanism, settings.limits, problem.constants.barely_outside)),
         loose_(limits_.loosened()),
@@ -37,8 +25,7 @@ class Attempts {
   // Solve from `start`, which is put inside the limits, or with `nearest` from the best start in the table, where `start`
   // gives what is not drawn. `target` is the problem's number among many; it seeds the random starts.
   Outcome operator()(Vector& start, std::uint64_t target, bool nearest) {
-    began_ = paused_ = Clock::now();
-    states_seen_ = 0;
+    watch_.start();
     outcome_ = Outcome();
     least_miss_ = infinity;
     given_ = start;
@@ -64,7 +51,7 @@ class Attempts {
  private:
   const Problem& problem_;
   const Settings settings_;
-  const Interrupts& interrupts_;
+  Watch watch_;
   Kinematics<Rows> kinematics_;
   Run<Rows> run_;
   const Limits limits_, loose_;
@@ -72,8 +59,6 @@ class Attempts {
   double least_miss_ = infinity;  // of outcome_.q
   std::uint64_t target_ = 0;
   std::int64_t first_number_ = 0;  // 1 if the first attempt begins at the first of starts_
-  Clock::time_point began_, paused_;
-  std::int64_t states_seen_ = 0;
   Starts<Rows> starts_;
   Vector given_, drawn_;
   Linearization<Rows> inside_;
@@ -112,7 +97,7 @@ class Attempts {
         outcome_.states.push_back({at.q, iteration, updated, at.errors, at.residual, number, status});
       ended = status;
       if (status == Status::converged || (miss(at) < least_miss_ && limits_.contains(at.q))) keep(at);
-      if (status == Status::running && out_of_time()) ended = Status::time_limit;
+      if (status == Status::running && watch_.out_of_time()) ended = Status::time_limit;
       if (ended != Status::running && ended != Status::converged && !limits_.contains(at.q)) consider_inside(at);
       return ended == Status::running;
     };
@@ -120,18 +105,6 @@ class Attempts {
     outcome_.iterations += iterations;
     outcome_.joint_updates += updates;
     return ended;
-  }
-
-  bool out_of_time() {
-    constexpr int states_between = 256;
-    constexpr std::chrono::milliseconds pauses_apart{50};
-    if (interrupts_.stop && interrupts_.stop->load(std::memory_order_relaxed)) return true;
-    if (interrupts_.pause && ++states_seen_ % states_between == 0 && Clock::now() - paused_ > pauses_apart) {
-      paused_ = Clock::now();
-      if (!interrupts_.pause()) return true;
-    }
-    return settings_.time_limit < infinity &&
-           std::chrono::duration<double>(Clock::now() - began_).count() > settings_.time_limit;
   }
 
   // Keep a state outside the limits if it is the best so far after it has been put inside.

@@ -83,7 +83,24 @@ void integrate_on(double* own, const double* step) {
   entries = moved;
 }
 
+template <int Dimension, int Nq>
+void interpolate_on(const double* from, const double* to, double part, double* own) {
+  using Entries = Eigen::Matrix<double, Nq, 1>;
+  const Entries start = Eigen::Map<const Entries>(from), end = Eigen::Map<const Entries>(to);
+  Entries between;
+  pinocchio::SpecialEuclideanOperationTpl<Dimension, double>().interpolate(start, end, part, between);
+  Eigen::Map<Entries> entries(own);
+  entries = between;
+}
+
 }  // namespace
+
+void interpolate_free(JointKind kind, const double* from, const double* to, double part, double* own) {
+  if (kind == JointKind::floating)
+    interpolate_on<3, 7>(from, to, part, own);
+  else
+    interpolate_on<2, 4>(from, to, part, own);
+}
 
 void integrate_free(JointKind kind, double* own, const double* step) {
   if (kind == JointKind::floating)

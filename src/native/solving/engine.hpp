@@ -21,6 +21,10 @@ class Engine {
 
   const Problem& problem() const { return problem_; }
 
+  const Settings& settings() const { return settings_; }
+
+  const std::shared_ptr<const Robot>& robot() const { return robot_; }
+
   const Mechanism& mechanism() const { return robot_->mechanism; }
 
   Answer solve(Vector start, std::vector<Goal> goals, bool nearest, Pause pause) {

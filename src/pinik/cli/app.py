@@ -10,7 +10,7 @@ import typer
 
 from ..errors import PinikError
 from ..version import __version__
-from .commands import accuracy, check, compare, fk, info, jacobian, live, robots, solve
+from .commands import accuracy, check, compare, fk, info, jacobian, live, robots, solve, track
 from .reports.solver_help import solvers_help
 from .terminal import output
 from .terminal.exits import CommandError, ExitStatus, in_words
@@ -19,6 +19,7 @@ __all__ = ["main"]
 
 _COMMANDS: dict[str, Callable[..., ExitStatus]] = {
     "solve": solve.solve,
+    "track": track.track,
     "fk": fk.fk,
     "jacobian": jacobian.jacobian,
     "info": info.info,
@@ -38,7 +39,7 @@ def _application() -> typer.Typer:
         add_completion=False,
         context_settings={"help_option_names": ["--help", "-h"]},
     )
-    epilogs = {"solve": solvers_help(), "compare": compare.EPILOG}
+    epilogs = {"solve": solvers_help(), "track": solvers_help(), "compare": compare.EPILOG}
     for name, command in _COMMANDS.items():
         app.command(name, epilog=epilogs.get(name))(command)
     app.callback(invoke_without_command=True)(_pinik)

@@ -1,4 +1,4 @@
-"""Position limits of the model: each joint's own, cut by those of the joints that mimic it."""
+"""Limits of the joints: each one's own, cut by those of the joints that mimic it."""
 
 from __future__ import annotations
 
@@ -9,10 +9,11 @@ import numpy as np
 import pinocchio
 from numpy.typing import NDArray
 
+from ..description.reader import Description
 from ..errors import Flaw
 from .joint import Joint
 
-__all__ = ["configuration_limits", "set_position_limits"]
+__all__ = ["configuration_limits", "set_position_limits", "velocity_limits"]
 
 Array = NDArray[np.float64]
 
@@ -57,6 +58,25 @@ def configuration_limits(model: pinocchio.Model, joints: Iterable[Joint]) -> tup
             lower[joint.idx_q] = model.lowerPositionLimit[joint.idx_q]
             upper[joint.idx_q] = model.upperPositionLimit[joint.idx_q]
     return lower, upper
+
+
+def velocity_limits(names: Sequence[str], joints: Iterable[Joint], description: Description) -> Array:
+    """The largest velocities (n,) of the named joints [rad/s or m/s], cut by those of their followers.
+
+    They are infinite where the file gives none, or 0.
+
+    Args:
+        names: The names of joints that are not followers.
+        joints: All joints of the model.
+        description: The checked URDF.
+    """
+    own = {tag.name: tag.velocity or math.inf for tag in description.joints}
+    limits = {name: own.get(name, math.inf) for name in names}
+    for joint in joints:
+        if joint.leader in limits and joint.multiplier != 0.0:
+            cut = own.get(joint.name, math.inf) / abs(joint.multiplier)
+            limits[joint.leader] = min(limits[joint.leader], cut)
+    return np.array(list(limits.values()), dtype=np.float64)
 
 
 def _cut_by_followers(joint: Joint, followers: Iterable[Joint], warnings: list[Flaw]) -> tuple[float, float]:

@@ -22,7 +22,7 @@ from .configurations import checked, checked_many, random_configuration
 from .jacobians import as_reference_frame, frame_jacobian, relative_jacobian
 from .joint import Joint, joints_of
 from .poses import read_poses
-from .ranges import configuration_limits
+from .ranges import configuration_limits, velocity_limits
 
 __all__ = ["RobotModel"]
 
@@ -56,6 +56,8 @@ class RobotModel:
             its followers, it follows one of them instead, and a warning says so; all angles stay as the file says.
         lower, upper: Joint limits (n_joints,) in the order of `joint_names` [rad or m], infinite where there are none.
             Those of a leader also keep its followers inside their limits.
+        velocity_limits: The largest velocities (n_joints,) that the file gives, in the order of `joint_names` [rad/s or
+            m/s]; infinite where it gives none, or 0. Those of a leader also keep its followers within theirs.
         lower_q, upper_q: The same limits for the entries of q (nq,), infinite for entries that are not an angle.
     """
 
@@ -88,7 +90,8 @@ class RobotModel:
         self.lower_q, self.upper_q = configuration_limits(self.model, self.joints)
         first_entries = [joint.idx_q for joint in self._settable]
         self.lower, self.upper = self.lower_q[first_entries], self.upper_q[first_entries]
-        for limits in (self.lower, self.upper, self.lower_q, self.upper_q):
+        self.velocity_limits = velocity_limits(self.joint_names, self.joints, description)
+        for limits in (self.lower, self.upper, self.lower_q, self.upper_q, self.velocity_limits):
             limits.setflags(write=False)
 
     def __repr__(self) -> str:

@@ -11,18 +11,19 @@ import numpy as np
 import pinocchio
 from numpy.typing import ArrayLike, NDArray
 
-from ..checks import as_array, as_count, as_many, as_numbers, as_points, as_rotations, as_se3
+from ..checks import as_count, as_numbers
 from ..errors import InputError
 from ..model.robot_model import RobotModel
 from ..problem.reach import shortfall
-from ..problem.targets import Target, as_targets
+from ..problem.targets import Target
 from ..problem.tolerance import Tolerance, largest_of
 from ..solvers.registry import Method
 from .at_once import attempt_at_once, lands_at_once
 from .attempts import Outcome, Outcomes
-from .native.codec import goals_of, targets_of
+from .native.codec import targets_of
 from .native.outcomes import attempt_many
 from .options import OPTION_NAMES, Options
+from .places import read_questions
 from .prepared import Prepared, is_nearest
 from .processors import processors
 from .solution import Solution
@@ -98,7 +99,7 @@ def solve_many(
     )  # fmt: skip
     count = processors() if threads is None else min(as_count(threads, "threads"), _MOST_THREADS)
     began = time.perf_counter()
-    pattern, goals = _questions(robot, targets, places, tool, relative_to)
+    pattern, goals = read_questions(targets, places, tool, relative_to)
     starts = _starts(robot, None if is_nearest(q0) else q0, len(goals))
     prepared = Prepared(robot, pattern, options) if pattern else None
     outcomes = _nothing(robot) if prepared is None else _outcomes(prepared, goals, starts, is_nearest(q0), count)
@@ -183,80 +184,6 @@ class Solutions(Outcomes):
             self.engine,
         )
         return Solution(outcome, question)
-
-
-def _questions(
-    robot: RobotModel, targets: Any, places: Any, tool: Any, relative_to: str | None
-) -> tuple[tuple[Target, ...], Array]:
-    """(the pattern of the targets, empty without targets; their numbers (N, targets, 18))."""
-    if not isinstance(targets, str) and (tool is not None or relative_to is not None):
-        raise InputError(
-            "tool= and relative_to= need the name of a frame; with Target objects, pass them to Target(...)"
-        )
-    if places is None:
-        return _listed(targets)
-    rotations, points = _read_places(places)
-    return _placed(targets, rotations, points, tool, relative_to)
-
-
-def _listed(targets: Any) -> tuple[tuple[Target, ...], Array]:
-    """Problems given as Target objects."""
-    if not isinstance(targets, Iterable):
-        raise InputError(f"targets must be a frame's name, a Target, or a sequence of them; got {targets!r}")
-    if isinstance(targets, (str, Target)):
-        raise InputError("places must say where the frame should be: (N, 4, 4) matrices, N SE3, or positions (N, 3)")
-    asked = [as_targets(each) for each in targets]
-    if not asked:
-        return (), np.zeros((0, 0, 18))
-    kind = [target.shape for target in asked[0]]
-    for number, each in enumerate(asked):
-        if [target.shape for target in each] != kind:
-            raise InputError(
-                f"targets[{number}] must be of the same kind as targets[0]; solve each kind in a separate call"
-            )
-    return asked[0], np.array([goals_of(each) for each in asked])
-
-
-def _read_places(places: Any) -> tuple[Array | None, Array]:
-    """(rotations (N, 3, 3) or None, points (N, 3) [m])."""
-    if isinstance(places, Sequence) and any(isinstance(place, pinocchio.SE3) for place in places):
-        places = np.array([_matrix_of(place, f"places[{k}]") for k, place in enumerate(places)])
-    numbers = as_numbers(places, "places")
-    if numbers.shape == (0,):
-        return np.zeros((0, 3, 3)), np.zeros((0, 3))
-    if numbers.ndim != 3:
-        return None, as_points(places, "places")
-    matrices = as_many(places, (4, 4), "places")
-    for k in np.flatnonzero((np.abs(matrices[:, 3] - (0.0, 0.0, 0.0, 1.0)) > 1e-9).any(axis=1))[:1]:
-        as_se3(matrices[k], f"places[{k}]")
-    return as_rotations(matrices[:, :3, :3], "places"), as_points(matrices[:, :3, 3], "places")
-
-
-def _matrix_of(place: Any, what: str) -> Array:
-    """A place (4, 4) in a list with SE3s; whether it is a placement is checked later, for all at once."""
-    return np.array(place.homogeneous) if isinstance(place, pinocchio.SE3) else as_array(place, (4, 4), what)
-
-
-def _placed(
-    targets: Any, rotations: Array | None, points: Array, tool: Any, relative_to: str | None
-) -> tuple[tuple[Target, ...], Array]:
-    """Problems given as a frame or a pattern, and places."""
-    if isinstance(targets, str):
-        orientation = None if rotations is None else np.eye(3)
-        pattern = Target(targets, np.zeros(3), rotation=orientation, tool=tool, relative_to=relative_to)
-    elif isinstance(targets, Target):
-        pattern = targets
-    else:
-        raise InputError(f"with places, targets must be a frame's name or one Target; got {targets!r}")
-    if pattern.axis is not None or (pattern.rotation is not None and rotations is None):
-        raise InputError(f"places do not specify all that the target of {pattern.frame!r} needs; give N Target objects")
-    goals = np.zeros((len(points), 1, 18))
-    if pattern.position is not None:
-        goals[:, 0, :3] = points
-    if pattern.rotation is not None:
-        assert rotations is not None
-        goals[:, 0, 3:12] = rotations.reshape(-1, 9)
-    return (pattern,), goals
 
 
 def _starts(robot: RobotModel, q0: ArrayLike | None, count: int) -> Array:

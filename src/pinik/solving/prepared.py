@@ -87,7 +87,7 @@ class Prepared:
         quick = self.at(targets, q0)
         if quick is not None:
             return quick
-        return self.answer(self.targets if targets is None else self._as_asked(targets), q0, began)
+        return self.answer(self.targets if targets is None else self.as_asked(targets), q0, began)
 
     def answer(
         self, asked: tuple[Target, ...], q0: ArrayLike | str | None = None, began: float | None = None
@@ -128,7 +128,12 @@ class Prepared:
         answer = self.native.solve_at(place, q0, nearest)
         return None if answer is None else Solution(answer, self.question)
 
-    def _as_asked(self, targets: Target | Sequence[Target] | pinocchio.SE3 | ArrayLike) -> tuple[Target, ...]:
+    def as_asked(self, targets: Target | Sequence[Target] | pinocchio.SE3 | ArrayLike) -> tuple[Target, ...]:
+        """The targets of a call, given as for a call, checked to be of the same kinds as the prepared ones.
+
+        Raises:
+            InputError: The targets differ in kind from those it was prepared with.
+        """
         if isinstance(targets, (pinocchio.SE3, np.ndarray)) or not _are_targets(targets):
             if len(self.targets) != 1:
                 raise InputError(f"targets must be {len(self.targets)} Target objects, as when this was prepared")

@@ -8,7 +8,7 @@ from ... import checks
 from ...model import configurations, joint, limits
 from ...problem import problem, reach, slack, targets
 from ...solvers import ccd, damped_least_squares, pseudo_inverse
-from .. import attempts, run, starts
+from .. import attempts, changes, run, starts, walk
 from .module import load
 
 __all__ = ["CONSTANTS", "make_constants"]
@@ -36,6 +36,11 @@ CONSTANTS = {
     "table_size": starts.SIZE,
     "table_nearest": starts.NEAREST,
     "table_key": starts.OF_THE_TABLE,
+    "jump_floor": changes.JUMP_FLOOR,
+    "jump_factor": changes.JUMP_FACTOR,
+    "jump_damping": changes.JUMP_DAMPING,
+    "creep_halvings": walk.CREEP_HALVINGS,
+    "tick_iterations": walk.TICK_ITERATIONS,
 }
 """The value of each constant, by its name in the compiled engine; `to_the_end` is not a single number."""
 

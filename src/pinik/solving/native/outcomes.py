@@ -16,7 +16,7 @@ from ..state import State, Status
 from .codec import targets_of
 from .module import load
 
-__all__ = ["NativeOutcome", "attempt_many"]
+__all__ = ["NativeOutcome", "attempt_many", "follow"]
 
 if TYPE_CHECKING:
     from ... import _native
@@ -45,6 +45,15 @@ def attempt_many(engine: Engine, goals: Array, starts: Array, nearest: bool, thr
     """Solve for goals (N, n, 18) from starts (N or 1, nq). The number of a question seeds its restarts."""
     q, status, position, orientation, iterations, updates, restarts, seconds = engine.solve_many(
         starts, goals, nearest, threads
+    )
+    return Outcomes(q, _numbered()[status], position, orientation, iterations, updates, restarts, seconds)
+
+
+def follow(engine: Engine, goals: Array, start: Array, on_miss: str) -> Outcomes:
+    """Follow a path of goals (N, n, 18) from a start (nq,); fewer than N outcomes if the path stops at a miss."""
+    module = load()
+    q, status, position, orientation, iterations, updates, restarts, seconds = module.Track(engine).follow(
+        start, goals, module.OnMiss[on_miss]
     )
     return Outcomes(q, _numbered()[status], position, orientation, iterations, updates, restarts, seconds)
 

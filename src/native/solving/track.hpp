@@ -1,0 +1,126 @@
+// Paths of one kind of question, one point after the other; follows pinik.solving.track and pinik.solving.tracker.
+#pragma once
+
+#include <memory>
+#include <utility>
+#include <variant>
+
+#include "engine.hpp"
+#include "walk.hpp"
+
+namespace pinik {
+
+// What happens at a point that is missed: the path holds the last configuration that reached its point, goes on from the
+// nearest one found, or ends.
+enum class OnMiss { hold, nearest, stop };
+
+// Follows paths with the working memory of one thread.
+class Track {
+ public:
+  explicit Track(const Engine& engine)
+      : robot_(engine.robot()), settings_(engine.settings()), problem_(engine.problem()), memory_(*robot_->certifier) {
+    if (problem_.rows == 3)
+      walk_.emplace<1>(problem_, settings_, interrupts_);
+    else if (problem_.rows == 6)
+      walk_.emplace<2>(problem_, settings_, interrupts_);
+    else
+      walk_.emplace<3>(problem_, settings_, interrupts_);
+  }
+
+  const Problem& problem() const { return problem_; }
+
+  // Follow a path of `count` points from `q`. `take` sets the goals of a point, and `put` receives its answer. Returns the
+  // number of points that were answered.
+  template <class Take, class Put>
+  std::uint64_t follow(Vector q, std::uint64_t count, OnMiss on_miss, Pause pause, const Take& take, const Put& put) {
+    constexpr std::uint64_t points_between = 256;
+    interrupts_.pause = pause;
+    place(q);
+    Answer answer;
+    for (std::uint64_t i = 0; i < count; ++i) {
+      if (i % points_between == 0 && pause && !pause()) return i;
+      const Clock::time_point began = Clock::now();
+      take(i, problem_.goals);
+      answer.proof.reset();
+      with_walk([&](auto& walk) { keep(walk(q, i), answer); });
+      certify(answer);
+      if (answer.status == Status::converged || on_miss == OnMiss::nearest) {
+        q = answer.q;
+      } else {
+        answer.q = q;
+        answer.errors = robot_->certifier->errors(problem_, q, memory_);
+      }
+      answer.seconds = std::chrono::duration<double>(Clock::now() - began).count();
+      put(i, answer);
+      if (answer.status != Status::converged && on_miss == OnMiss::stop) return i + 1;
+    }
+    return count;
+  }
+
+  // One tick from `q` towards the goals, in which the joints change by at most `most`. Returns the answer, and whether the
+  // joints were slowed down.
+  std::pair<Answer, bool> tick(Vector q, const Vector& most, const std::vector<Goal>& goals) {
+    interrupts_.pause = nullptr;
+    place(q);
+    problem_.goals = goals;
+    Answer answer;
+    bool slowed = false;
+    with_walk([&](auto& walk) {
+      const Stride& stride = walk.tick(q, most);
+      slowed = stride.slowed;
+      keep(stride, answer);
+    });
+    certify(answer);
+    return {std::move(answer), slowed};
+  }
+
+ private:
+  const std::shared_ptr<const Robot> robot_;
+  const Settings settings_;
+  Problem problem_;
+  Certifier::Memory memory_;
+  Interrupts interrupts_;
+  std::variant<std::monostate, Walk<3>, Walk<6>, Walk<Eigen::Dynamic>> walk_;
+
+  template <class Do>
+  void with_walk(const Do& act) {
+    std::visit(
+        [&](auto& walk) {
+          if constexpr (!std::is_same_v<std::decay_t<decltype(walk)>, std::monostate>) act(walk);
+        },
+        walk_);
+  }
+
+  // Put a start inside the limits.
+  void place(Vector& q) {
+    with_walk([&](auto& walk) {
+      walk.limits().wrap(q, Vector(q));
+    });
+  }
+
+  static void keep(const Stride& stride, Answer& answer) {
+    answer.status = stride.ended;
+    answer.q = stride.q;
+    answer.iterations = stride.iterations;
+    answer.restarts = stride.restarts;
+  }
+
+  // Measure an answer's errors by plain Pinocchio; they decide its status.
+  void certify(Answer& answer) {
+    answer.errors = robot_->certifier->errors(problem_, answer.q, memory_);
+    bool within = true;
+    for (std::size_t t = 0; t < answer.errors.size(); ++t)
+      within = within && answer.errors[t].within(problem_.terms[t].tolerance);
+    if (within) {
+      answer.status = Status::converged;
+      return;
+    }
+    answer.proof = shortfall(problem_, settings_.limits);
+    if (answer.proof)
+      answer.status = Status::unreachable;
+    else if (answer.status == Status::converged)
+      answer.status = Status::stalled;
+  }
+};
+
+}  // namespace pinik

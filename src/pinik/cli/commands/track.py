@@ -1,0 +1,105 @@
+"""`pinik track`: a path of a frame as joint angles."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+
+from ...errors import InputError
+from ...solving.track import track as follow
+from ..inputs import solve_options as given
+from ..inputs.assignments import configuration, solver_with
+from ..inputs.loading import load_robot
+from ..inputs.options import AsJson, Degrees, PackageDirs, RobotSource, Root
+from ..inputs.paths import read_path
+from ..inputs.targets import option_of
+from ..reports.track_report import check_output, emit_track
+from ..terminal import output
+from ..terminal.exits import CommandError, ExitStatus
+from ..terminal.units import Units
+
+__all__ = ["track"]
+
+PathFile = Annotated[
+    str,
+    typer.Argument(
+        metavar="PATH",
+        help="A CSV file with the header x,y,z[,qx,qy,qz,qw | ,roll,pitch,yaw][,t], or JSON Lines with one target per "
+        "line (see docs/tracks.md); - is stdin.",
+        show_default=False,
+    ),
+]
+OnMiss = Annotated[
+    str,
+    typer.Option(
+        "--on-miss",
+        metavar="hold|nearest|stop",
+        help="At a point that is missed: hold the last configuration, take the nearest one, or stop the path.",
+    ),
+]
+Output = Annotated[
+    Path | None, typer.Option("--output", metavar="FILE", help="Write the joint angles here instead of to stdout.")
+]
+Format = Annotated[
+    str | None,
+    typer.Option("--format", metavar="csv|jsonl", help="The format of the angles; by the name of FILE, else csv."),
+]
+
+
+def track(
+    robot: RobotSource,
+    path: PathFile,
+    frame: given.Frame = None,
+    tool: given.Tool = None,
+    relative_to: given.RelativeTo = None,
+    on_miss: OnMiss = "hold",
+    to_file: Output = None,
+    form: Format = None,
+    degrees: Degrees = False,
+    method: given.Method = "dls",
+    param: given.MethodParameter = None,
+    tolerance: given.Tolerances = None,
+    max_iterations: given.MaxIterations = None,
+    restarts: given.Restarts = None,
+    seed: given.Seed = 0,
+    engine: given.Engine = "auto",
+    start: given.Start = None,
+    pose: given.StartPose = None,
+    lock: given.Lock = None,
+    no_limits: given.NoLimits = False,
+    root: Root = "fixed",
+    package_dir: PackageDirs = None,
+    as_json: AsJson = False,
+) -> ExitStatus:
+    """Follow a path with a frame, and write the joint angles of every point.
+
+    Each point is solved from the answer to the last one. If a point is missed or joints
+    have to jump, the exit status is 1, and stderr says where and why.
+
+    Examples:
+
+      pinik track panda examples/circle.csv --frame panda_hand_tcp --pose default
+      pinik track panda examples/circle.csv --frame panda_hand_tcp --pose default --json
+    """
+    units = Units(degrees)
+    form = check_output(to_file, form)
+    solver = solver_with(method, param)
+    machine = load_robot(robot, root=root, package_dirs=package_dir)
+    points = read_path(path, frame, {"tool": tool, "relative_to": relative_to}, units, machine)
+    options: dict[str, Any] = {"restarts": restarts, "max_iterations": max_iterations, "tolerance": tolerance}
+    options |= {"seed": seed, "engine": engine, "limits": not no_limits, "locked": lock or (), "on_miss": on_miss}
+    options["q0"] = configuration(machine, pose, start, "--start", units, None if no_limits else "moved to the limit")
+    try:
+        answer = follow(machine, points.targets, method=solver, times=points.times or None, **options)
+    except InputError as error:
+        if error.argument is None or error.argument not in options:
+            raise
+        raise CommandError(f"{option_of(error.argument)} {error.requirement}") from None
+    if as_json:
+        output.emit_json(answer.to_dict())
+    if to_file is not None or not as_json:
+        emit_track(answer, form, to_file, units)
+    output.say(str(answer))
+    return ExitStatus.ANSWERED if answer.success else ExitStatus.MISSED

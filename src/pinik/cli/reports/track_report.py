@@ -1,0 +1,81 @@
+"""A path in joint space as CSV or JSON Lines."""
+
+from __future__ import annotations
+
+import csv
+import io
+import json
+import math
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+from ...solving.track import Track
+from ..terminal.exits import CommandError
+from ..terminal.output import emit
+from ..terminal.units import Units
+
+__all__ = ["FORMATS", "check_output", "emit_track"]
+
+FORMATS = ("csv", "jsonl")
+
+
+def check_output(path: Path | None, form: str | None) -> str:
+    """Return the format of the output, "csv" or "jsonl", and check that its file can be written.
+
+    Raises:
+        CommandError: There is no such format, or no such folder.
+    """
+    if form is None:
+        form = "jsonl" if path is not None and path.suffix.lower() in (".jsonl", ".ndjson") else "csv"
+    if form not in FORMATS:
+        raise CommandError(f"--format must be csv or jsonl; got {form!r}")
+    if path is not None and (not path.parent.is_dir() or path.is_dir()):
+        raise CommandError(f"--output {path}: {'this is a folder' if path.is_dir() else 'no such folder'}")
+    return form
+
+
+def emit_track(track: Track, form: str, path: Path | None, units: Units) -> None:
+    """Write the angles of every point to a file, or to stdout when there is none.
+
+    Raises:
+        CommandError: The file cannot be written, or CSV cannot hold a floating or planar joint.
+    """
+    if form == "csv" and any(not joint.has_one_axis for joint in track.prepared.robot.joints):
+        raise CommandError("CSV has no place for floating and planar joints; use --format jsonl")
+    lines = _csv_lines(track, units) if form == "csv" else _json_lines(track)
+    text = "\n".join(lines)
+    if path is None:
+        emit(text)
+        return
+    try:
+        path.write_text(text + "\n", encoding="utf-8")
+    except OSError as error:
+        raise CommandError(f"--output {path}: cannot write it: {error.strerror}") from None
+
+
+def _csv_lines(track: Track, units: Units) -> Iterator[str]:
+    joints = [track.prepared.robot.joint(name) for name in track.joint_names]
+    turns = [units.degrees and joint.kind != "prismatic" for joint in joints]
+    yield _csv_line((["t"] if track.times is not None else []) + list(track.joint_names))
+    for index, angles in enumerate(track.angles.tolist()):
+        row = [math.degrees(angle) if turn else angle for angle, turn in zip(angles, turns, strict=True)]
+        yield _csv_line([*([] if track.times is None else [float(track.times[index])]), *row])
+
+
+def _csv_line(cells: list[Any]) -> str:
+    line = io.StringIO()
+    csv.writer(line, lineterminator="").writerow(cells)
+    return line.getvalue()
+
+
+def _json_lines(track: Track) -> Iterator[str]:
+    robot = track.prepared.robot
+    for index in range(len(track)):
+        fields: dict[str, Any] = {} if track.times is None else {"t": float(track.times[index])}
+        fields["angles"] = dict(zip(track.joint_names, track.angles[index].tolist(), strict=True))
+        placements = robot.joint_placements(track.q[index])
+        if placements:
+            fields["joint_placements"] = {name: M.homogeneous.tolist() for name, M in placements.items()}
+        fields["status"] = track.status[index].name
+        yield json.dumps(fields)

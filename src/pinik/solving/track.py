@@ -1,0 +1,291 @@
+"""A whole path in one call: each point is solved from the last one's answer, on the same branch."""
+
+from __future__ import annotations
+
+import dataclasses
+import time
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+import pinocchio
+from numpy.typing import ArrayLike, NDArray
+
+from ..checks import as_numbers, as_vector
+from ..errors import InputError, UnknownNameError
+from ..model.robot_model import RobotModel
+from ..problem.targets import Target
+from ..problem.tolerance import Tolerance, largest_of
+from ..solvers.ccd import CCD
+from ..solvers.registry import Method
+from .attempts import Outcomes
+from .jumps import Excess, Jump, find_excesses, find_jumps
+from .native.codec import targets_of
+from .native.outcomes import follow
+from .options import OPTION_NAMES, Options
+from .places import read_questions
+from .prepared import Prepared
+from .state import Status
+from .verdict import judge, measure_errors
+from .walk import Walk
+from .words import check_words
+
+__all__ = ["ON_MISS", "Track", "careful", "check_times", "track"]
+
+Array = NDArray[np.float64]
+
+ON_MISS = ("hold", "nearest", "stop")
+
+_KEYWORDS = ("places", "q0", "times", "on_miss", "tool", "relative_to", *(n for n in OPTION_NAMES if n != "trace"))
+
+CAREFUL_STEP = 0.05
+"""The largest change of a joint in one update of CCD along a path [rad or m]; larger ones lead to other branches."""
+
+
+def track(
+    robot: RobotModel,
+    targets: str | Target | Sequence[Target] | Sequence[Sequence[Target]],
+    places: ArrayLike | Sequence[pinocchio.SE3] | None = None,
+    q0: ArrayLike | None = None,
+    method: Method = "dls",
+    *,
+    times: ArrayLike | None = None,
+    on_miss: str = "hold",
+    tool: pinocchio.SE3 | ArrayLike | None = None,
+    relative_to: str | None = None,
+    limits: bool = True,
+    locked: Iterable[str] = (),
+    restarts: int | None = None,
+    seed: int = 0,
+    max_iterations: int | None = None,
+    tolerance: Tolerance | ArrayLike | None = None,
+    time_limit: float | None = None,
+    engine: str = "auto",
+    **solver_parameters: Any,
+) -> Track:
+    """Follow a path of N points in one call.
+
+    Each point is solved from the answer to the last one, by a run that stays inside the limits and on its branch. If
+    that misses, the target is approached in smaller steps; only then are restarts tried, and the answer nearest to the
+    last configuration is taken. `Track.jumps` reports every change that is far larger than the target's motion asks
+    for, with the reason. CCD moves each joint by at most 0.05 rad per update along a path.
+
+    Args:
+        robot: The robot.
+        targets: The name of a frame, or one Target as a pattern, with the N targets in `places`; or N targets of the
+            same kind; or N sequences with the same number of targets of the same kinds.
+        places: (N, 4, 4) homogeneous matrices or N SE3, for positions and rotations; or positions (N, 3) [m].
+        q0: The start (nq,), from which the first point is solved; neutral when None. The way to the first point is not
+            part of the path, and is never reported as a jump.
+        method: As for `pinik.solve`.
+        times: When each point is reached (N,) [s], increasing; then `Track.too_fast` names the joints that would have
+            to exceed `robot.velocity_limits`.
+        on_miss: What happens at a point that is missed: "hold" keeps the last configuration that reached its point,
+            "nearest" takes the nearest configuration found and goes on from there, "stop" ends the path with this
+            point, at which the last configuration is kept.
+        tool, relative_to: As for `Target`; only with the name of a frame.
+        limits, locked, restarts, seed, max_iterations, tolerance, engine: As for `pinik.solve`.
+        time_limit: Time limit for each point [s].
+        **solver_parameters: Parameters of the solver.
+
+    Raises:
+        UnknownNameError, InputError, EngineError: As for `pinik.solve`, with the index of the first faulty target.
+    """
+    if not isinstance(robot, RobotModel):
+        raise InputError(f"robot must be what pinik.load returns; got {robot!r}")
+    if "trace" in solver_parameters:
+        raise InputError("track keeps no trace; pinik.solve does")
+    check_words(method, solver_parameters, _KEYWORDS)
+    if on_miss not in ON_MISS:
+        raise UnknownNameError("on_miss", on_miss, ON_MISS)
+    options = Options.of(
+        method, solver_parameters, limits=limits, locked=locked, restarts=restarts, seed=seed,
+        max_iterations=max_iterations, tolerance=tolerance, time_limit=time_limit, engine=engine,
+    )  # fmt: skip
+    began = time.perf_counter()
+    pattern, goals = read_questions(targets, places, tool, relative_to)
+    if not len(goals):
+        raise InputError("a path must have at least one point; got none")
+    when = None if times is None else check_times(times, len(goals))
+    start = robot.neutral() if q0 is None else robot.check_configuration(q0, "q0")
+    prepared = Prepared(robot, pattern, careful(options))
+    native = prepared.native
+    outcomes = _follow(prepared, goals, start, on_miss) if native is None else follow(native, goals, start, on_miss)
+    angles = _unwound(robot, start, outcomes.q)
+    jumps = find_jumps(prepared.question, goals, outcomes.q, angles, outcomes.restarts)
+    excesses = [] if when is None else find_excesses(robot.joint_names, angles, when, robot.velocity_limits)
+    total = time.perf_counter() - began
+    return Track(
+        **vars(outcomes), angles=angles, asked=len(goals), jumps=tuple(jumps), times=when, too_fast=tuple(excesses),
+        on_miss=on_miss, total_time=total, prepared=prepared,
+    )  # fmt: skip
+
+
+@dataclass(frozen=True, eq=False)
+class Track(Outcomes):
+    """A path in joint space: one configuration for each of M points, each checked by plain Pinocchio.
+
+    M is N, the number of points asked for, unless `on_miss="stop"` ended the path at a point that was missed.
+
+    Attributes:
+        q: The configurations (M, nq), inside the limits.
+        angles: The angles (M, n_joints) [rad or m], in the order of `robot.joint_names`. Those of continuous joints
+            are unwound: they go on beyond ±π, from the start's angle in (−π, π].
+        status: What came of each point: an array (M,) of `Status`. A point that was missed has the configuration that
+            `on_miss` says.
+        position_error: The largest position error of each point's targets (M,) [m], at its configuration; NaN if there
+            are no positions.
+        orientation_error: The largest orientation error, likewise (M,) [rad].
+        iterations, joint_updates, restarts: As in `Solution`, for each point (M,). CCD's updates are not counted here.
+        time: The time that each point took (M,) [s].
+        jumps: The changes between neighbours that are far larger than the target's motion asks for: more than 0.1 rad,
+            and more than 0.1 rad plus three times the step Jᵀ(JJᵀ + λ²I)⁻¹e from one configuration to the next
+            target, with λ = 0.02 ‖J‖. Metres count per length of the chain.
+        times: When each point is reached (N,) [s]; None if no times were given.
+        too_fast: The joints that would have to exceed their largest velocities, by index; empty without `times`.
+        asked: The number of points asked for, N.
+        on_miss: "hold", "nearest" or "stop".
+        total_time: The duration of the call [s].
+        prepared: The compiled problem.
+    """
+
+    angles: Array
+    asked: int
+    jumps: tuple[Jump, ...]
+    times: Array | None
+    too_fast: tuple[Excess, ...]
+    on_miss: str
+    total_time: float
+    prepared: Prepared = field(repr=False)
+
+    @property
+    def reached(self) -> NDArray[np.bool_]:
+        """Whether all targets of each point are within tolerance (M,)."""
+        return np.array(self.status == Status.CONVERGED, dtype=bool)
+
+    @property
+    def success(self) -> bool:
+        """Whether all N points were reached, and there is no jump."""
+        return len(self) == self.asked and bool(self.reached.all()) and not self.jumps
+
+    @property
+    def joint_names(self) -> tuple[str, ...]:
+        """The names of the joints, in the order of the columns of `angles`."""
+        return self.prepared.robot.joint_names
+
+    @property
+    def engine(self) -> str:
+        """The engine that was used: "python" or "native"."""
+        return self.prepared.engine
+
+    def __len__(self) -> int:
+        return len(self.q)
+
+    def __bool__(self) -> bool:
+        return self.success
+
+    def __str__(self) -> str:
+        missed = np.flatnonzero(~self.reached)
+        words = [f"{int(self.reached.sum())} of {self.asked} points reached in {self.total_time:.3g} s"]
+        if len(missed):
+            count = "the first miss" if len(missed) > 1 else "the miss"
+            ends = ", where the path ends" if len(self) < self.asked else ""
+            words.append(f"{count} is at {missed[0]} ({self.status[missed[0]]}){ends}")
+        words += [str(jump) for jump in self.jumps[:3]]
+        if len(self.jumps) > 3:
+            words.append(f"and {len(self.jumps) - 3} more jumps")
+        if self.too_fast:
+            words.append(str(max(self.too_fast, key=lambda excess: excess.factor)))
+        return "; ".join(words)
+
+    def to_dict(self) -> dict[str, Any]:
+        """The JSON form, made of plain numbers, strings, lists and dicts; docs/json.md explains the fields."""
+        question = self.prepared.question
+        return {
+            "schema": 1,
+            "robot": self.prepared.robot.name,
+            "frames": [target.frame for target in question.problem.targets],
+            "success": self.success,
+            "message": str(self),
+            "points": self.asked,
+            "reached": int(self.reached.sum()),
+            "joint_names": list(self.joint_names),
+            "angles": self.angles.tolist(),
+            "status": [status.name for status in self.status],
+            "position_error_m": [_number_or_none(error) for error in self.position_error.tolist()],
+            "orientation_error_rad": [_number_or_none(error) for error in self.orientation_error.tolist()],
+            "jumps": [jump.to_dict() for jump in self.jumps],
+            "too_fast": [excess.to_dict() for excess in self.too_fast],
+            "on_miss": self.on_miss,
+            "time_s": self.total_time,
+            "method": question.solver.name,
+            "engine": self.engine,
+        }
+
+
+def careful(options: Options) -> Options:
+    """The options with a CCD that moves no joint far in one update."""
+    solver = options.method
+    if not isinstance(solver, CCD) or solver.max_step <= CAREFUL_STEP:
+        return options
+    return dataclasses.replace(options, method=dataclasses.replace(solver, max_step=CAREFUL_STEP))
+
+
+def check_times(times: ArrayLike, count: int) -> Array:
+    """Check the times of `count` points (count,) [s], which must increase."""
+    if as_numbers(times, "times").shape != (count,):
+        raise InputError(f"times must be one number for each of the {count} points; got shape {np.shape(times)}")
+    when = as_vector(times, count, "times")
+    for k in np.flatnonzero(np.diff(when) <= 0.0)[:1]:
+        raise InputError(f"times must increase; got {when[k]:g} and then {when[k + 1]:g} at index {k + 1}")
+    return when
+
+
+def _follow(prepared: Prepared, goals: Array, start: Array, on_miss: str) -> Outcomes:
+    """Follow a path in the Python engine."""
+    question, robot = prepared.question, prepared.robot
+    walk, limits = Walk(question), question.limits
+    q = limits.wrap(start)
+    rows, kept = [], []
+    for number, goal in enumerate(goals):
+        began = time.perf_counter()
+        targets = targets_of(question.problem.targets, goal)
+        stride = walk(targets, q, number)
+        verdict = judge(question, targets, stride.q, stride.ended)
+        reached = verdict.status is Status.CONVERGED
+        if reached or on_miss == "nearest":
+            q, errors = stride.q.copy(), verdict.errors
+        else:
+            errors = measure_errors(robot, targets, q, prepared.options.tolerance)
+        kept.append(q)
+        rows.append(
+            (verdict.status, *largest_of(errors), stride.iterations, stride.restarts, time.perf_counter() - began)
+        )
+        if on_miss == "stop" and not reached:
+            break
+    status, position, orientation, iterations, restarts, seconds = zip(*rows, strict=True)
+    counts = np.array(iterations, dtype=np.int64)
+    return Outcomes(
+        np.array(kept), np.array(status, dtype=object), np.array(position, dtype=np.float64),
+        np.array(orientation, dtype=np.float64), counts, np.zeros_like(counts), np.array(restarts, dtype=np.int64),
+        np.array(seconds),
+    )  # fmt: skip
+
+
+def _unwound(robot: RobotModel, start: Array, q: Array) -> Array:
+    """The angles (M, n_joints) at configurations (M, nq); those of continuous joints go on from the start's angle."""
+    columns = []
+    for name in robot.joint_names:
+        joint = robot.joint(name)
+        if joint.nq == 1:
+            columns.append(q[:, joint.idx_q])
+            continue
+        sines, cosines = q[:, joint.idx_q + 1], q[:, joint.idx_q]
+        angles = np.concatenate(([joint.angle(start)], np.arctan2(sines, cosines)))
+        columns.append(np.unwrap(angles)[1:])
+    return np.column_stack(columns) if columns else np.zeros((len(q), 0))
+
+
+def _number_or_none(number: float) -> float | None:
+    return None if np.isnan(number) else number

@@ -1,0 +1,200 @@
+"""A frame that follows a moving target, one call a tick: joint speeds and limits are kept, and so is the branch."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Mapping, Sequence
+from enum import Enum
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import pinocchio
+from numpy.typing import ArrayLike, NDArray
+
+from ..checks import as_positive_number
+from ..errors import InputError
+from ..model.robot_model import RobotModel
+from ..problem.targets import Target
+from ..problem.tolerance import Tolerance, largest_of
+from ..solvers.registry import Method
+from .native.codec import goals_of
+from .native.module import load
+from .options import OPTION_NAMES, Options
+from .prepared import Prepared
+from .track import careful
+from .verdict import all_within, measure_errors
+from .walk import Walk
+from .words import check_words
+
+__all__ = ["Tracker", "TrackerStatus"]
+
+if TYPE_CHECKING:
+    from .. import _native
+
+Array = NDArray[np.float64]
+
+_KEYWORDS = ("q0", "rate", "velocity", *(name for name in OPTION_NAMES if name not in ("trace", "restarts", "seed")))
+
+_TOLERANCE = Tolerance(1e-6, 1e-5)
+
+
+class TrackerStatus(Enum):
+    """How a tick went; `str()` describes it."""
+
+    OK = "the target is reached"
+    LIMITED = "on the way: the joints' speeds do not allow more"
+    HELD = "the target is out of reach from here: as near to it as this branch allows"
+
+    def __str__(self) -> str:
+        return self.value
+
+
+class Tracker:
+    """A frame that follows a moving target, as in teleoperation: `q = tracker(target)` once a tick.
+
+    Each call moves the joints towards the target, by no more than their speeds allow within one tick, inside the
+    limits, and never to another branch. If the target is out of reach, the frame stays at the nearest point. Each
+    thread needs its own instance.
+
+    Attributes:
+        robot: The robot.
+        rate: The number of ticks per second [Hz].
+        velocity: The largest velocities of the joints (n_joints,) [rad/s or m/s], in the order of `robot.joint_names`.
+        targets: The targets that it was made with, whose kinds every target must have.
+        status: How the last tick went: OK, LIMITED or HELD.
+        position_error: The largest position error after the last tick [m]; None without a position.
+        orientation_error: The largest orientation error, likewise [rad].
+        engine: "python" or "native".
+    """
+
+    def __init__(
+        self,
+        robot: RobotModel,
+        targets: str | Target | Sequence[Target],
+        q0: ArrayLike | None = None,
+        rate: float = 100.0,
+        velocity: float | Mapping[str, float] | None = None,
+        method: Method = "dls",
+        *,
+        limits: bool = True,
+        locked: Iterable[str] = (),
+        max_iterations: int | None = None,
+        tolerance: Tolerance | ArrayLike | None = None,
+        time_limit: float | None = None,
+        engine: str = "auto",
+        **solver_parameters: Any,
+    ) -> None:
+        """Compile the problem.
+
+        Args:
+            robot: The robot.
+            targets: The name of a frame, whose position and orientation will be given; or one or several Targets, which
+                say what each call gives.
+            q0: The start (nq,), moved inside the limits; neutral when None.
+            rate: The number of calls per second [Hz].
+            velocity: The largest joint velocity [rad/s or m/s]: one number for all joints, or one for each joint by
+                name, where the others keep that of the file; `robot.velocity_limits` when None.
+            method: As for `pinik.solve`.
+            limits, locked, max_iterations, engine: As for `pinik.solve`.
+            tolerance: The errors that count as reached (metres, radians); 1e-6 m and 1e-5 rad when None, so that slow
+                motions are followed smoothly.
+            time_limit: Time limit for one tick [s].
+            **solver_parameters: Parameters of the solver.
+
+        Raises:
+            UnknownNameError, InputError, EngineError: As for `pinik.solve`.
+        """
+        if not isinstance(robot, RobotModel):
+            raise InputError(f"robot must be what pinik.load returns; got {robot!r}")
+        check_words(method, solver_parameters, _KEYWORDS)
+        options = Options.of(
+            method, solver_parameters, limits=limits, locked=locked, max_iterations=max_iterations,
+            tolerance=_TOLERANCE if tolerance is None else tolerance, time_limit=time_limit, engine=engine, restarts=0,
+        )  # fmt: skip
+        if isinstance(targets, str):
+            targets = Target(targets, placement=robot.placement(targets, robot.neutral()))
+        self.robot, self.rate = robot, as_positive_number(rate, "rate", "ticks per second")
+        self.velocity = _velocities(robot, velocity)
+        self._prepared = Prepared(robot, targets, careful(options))
+        self.targets = self._prepared.targets
+        self.engine = self._prepared.engine
+        self._most = np.full(robot.model.nv, math.inf)
+        for name, speed in zip(robot.joint_names, self.velocity, strict=True):
+            self._most[robot.joint(name).idx_v] = speed / self.rate
+        native = self._prepared.native
+        self._track: _native.Track | None = None if native is None else load().Track(native)
+        self._walk = Walk(self._prepared.question) if native is None else None
+        self.status = TrackerStatus.OK
+        self.position_error: float | None = None
+        self.orientation_error: float | None = None
+        self.reset(robot.neutral() if q0 is None else q0)
+
+    @property
+    def q(self) -> Array:
+        """The present configuration (nq,), as the last call or `reset` left it; a copy."""
+        return self._q.copy()
+
+    def reset(self, q: ArrayLike) -> None:
+        """Go on from a configuration (nq,), such as a measured one; it is moved inside the limits.
+
+        Raises:
+            InputError: `q` is not a configuration of the robot.
+        """
+        limits = self._prepared.question.limits
+        self._q = limits.wrap(self.robot.check_configuration(q))
+
+    def __call__(self, target: Target | Sequence[Target] | pinocchio.SE3 | ArrayLike) -> Array:
+        """Move towards the target within one tick.
+
+        Args:
+            target: An SE3 or a 4×4 matrix, or a position (3,) [m] if the target has no orientation; or Target objects
+                of the same kinds as those that it was made with.
+
+        Returns:
+            The configuration for this tick (nq,). `status` says how it went, and the errors how far behind it is.
+
+        Raises:
+            InputError: The target differs in kind from the one that the tracker was made with.
+        """
+        if self._track is None:
+            self._tick(self._prepared.as_asked(target))
+            return self._q.copy()
+        place = target.homogeneous if isinstance(target, pinocchio.SE3) else target
+        came_to = self._track.tick_at(self._q, self._most, place)
+        if came_to is None:  # the engine does not accept the target without conversion
+            came_to = self._track.tick(self._q, self._most, goals_of(self._prepared.as_asked(target)))
+        self._q, reached, slowed, position, orientation = came_to
+        self._judge(reached, slowed)
+        self.position_error = None if math.isnan(position) else position
+        self.orientation_error = None if math.isnan(orientation) else orientation
+        return self._q.copy()
+
+    def _tick(self, asked: tuple[Target, ...]) -> None:
+        """One tick of the Python engine."""
+        assert self._walk is not None
+        stride = self._walk.tick(asked, self._q, self._most)
+        self._q = stride.q.copy()
+        errors = measure_errors(self.robot, asked, self._q, self._prepared.options.tolerance)
+        self._judge(all_within(errors, self._prepared.question), stride.slowed)
+        self.position_error, self.orientation_error = largest_of(errors)
+
+    def _judge(self, reached: bool, slowed: bool) -> None:
+        if reached:
+            self.status = TrackerStatus.OK
+        else:
+            self.status = TrackerStatus.LIMITED if slowed else TrackerStatus.HELD
+
+
+def _velocities(robot: RobotModel, velocity: float | Mapping[str, float] | None) -> Array:
+    """The largest velocities (n_joints,) [rad/s or m/s]."""
+    if velocity is None:
+        return np.array(robot.velocity_limits)
+    if not isinstance(velocity, Mapping):
+        return np.full(len(robot.joint_names), as_positive_number(velocity, "velocity", "rad/s or m/s"))
+    speeds = np.array(robot.velocity_limits)
+    for name, speed in velocity.items():
+        joint = robot.settable_joint(name)
+        if not joint.has_one_axis:
+            raise InputError(f"velocity: joint {name!r} must have one axis; it is {joint.kind}")
+        speeds[robot.joint_names.index(name)] = as_positive_number(speed, f"velocity of {name!r}", "rad/s or m/s")
+    return speeds
