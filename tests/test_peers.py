@@ -18,7 +18,7 @@ from comparison.markdown import BEGIN, END, as_markdown, replace_part
 from comparison.peer import Peer
 from comparison.peer_list import PEERS
 from comparison.problems import TASKS, make_problems
-from comparison.summary import summary_of
+from comparison.summary import batches_of, ratios_of
 from comparison.tables import Row
 
 ADAPTER = """
@@ -125,16 +125,24 @@ def row(robot, peer, median, task="poses"):
 
 def test_the_summary_names_the_worst_and_the_best_robot():
     rows = [row("panda", "pinik", 2.0), row("panda", "rtb", 30.0), row("ur5", "pinik", 4.0), row("ur5", "rtb", 44.0)]
-    heading, poses = summary_of(rows)
+    heading, poses = ratios_of(rows)
     assert poses[heading.index("Robotics Toolbox ik_LM")] == "11 to 15"
     assert poses[heading.index("EAIK, first answer")] == "–"
+
+
+def test_two_threads_are_compared_with_one_by_the_time_of_all_targets():
+    one, two = row("ur5", "pinik-many-1", 3.0, "batch"), row("ur5", "pinik-many-2", 3.0, "batch")
+    two.mean = 1.5  # each target takes as long, and two are solved at a time
+    heading, gains, placements = batches_of([one, two])
+    assert gains[heading.index("ur5")] == "2.00"
+    assert placements[heading.index("ur5")] == "–"
 
 
 def test_a_document_keeps_what_stands_around_the_tables(tmp_path):
     document = tmp_path / "page.md"
     document.write_text(f"before\n\n{BEGIN}\nold\n{END}\n\nafter\n", encoding="utf-8")
     skipped = replace(row("panda", "eaik", math.nan), count=0, reason="seven joints")
-    text = as_markdown(["a point"], [["a"], ["b"]], [row("panda", "pinik", 2.0), skipped], "python peers.py")
+    text = as_markdown(["a point"], [[["a"], ["b"]]], [row("panda", "pinik", 2.0), skipped], "python peers.py")
     for _ in range(2):  # the second time replaces the first
         replace_part(document, text)
     written = document.read_text(encoding="utf-8")
