@@ -30,9 +30,8 @@ def read_before_quoting(about: dict[str, Any], peers: Sequence[Peer], noise: tup
     pinned = "No process was kept on one core."
     if about["core"] is not None:
         free = ", ".join(peer.label for peer in peers if peer.threads > 1)
-        pinned = f"Rows of one thread ran on core {about['core']} alone" + (
-            f", and on all cores: {free}." if free else "."
-        )
+        pinned = f"Rows of one thread ran on core {about['core']} alone"
+        pinned += f", and on all cores: {free}." if free else "."
     points = [
         f"Measured on {about['date']}: {about['machine']}, Python {about['python']}, seed {about['seed']}. {changed} "
         "Differences smaller than that mean nothing. Times differ between machines: compare rows of one table.",
