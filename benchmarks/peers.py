@@ -106,8 +106,16 @@ def _report(
         arguments.json.write_text(json.dumps(told, indent=2) + "\n", encoding="utf-8")
     if arguments.write:
         points = [*read_before_quoting(about, peers, noise), f"Versions: {', '.join(packages)}."]
-        command = shlex.join(["python", "benchmarks/peers.py", *sys.argv[1:]])
-        replace_part(arguments.write, as_markdown(points, grids, rows, command))
+        replace_part(arguments.write, as_markdown(points, grids, rows, _command()))
+
+
+def _command() -> str:
+    """How to run this again: the options given, without the file of the JSON, which is nobody else's."""
+    words = sys.argv[1:]
+    if "--json" in words:
+        at = words.index("--json")
+        del words[at : at + 2]
+    return shlex.join(["python", "benchmarks/peers.py", *words])
 
 
 def _arguments() -> argparse.Namespace:
