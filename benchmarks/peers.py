@@ -31,7 +31,7 @@ from comparison.peer import Peer
 from comparison.peer_list import PEERS, pinik_by
 from comparison.problems import TASKS, make_problems
 from comparison.quoting import read_before_quoting
-from comparison.summary import summary_of
+from comparison.summary import batches_of, ratios_of
 from comparison.tables import Row, as_json, as_text
 from comparison.verdicts import NEAR
 
@@ -93,10 +93,11 @@ def _report(
     arguments: argparse.Namespace,
 ) -> None:
     """The end of the run: the summary and the versions, and the files that were asked for."""
-    summary = summary_of(rows)
-    print("\n## pinik against the others: the worst and the best robot")
-    for cells in summary:
-        print(f"{cells[0]:40} " + " ".join(f"{cell:>22}" for cell in cells[1:]))
+    grids = [ratios_of(rows), batches_of(rows)]
+    print("\n## pinik against the others (the worst and the best robot), and all in one call")
+    for grid in grids:
+        for cells in grid:
+            print(f"{cells[0]:40} " + " ".join(f"{cell:>22}" for cell in cells[1:]))
     packages = sorted({f"{package} {version}" for those in versions.values() for package, version in those.items()})
     print(f"\n# the machine meanwhile: the same work took {noise[0]:+.0f} % to {noise[1]:+.0f} % of its median time")
     print("# " + ", ".join(packages))
@@ -105,8 +106,16 @@ def _report(
         arguments.json.write_text(json.dumps(told, indent=2) + "\n", encoding="utf-8")
     if arguments.write:
         points = [*read_before_quoting(about, peers, noise), f"Versions: {', '.join(packages)}."]
-        command = shlex.join(["python", "benchmarks/peers.py", *sys.argv[1:]])
-        replace_part(arguments.write, as_markdown(points, summary, rows, command))
+        replace_part(arguments.write, as_markdown(points, grids, rows, _command()))
+
+
+def _command() -> str:
+    """How to run this again: the options given, without the file of the JSON, which is nobody else's."""
+    words = sys.argv[1:]
+    if "--json" in words:
+        at = words.index("--json")
+        del words[at : at + 2]
+    return shlex.join(["python", "benchmarks/peers.py", *words])
 
 
 def _arguments() -> argparse.Namespace:

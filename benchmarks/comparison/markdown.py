@@ -7,21 +7,22 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from .problems import TASKS
+from .summary import Grid
 from .tables import Row
 
-__all__ = ["BEGIN", "END", "as_markdown", "grid_as_markdown", "replace_part"]
+__all__ = ["BEGIN", "END", "as_markdown", "replace_part"]
 
 BEGIN = "<!-- From here to the end mark, `python benchmarks/peers.py --write` writes. -->"
 END = "<!-- The end of what it writes. -->"
 
 
-def as_markdown(points: Sequence[str], summary: Sequence[Sequence[str]], rows: Sequence[Row], command: str) -> str:
-    """The paragraph above the tables, the summary, and one table for each task."""
+def as_markdown(points: Sequence[str], grids: Sequence[Grid], rows: Sequence[Row], command: str) -> str:
+    """The paragraph above the tables, the grids that sum up, and one table for each task."""
     parts = [
         f"Written by `{command}`.",
         "**Read before quoting**",
         "\n".join(f"* {point}" for point in points),
-        grid_as_markdown(summary),
+        *map(_grid, grids),
     ]
     for task, words in TASKS.items():
         of_task = [row for row in rows if row.task == task]
@@ -29,13 +30,6 @@ def as_markdown(points: Sequence[str], summary: Sequence[Sequence[str]], rows: S
             parts += [f"**{task}**: {words}. Each cell: strict, median / mean / 99th percentile [µs].", _table(of_task)]
             parts += _reasons(of_task)
     return "\n\n".join(parts)
-
-
-def grid_as_markdown(grid: Sequence[Sequence[str]]) -> str:
-    """Lines of cells, the first of them the heading."""
-    heading, *lines = grid
-    rule = ["---"] * len(heading)
-    return "\n".join(f"| {' | '.join(cells)} |" for cells in (heading, rule, *lines))
 
 
 def replace_part(document: Path, text: str) -> None:
@@ -51,6 +45,12 @@ def replace_part(document: Path, text: str) -> None:
     document.write_text(f"{before}{BEGIN}\n\n{text}\n\n{END}{after}", encoding="utf-8")
 
 
+def _grid(grid: Grid) -> str:
+    heading, *lines = grid
+    rule = ["---"] * len(heading)
+    return "\n".join(f"| {' | '.join(cells)} |" for cells in (heading, rule, *lines))
+
+
 def _table(rows: Sequence[Row]) -> str:
     robots = list(dict.fromkeys(row.robot for row in rows))
     by_place = {(row.peer, row.robot): row for row in rows}
@@ -59,7 +59,7 @@ def _table(rows: Sequence[Row]) -> str:
         here = [by_place[peer, robot] for robot in robots]
         if any(row.count for row in here):
             lines.append([here[0].label, *map(_cell, here), here[0].lacks])
-    return grid_as_markdown(lines)
+    return _grid(lines)
 
 
 def _cell(row: Row) -> str:

@@ -15,7 +15,7 @@ def read_before_quoting(about: dict[str, Any], peers: Sequence[Peer], noise: tup
     """The points to read before a figure is quoted, one string each.
 
     Args:
-        about: What `peers.py` knows about the run.
+        about: What `peers.py` knows about the run: date, machine, core, python, seed, budget_seconds.
         peers: The rows of the tables.
         noise: By how much the machine changed in the whole run [%]; None before it is known.
     """
@@ -29,11 +29,14 @@ def read_before_quoting(about: dict[str, Any], peers: Sequence[Peer], noise: tup
         )
     pinned = "No process was kept on one core."
     if about["core"] is not None:
-        pinned = f"Rows of one thread ran on core {about['core']} alone, rows of more threads and TRAC-IK on all cores."
+        free = "; ".join(peer.label for peer in peers if peer.threads > 1)
+        pinned = f"Rows of one thread ran on core {about['core']} alone"
+        pinned += f", and on all cores: {free}." if free else "."
     points = [
         f"Measured on {about['date']}: {about['machine']}, Python {about['python']}, seed {about['seed']}. {changed} "
         "Differences smaller than that mean nothing. Times differ between machines: compare rows of one table.",
-        f"{pinned} One library works at a time, and they take turns.",
+        f"{pinned} One library works at a time, and they take turns. One that used up its "
+        f"{about['budget_seconds']:g} s answered only the first targets.",
         "All rows of a table get the same poses and the same starts; on a path each library starts from its own last "
         f"answer. They are asked for {1e-4:g} m and {1e-3:g} rad where a row names no other tolerance.",
         "Times are those of one call, in microseconds, from a 4×4 numpy array and a numpy array of joint values to "
@@ -49,7 +52,7 @@ def read_before_quoting(about: dict[str, Any], peers: Sequence[Peer], noise: tup
     ]
     if careless:
         points.append(
-            f"These rows know no joint limits: {', '.join(careless)}. Where *placed* is larger than *solved*, the "
+            f"These rows know no joint limits: {'; '.join(careless)}. Where *placed* is larger than *solved*, the "
             "difference is answers that no robot can take."
         )
     return points

@@ -82,7 +82,7 @@ def as_text(rows: Sequence[Row], noise: tuple[float, float]) -> str:
     lines = [
         f"## {rows[0].robot}, {rows[0].task}: {TASKS[rows[0].task]}",
         f"   the machine meanwhile: the same work took {noise[0]:+.0f} % to {noise[1]:+.0f} % of its median time",
-        f"{'':31} {'count':>6} {'placed':>7} {'solved':>7} {'strict':>7} "
+        f"{'':33} {'count':>6} {'placed':>7} {'solved':>7} {'strict':>7} "
         f"{'median':>9} {'mean':>9} {'p90':>9} {'p99':>9} µs {'÷ first':>8}  does not, or needs",
     ]
     lines += [_line(row, _first_like(row, rows)) for row in rows]
@@ -116,11 +116,11 @@ def _first_like(row: Row, rows: Sequence[Row]) -> Row:
 
 def _line(row: Row, first: Row) -> str:
     if not row.count:
-        return f"{row.label:31} skipped: {row.reason}"
+        return f"{row.label:33} skipped: {row.reason}"
     note = f"  ({row.note})" if row.note else ""
     p90, p99 = (f"{'–':>9}" if math.isnan(value) else f"{value:9.1f}" for value in (row.p90, row.p99))
     return (
-        f"{row.label:31} {row.count:6} {row.placed:6.2f}% {row.solved:6.2f}% {row.strict:6.2f}% "
+        f"{row.label:33} {row.count:6} {row.placed:6.2f}% {row.solved:6.2f}% {row.strict:6.2f}% "
         f"{row.median:9.2f} {row.mean:9.2f} {p90} {p99}    {row.median / first.median:8.2f}  {row.lacks}{note}"
     )
 
