@@ -37,8 +37,8 @@ RUNS = {
         ("solve", "arm", "--frame", "tip", "--position", "0", "0", "9", "--method", "ccd", "--json"),
     ],
     "track": [
-        ("track", "two_link", ROOT / "examples" / "jump.csv", "--frame", "tip", "--start", "joint1=-2.64")
-        + ("--start", "joint2=1.5", "--json"),
+        ("track", "two_link", ROOT / "examples" / "jump.csv", "--frame", "tip", "--start", "joint1=-2.64", "--start",
+         "joint2=1.5", "--json"),
     ],
     "fk": [("fk", "panda", "--root", "free_flyer", "--json")],
     "jacobian": [("jacobian", "panda", "--frame", "panda_hand", "--root", "free_flyer", "--json")],
