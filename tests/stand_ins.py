@@ -29,6 +29,7 @@ GOOD = {
         {"instance": "index", "name": "name", "value": "value"},
     ),
     "limits": ({"on": False}, {"on": "truth"}),
+    "polish": ({"on": True}, {"on": "truth"}),
     "motion": ({"motion": "random"}, {"motion": "name"}),
     "curve": ({"curve": "knot"}, {"curve": "name"}),
     "speed": ({"value": 2.5}, {"value": "number"}),
@@ -41,6 +42,11 @@ GOOD = {
     "orientation": (
         {"index": 0, "on": True, "rpy": [0.1, 0.2, 0.3]},
         {"index": "index", "on": "truth", "rpy": "angles"},
+    ),
+    "free": ({"index": 0, "axes": "xy"}, {"index": "index", "axes": "axes"}),
+    "ball_tolerance": (
+        {"index": 0, "tolerance": [[0.01, 0.01, 0.1], 0.3]},
+        {"index": "index", "tolerance": "tolerance"},
     ),
     "effector": ({"index": 0, "mode": "pinned"}, {"index": "index", "mode": "name"}),
     "add_effector": ({"frame": "bone3"}, {"frame": "name"}),

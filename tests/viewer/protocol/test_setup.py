@@ -118,10 +118,10 @@ def test_a_set_up_says_what_differs_from_the_beginning_in_plain_words(arm):
     shown.set_motion("curve")
     shown.set_curve("knot")
     shown.motion.speed = 2.5
-    shown.set_limits(False)
+    shown.change_settings(limits=False)
     shown.apply_settings(shown.settings.__class__(limits=False, until_reached=False, at_most=9))
-    shown.set_tolerance(0.001, 0.01)
-    shown.orient_ball(0, True, [0.1, 0.2, 0.3])
+    shown.change_settings(tolerance=pinik.Tolerance(0.001, 0.01))
+    shown.balls[0].orient(True, [0.1, 0.2, 0.3])
     shown.running = True
     said = {name: values[0] for name, values in parse_qs(write_setup(shown), strict_parsing=True).items()}
     assert json.loads(said.pop("parameters")) == {"0": {"position_weight": 7.0}}
@@ -157,7 +157,7 @@ def test_a_set_up_fits_into_an_address():
 def test_numbers_are_kept_to_the_last_digit(arm):
     shown, other = (Session(arm, clock=Clock()) for _ in range(2))
     shown.motion.speed = math.pi
-    shown.set_tolerance(1.23456789e-5, math.e / 3)
+    shown.change_settings(tolerance=pinik.Tolerance(1.23456789e-5, math.e / 3))
     shown.set_parameter(3, "damping", 1 / 3)
     apply_setup(other, read_setup(write_setup(shown)))
     assert other.motion.speed == math.pi
@@ -168,7 +168,7 @@ def test_numbers_are_kept_to_the_last_digit(arm):
 def test_the_order_of_balls_is_kept():
     lion = load_quietly("lion")
     shown, other = (Session(lion, clock=Clock()) for _ in range(2))
-    shown.remove_ball(0)
+    shown.balls.remove(0)
     shown.add_ball("left_fore_paw")
     apply_setup(other, read_setup(write_setup(shown)))
     assert [ball.frame for ball in other.balls] == [ball.frame for ball in shown.balls]
@@ -183,7 +183,7 @@ def test_twelve_other_balls_fit_where_there_were_six():
     for frame in others:
         shown.add_ball(frame)
         if shown.balls[0].frame in ends:
-            shown.remove_ball(0)
+            shown.balls.remove(0)
     apply_setup(other, read_setup(write_setup(shown)))
     assert [ball.frame for ball in other.balls] == others
     assert write_setup(other) == write_setup(shown)

@@ -76,12 +76,12 @@ def test_a_state_tells_the_session(arm):
     session = Session(arm, [pinik.CCD(relaxation=0.5), "dls"], clock=Clock())
     session.add_ball("bone2")
     session.set_mode(1, "pinned")
-    session.orient_ball(1, True, [0.1, 0.2, 0.3])
+    session.balls[1].orient(True, [0.1, 0.2, 0.3])
     session.set_motion("curve")
     session.set_curve("wave")
     session.motion.speed = 1.5
-    session.set_tolerance(0.001, 0.01)
-    session.set_limits(False)
+    session.change_settings(tolerance=pinik.Tolerance(0.001, 0.01))
+    session.change_settings(limits=False)
     session.running = True
     for _ in range(5):
         session.tick()

@@ -13,7 +13,8 @@ import pinik
 from by_hand import rotation_from_rpy
 from judge import is_inside, plain_placement
 from pinik.viewer.protocol.setup import apply_setup, read_setup, write_setup
-from pinik.viewer.simulation.session import MOST_BALLS, STEPS_PER_SECOND, Session
+from pinik.viewer.simulation.balls import MOST_BALLS
+from pinik.viewer.simulation.session import STEPS_PER_SECOND, Session
 from robots import load_quietly
 from stand_ins import Clock, snapshot
 
@@ -159,7 +160,7 @@ def test_a_reset_is_the_beginning_again(arm):
     for one in (shown, fresh):
         one.set_motion("random")
     begin = snapshot(fresh)
-    shown.orient_ball(0, False, [1, 2, 3])
+    shown.balls[0].orient(False, [1, 2, 3])
     steps(shown, 100)
     assert snapshot(shown) != begin
     shown.reset()
@@ -179,8 +180,8 @@ def test_the_same_calls_give_the_same_configurations_to_the_last_bit():
         shown.set_mode(4, "on")
         shown.set_motion("random")
         steps(shown, 10)
-        shown.orient_ball(0, True, [0.1, 0.2, 0.3])
-        shown.set_limits(False)
+        shown.balls[0].orient(True, [0.1, 0.2, 0.3])
+        shown.change_settings(limits=False)
         steps(shown, 5)
         return [one.q.tobytes() for one in shown.instances], snapshot(shown)
 
@@ -265,8 +266,8 @@ def test_a_value_that_is_there_already_changes_nothing(arm):
         shown.set_method(index, one.solver.name)
         for name, value in one.solver.parameters.items():
             shown.set_parameter(index, name, value)
-    shown.set_limits(True)
-    shown.set_tolerance(*shown.settings.tolerance)
+    shown.change_settings(limits=True)
+    shown.change_settings(tolerance=shown.settings.tolerance)
     shown.set_motion("curve")
     shown.set_view(4)
     assert snapshot(shown) == before
@@ -286,15 +287,16 @@ def test_a_value_that_is_there_already_changes_nothing(arm):
         (lambda s: s.set_parameter(0, "stiffness", {"nope": 1.0}), "no joint 'nope'"),
         (lambda s: s.set_motion("dance"), "no motion 'dance'"),
         (lambda s: s.set_curve("line"), "no curve 'line'"),
-        (lambda s: s.set_tolerance(0.0, 1.0), "positive"),
         (lambda s: s.set_mode(0, "in"), "no mode 'in'"),
         (lambda s: s.set_mode(1, "on"), "from 0 to 0; got 1"),
         (lambda s: s.move_ball(0, [1, 2]), "3 finite numbers"),
         (lambda s: s.move_ball(-1, [1, 2, 3]), "from 0 to 0"),
-        (lambda s: s.orient_ball(0, True, [math.nan, 0, 0]), "3 finite numbers"),
+        (lambda s: s.balls[0].orient(True, [math.nan, 0, 0]), "3 finite numbers"),
+        (lambda s: s.balls[0].release("xyz"), "at least one axis, or for an orientation"),
+        (lambda s: s.balls[0].release("yx"), "letters of \"xyz\" in order; got 'yx'"),
         (lambda s: s.add_ball("tipp"), "did you mean 'tip'"),
         (lambda s: s.add_ball("tip"), "already has a ball"),
-        (lambda s: s.remove_ball(0), "the last ball cannot be removed"),
+        (lambda s: s.balls.remove(0), "the last ball cannot be removed"),
     ],
 )
 def test_what_cannot_be_is_said_in_words_and_changes_nothing(arm, call, fault):
@@ -314,13 +316,13 @@ def test_limits_keep_every_configuration_inside(arm):
     for _ in range(60):
         shown.step()
         assert all(is_inside(arm, one.q) for one in shown.instances)
-    shown.set_limits(False)
+    shown.change_settings(limits=False)
     outside = 0
     for _ in range(120):
         shown.step()
         outside += sum(not is_inside(arm, one.q) for one in shown.instances)
     assert outside > 0
-    shown.set_limits(True)
+    shown.change_settings(limits=True)
     shown.step()
     assert all(is_inside(arm, one.q) for one in shown.instances)
 
@@ -328,7 +330,7 @@ def test_limits_keep_every_configuration_inside(arm):
 def test_the_tolerance_is_what_counts_as_reached(arm):
     shown = session(arm, ["dls"])
     shown.apply_settings(shown.settings.__class__(until_reached=False, at_most=1))
-    shown.set_tolerance(0.05, 0.1)
+    shown.change_settings(tolerance=pinik.Tolerance(0.05, 0.1))
     shown.move_ball(0, ELSEWHERE)
     one = shown.instances[0]
     while one.status != "CONVERGED":
@@ -336,7 +338,7 @@ def test_the_tolerance_is_what_counts_as_reached(arm):
         assert (missed(arm, one.q, shown.balls[0]) <= 0.05) == (one.status == "CONVERGED")
     loose = missed(arm, one.q, shown.balls[0])
     assert loose > 1e-6
-    shown.set_tolerance(1e-6, 1e-3)
+    shown.change_settings(tolerance=pinik.Tolerance(1e-6, 1e-3))
     steps(shown, 50)
     assert missed(arm, one.q, shown.balls[0]) <= 1e-6
 
@@ -378,7 +380,7 @@ def test_random_balls_can_be_reached(arm):
 def test_an_orientation_is_reached_too(panda):
     shown = session(panda)
     shown.move_ball(0, [0.45, 0.2, 0.4])
-    shown.orient_ball(0, True, [3.0, 0.2, 0.5])
+    shown.balls[0].orient(True, [3.0, 0.2, 0.5])
     steps(shown, 150)
     wanted = rotation_from_rpy(3.0, 0.2, 0.5)
     reached = 0
@@ -392,7 +394,7 @@ def test_an_orientation_is_reached_too(panda):
             assert off <= 1.1e-3
             assert np.linalg.norm(at.translation - [0.45, 0.2, 0.4]) <= 1e-4
     assert reached >= 2
-    shown.orient_ball(0, False, [0, 0, 0])
+    shown.balls[0].orient(False, [0, 0, 0])
     shown.step()
     assert all(one.verdict().orientation_error is None for one in shown.seen)
 
@@ -461,7 +463,7 @@ def test_balls_come_and_go(lion):
     steps(shown, 10)
     assert missed(lion, shown.instances[0].q, shown.balls[6]) <= 1e-4
     for _ in range(6):
-        shown.remove_ball(0)
+        shown.balls.remove(0)
     assert [ball.frame for ball in shown.balls] == ["head"]
     shown.step()
     for frame in [name for name in lion.description.links if name != "head"][: MOST_BALLS - 1]:
@@ -544,8 +546,8 @@ def test_another_robot_keeps_the_settings_and_drops_joints_that_it_lacks(arm, pa
     shown.set_motion("random")
     shown.set_curve("knot")
     shown.motion.speed = 2.5
-    shown.set_limits(False)
-    shown.set_tolerance(1e-3, 1e-2)
+    shown.change_settings(limits=False)
+    shown.change_settings(tolerance=pinik.Tolerance(1e-3, 1e-2))
     shown.running = True
     steps(shown, 3)
     other = shown.with_robot(panda)

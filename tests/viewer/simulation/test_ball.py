@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 
 import pinik
 from by_hand import homogeneous, random_placement, rotation_about, rotation_from_rpy
-from pinik.viewer.simulation.balls import Ball
+from pinik.viewer.simulation.ball import Ball
 
 ANGLES = st.tuples(*[st.floats(-3.1, 3.1)] * 3)
 
