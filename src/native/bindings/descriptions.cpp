@@ -116,6 +116,8 @@ void register_constants(nb::module_& m) {
       .def_rw("exact_part_of_chain", &Constants::exact_part_of_chain)
       .def_rw("to_the_end", &Constants::to_the_end)
       .def_rw("restarts_when_unreachable", &Constants::restarts_when_unreachable)
+      .def_rw("same_answer", &Constants::same_answer)
+      .def_rw("nothing_new_share", &Constants::nothing_new_share)
       .def_rw("table_size", &Constants::table_size)
       .def_rw("table_nearest", &Constants::table_nearest)
       .def_rw("table_key", &Constants::table_key);

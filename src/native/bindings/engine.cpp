@@ -76,15 +76,16 @@ std::optional<Answer> solve_at(Engine& engine, nb::handle place, nb::handle star
   return solve(engine, std::move(q), {*goal}, nearest);
 }
 
-// For each problem: q, status, the largest position and orientation error, iterations, joint updates, restarts, seconds.
+// For each problem: q, status, the largest position and orientation error, iterations, joint updates, restarts, distinct
+// answers, seconds.
 struct Columns {
   std::vector<double> q, position, orientation, seconds;
   std::vector<int> status;
-  std::vector<std::int64_t> iterations, updates, restarts;
+  std::vector<std::int64_t> iterations, updates, restarts, chosen_from;
 
   Columns(std::size_t count, std::size_t nq)
       : q(count * nq), position(count), orientation(count), seconds(count), status(count), iterations(count),
-        updates(count), restarts(count) {}
+        updates(count), restarts(count), chosen_from(count) {}
 
   void put(std::uint64_t i, const Answer& answer) {
     Eigen::Map<Vector>(q.data() + i * static_cast<std::size_t>(answer.q.size()), answer.q.size()) = answer.q;
@@ -99,6 +100,7 @@ struct Columns {
     iterations[i] = answer.iterations;
     updates[i] = answer.joint_updates;
     restarts[i] = answer.restarts;
+    chosen_from[i] = answer.chosen_from;
     seconds[i] = answer.seconds;
   }
 
@@ -106,7 +108,8 @@ struct Columns {
     return nb::make_tuple(as_array(std::move(q), {count, nq}), as_array(std::move(status), {count}),
                           as_array(std::move(position), {count}), as_array(std::move(orientation), {count}),
                           as_array(std::move(iterations), {count}), as_array(std::move(updates), {count}),
-                          as_array(std::move(restarts), {count}), as_array(std::move(seconds), {count}));
+                          as_array(std::move(restarts), {count}), as_array(std::move(chosen_from), {count}),
+                          as_array(std::move(seconds), {count}));
   }
 };
 
@@ -158,7 +161,7 @@ void register_engine(nb::module_& m) {
            nb::sig("def solve_many(self, starts: NDArray[numpy.float64], goals: NDArray[numpy.float64], "
                    "nearest: bool, threads: int) -> tuple[NDArray[numpy.float64], NDArray[numpy.int32], "
                    "NDArray[numpy.float64], NDArray[numpy.float64], NDArray[numpy.int64], NDArray[numpy.int64], "
-                   "NDArray[numpy.int64], NDArray[numpy.float64]]"));
+                   "NDArray[numpy.int64], NDArray[numpy.int64], NDArray[numpy.float64]]"));
 }
 
 }  // namespace pinik

@@ -4,6 +4,7 @@
 #include <atomic>
 #include <chrono>
 
+#include "choice.hpp"
 #include "outcome.hpp"
 #include "run.hpp"
 #include "settings.hpp"
@@ -30,8 +31,9 @@ class Attempts {
         run_(settings_.solver, kinematics_),
         limits_(Limits::of(*problem.mechanism, settings.limits, problem.constants.barely_outside)),
         loose_(limits_.loosened()),
-        starts_(problem, limits_, settings.seed) {
+        choice_(problem, limits_, settings.choose_weights), starts_(problem, limits_, settings.seed) {
     kinematics_.target_jacobian = settings.solver.target_jacobian;
+    for (const Joint& joint : problem.mechanism->joints) has_circles_ = has_circles_ || joint.nq == 2;
   }
 
   // Solve from `start`, which is put inside the limits, or with `nearest` from the best start in the table, where `start`
@@ -59,6 +61,7 @@ class Attempts {
       outcome_.status = attempt_and_restart(start);
     }
     limits_.wrap(outcome_.q, given_);
+    if (has_circles_) outcome_.start = given_;
     return std::move(outcome_);
   }
 
@@ -75,7 +78,9 @@ class Attempts {
   std::int64_t first_number_ = 0;  // 1 if the first attempt begins at the first of starts_
   Clock::time_point began_, paused_;
   std::int64_t states_seen_ = 0;
+  Choice choice_;
   Starts<Rows> starts_;
+  bool has_circles_ = false;
   Vector given_, drawn_;
   Linearization<Rows> inside_;
 
@@ -83,12 +88,27 @@ class Attempts {
     const bool proved = outcome_.proof.has_value();
     std::int64_t most = starts_.draws() ? settings_.restarts : 0;
     if (proved) most = std::min<std::int64_t>(most, problem_.constants.restarts_when_unreachable);
+    const auto patience =
+        static_cast<std::int64_t>(std::ceil(problem_.constants.nothing_new_share * static_cast<double>(most)));
+    choice_.begin();
+    Status status = Status::running;
     for (std::int64_t number = 0; number <= most; ++number) {
       outcome_.restarts = number;
-      const Status status =
+      status =
           attempt(start_of(number, start), settings_.patience, settings_.max_iterations, !proved, proved, number);
-      if (status == Status::converged || status == Status::time_limit) return status;
+      if (status == Status::time_limit || (status == Status::converged && !settings_.choose_nearest)) break;
+      if (status == Status::converged)
+        choice_.add(outcome_.q, given_);
+      else
+        choice_.add_nothing();
+      if (choice_.count() > 0 && choice_.since() >= patience) break;
     }
+    if (choice_.count() > 0) {
+      outcome_.q = choice_.nearest(given_);
+      outcome_.chosen_from = choice_.count();
+      return Status::converged;
+    }
+    if (status == Status::converged || status == Status::time_limit) return status;
     const Vector best = outcome_.q;
     return attempt(best, problem_.constants.to_the_end, settings_.iterations_to_the_end, false, true,
                    outcome_.restarts + 1);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <vector>
 
 #include "../problem/constants.hpp"
 #include "../problem/targets.hpp"
@@ -20,6 +21,8 @@ struct Settings {
   Tolerance tolerance;
   double time_limit = infinity;  // [s]
   bool trace = false;
+  bool choose_nearest = false;  // of all distinct answers; otherwise the first one is taken
+  std::vector<double> choose_weights;  // for each coordinate, a factor on its change
   bool polish = true;  // whether a run goes on once it has reached the targets
 };
 

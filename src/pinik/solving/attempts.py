@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from ..problem.kinematics import Kinematics
 from ..problem.reach import Shortfall, shortfall
 from ..problem.targets import Target, TargetError
+from .choice import NOTHING_NEW_SHARE, Choice
 from .question import Question
 from .run import TO_THE_END, Pace, run
 from .starts import Starts
@@ -33,9 +34,12 @@ class Outcome(NamedTuple):
     Attributes:
         status: The verdict on `q`.
         q: The best configuration (nq,), inside the limits.
+        start: The start (nq,), moved inside the limits; the compiled engine leaves it empty if no joint of the robot is
+            (cos, sin) in q.
         errors: The error of each target at `q`, by plain forward kinematics.
         iterations, joint_updates: Totals over all attempts.
         restarts: The number of restarts used.
+        chosen_from: The number of distinct answers that `q` was chosen from.
         proof: The proof that a target is out of reach, if there is one.
         states: Every state of every attempt, if a trace was requested.
         targets: The targets.
@@ -45,10 +49,12 @@ class Outcome(NamedTuple):
 
     status: Status
     q: Array
+    start: Array
     errors: tuple[TargetError, ...]
     iterations: int
     joint_updates: int
     restarts: int
+    chosen_from: int
     proof: Shortfall | None
     states: tuple[State, ...]
     targets: tuple[Target, ...]
@@ -67,6 +73,7 @@ class Outcomes:
     iterations: NDArray[np.int64]
     joint_updates: NDArray[np.int64]
     restarts: NDArray[np.int64]
+    chosen_from: NDArray[np.int64]
     time: Array
 
 
@@ -121,6 +128,7 @@ class _Search:
         iterations, joint_updates: Totals over the attempts so far.
         restarts: The number of restarts so far.
         best: The state inside the limits with the smallest residual so far.
+        choice: The answers so far, for `choose="nearest"`.
         states: Every state so far, if a trace was requested.
     """
 
@@ -133,6 +141,7 @@ class _Search:
         self.joint_updates = 0
         self.restarts = 0
         self.best: State | None = None
+        self.choice = Choice(self.question, start)
         self.states: list[State] = []
 
     def outcome(self) -> Outcome:
@@ -156,9 +165,18 @@ class _Search:
         pace = Pace(options.iterations_at_most, options.method.patience, bold=proof is None, downhill=proof is not None)
         for self.restarts in range(most + 1):
             status = self._attempt(self._start(), pace._replace(attempt=self.restarts))
-            if status in (Status.CONVERGED, Status.TIME_LIMIT):
-                return status
+            if status is Status.TIME_LIMIT or (status is Status.CONVERGED and options.choose == "first"):
+                break
+            assert self.best is not None
+            self.choice.add(self.best.q if status is Status.CONVERGED else None)
+            if self.choice.found and self.choice.since >= math.ceil(NOTHING_NEW_SHARE * most):
+                break
         assert self.best is not None
+        if self.choice.found:
+            self.best = self.best._replace(q=self.choice.nearest)
+            return Status.CONVERGED
+        if status in (Status.CONVERGED, Status.TIME_LIMIT):
+            return status
         last = Pace(options.iterations_to_the_end, TO_THE_END, downhill=True, attempt=self.restarts + 1)
         return self._attempt(self.best.q, last)
 
@@ -199,6 +217,6 @@ class _Search:
         q, targets = self.question.limits.wrap(self.best.q, self.given), self.kinematics.targets
         status, errors, proof = judge(self.question, targets, q, ended)
         return Outcome(
-            status, q, errors, self.iterations, self.joint_updates, self.restarts, proof, tuple(self.states), targets,
-            time.perf_counter() - self.began,
+            status, q, self.given, errors, self.iterations, self.joint_updates, self.restarts,
+            max(1, len(self.choice.found)), proof, tuple(self.states), targets, time.perf_counter() - self.began,
         )  # fmt: skip

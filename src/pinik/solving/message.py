@@ -15,7 +15,9 @@ from .verdict import Verdict
 __all__ = ["explain"]
 
 
-def explain(question: Question, targets: Sequence[Target], verdict: Verdict, active: Mapping[str, str]) -> str:
+def explain(
+    question: Question, targets: Sequence[Target], verdict: Verdict, active: Mapping[str, str], chosen_from: int = 1
+) -> str:
     """Explain why the solve ended, which errors remain, and which joints are at their limits.
 
     Args:
@@ -23,13 +25,15 @@ def explain(question: Question, targets: Sequence[Target], verdict: Verdict, act
         targets: The targets.
         verdict: The verdict on the answer.
         active: Joint name → "lower", "upper" or "both", for the joints at a limit.
+        chosen_from: The number of distinct answers that this one was chosen from.
     """
     status, errors, proof = verdict
     if status is Status.CONVERGED:
         position, orientation = largest_of(errors)
         words = [] if position is None else [_length(position)]
         words += [] if orientation is None else [_angle(orientation)]
-        return f"converged, {' and '.join(words)} off"
+        chosen = f"; the nearest of {chosen_from} answers" if chosen_from > 1 else ""
+        return f"converged, {' and '.join(words)} off{chosen}"
     tolerance = question.options.tolerance
     missed = _missed(targets, errors, tolerance)
     if not question.problem.free.any():
@@ -120,4 +124,6 @@ def _angle(radians: float) -> str:
     degrees = math.degrees(radians)
     if degrees >= 10.0:
         return f"{degrees:.0f}°"
-    return f"{degrees:.2g}°" if degrees >= 0.001 else f"{degrees:.4f}°"
+    if degrees >= 0.001:
+        return f"{degrees:.2g}°"
+    return f"{degrees:.4f}°" if degrees >= 0.00005 else "less than 0.0001°"

@@ -17,7 +17,7 @@ from ...solvers.transpose import JacobianTranspose
 
 __all__ = ["ABI", "METHODS", "load", "why_not"]
 
-ABI = "c18a3550357a7ce4"
+ABI = "b8d720082fffdf9d"
 """The digest of the module's stub, which identifies its signatures; the module contains the same digest
 (src/native/bindings/abi.hpp)."""
 
