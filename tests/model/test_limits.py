@@ -101,6 +101,11 @@ class TestWrap:
         for k in range(len(q)):
             assert (wrapped[k] == limits.wrap(q[k], near[k])).all()
 
+    def test_of_a_robot_without_joints_is_empty(self):
+        limits = Limits.of(load_quietly(robot(link("a"))))
+        assert limits.wrap(np.zeros(0), np.zeros(0)).shape == (0,)
+        assert limits.wrap(np.zeros((3, 0))).shape == (3, 0)
+
     @given(seed=st.integers(0, 2**32 - 1))
     def test_leaves_what_is_inside_to_the_last_bit_and_turns_what_can_turn(self, seed):
         loaded = load_quietly(HINGES_AND_A_SLIDE)

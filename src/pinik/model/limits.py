@@ -85,9 +85,8 @@ class Limits:
         """
         near = q if near is None else near
         inside = self.clip(q)
-        entry = np.flatnonzero(
-            self.turning & ((np.abs(q - near) > math.pi) | (inside != q)).reshape(-1, q.shape[-1]).any(0)
-        )
+        moved = (np.abs(q - near) > math.pi) | (inside != q)
+        entry = np.flatnonzero(self.turning & moved.any(axis=tuple(range(q.ndim - 1))))
         if entry.size:
             inside[..., entry] = self._turned(q[..., entry], near[..., entry], self.lower[entry], self.upper[entry])
         return inside
