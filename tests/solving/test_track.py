@@ -271,7 +271,10 @@ def test_a_moving_reference_several_targets_and_axes_are_followed(lion):
     nose = lion.placement("nose", standing).translation
     paw = lion.placement("left_fore_paw", standing).translation
     points = [
-        [Target("left_fore_paw", paw + np.array([0.0, 0.0, z])), Target("nose", axis="x", at=nose + np.array([1.0, 3.0 * z, 0.0]))]
+        [
+            Target("left_fore_paw", paw + np.array([0.0, 0.0, z])),
+            Target("nose", axis="x", at=nose + np.array([1.0, 3.0 * z, 0.0])),
+        ]
         for z in np.linspace(0.0, 0.1, 15)
     ]
     track = pinik.track(lion, points, q0=standing)

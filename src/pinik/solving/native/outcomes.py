@@ -52,10 +52,10 @@ def attempt_many(engine: Engine, goals: Array, starts: Array, nearest: bool, thr
 def follow(engine: Engine, goals: Array, start: Array, on_miss: str) -> Outcomes:
     """Follow a path of goals (N, n, 18) from a start (nq,); fewer than N outcomes if the path stops at a miss."""
     module = load()
-    q, status, position, orientation, iterations, updates, restarts, seconds = module.Track(engine).follow(
+    q, status, position, orientation, iterations, updates, restarts, chosen_from, seconds = module.Track(engine).follow(
         start, goals, module.OnMiss[on_miss]
     )
-    return Outcomes(q, _numbered()[status], position, orientation, iterations, updates, restarts, seconds)
+    return Outcomes(q, _numbered()[status], position, orientation, iterations, updates, restarts, chosen_from, seconds)
 
 
 class NativeOutcome:
