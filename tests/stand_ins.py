@@ -29,6 +29,7 @@ GOOD = {
         {"instance": "index", "name": "name", "value": "value"},
     ),
     "limits": ({"on": False}, {"on": "truth"}),
+    "polish": ({"on": True}, {"on": "truth"}),
     "motion": ({"motion": "random"}, {"motion": "name"}),
     "curve": ({"curve": "knot"}, {"curve": "name"}),
     "speed": ({"value": 2.5}, {"value": "number"}),

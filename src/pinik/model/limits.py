@@ -18,7 +18,7 @@ Array = NDArray[np.float64]
 _AT_LIMIT = 1e-6  # [rad or m]: a joint nearer to its limit than this is at its limit
 _TURN = 2.0 * math.pi
 
-BARELY_OUTSIDE = 0.1
+BARELY_OUTSIDE = 0.02
 """The largest distance beyond a limit [rad] from which a hinge goes back to that limit, instead of making a turn."""
 
 

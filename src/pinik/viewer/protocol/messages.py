@@ -183,6 +183,7 @@ _MESSAGES: dict[str, tuple[dict[str, Check], Callable[..., None]]] = {
         lambda s, instance, name, value: s.set_parameter(instance, name, value),
     ),
     "limits": ({"on": _truth}, Session.set_limits),
+    "polish": ({"on": _truth}, Session.set_polish),
     "motion": ({"motion": text}, lambda s, motion: s.set_motion(motion)),
     "curve": ({"curve": text}, lambda s, curve: s.set_curve(curve)),
     "speed": ({"value": _in_range("speed")}, _set_speed),

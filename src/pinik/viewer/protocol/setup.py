@@ -19,7 +19,7 @@ __all__ = ["Setup", "apply_setup", "read_setup", "write_setup"]
 Setup = dict[str, str]
 _LONGEST = 20_000
 _JSON_NAMES = {list: "array", dict: "object"}
-_KEYS = ("robot", "root", "view", "methods", "parameters", "motion", "curve", "speed", "limits", "iterations",
+_KEYS = ("robot", "root", "view", "methods", "parameters", "motion", "curve", "speed", "limits", "polish", "iterations",
          "tolerance", "balls", "run")  # fmt: skip
 
 
@@ -42,6 +42,8 @@ def write_setup(session: Session) -> str:
         setup["speed"] = _short(motion.speed)
     if settings.limits != default.limits:
         setup["limits"] = "off"
+    if settings.polish != default.polish:
+        setup["polish"] = "on"
     if not settings.until_reached:
         setup["iterations"] = str(settings.at_most)
     if settings.tolerance != default.tolerance:
@@ -125,6 +127,7 @@ def _messages(session: Session, setup: Setup) -> Iterator[dict[str, Any]]:
                 yield {"type": "parameter", "instance": index, "name": name, "value": value}
     settings = session.settings
     yield {"type": "limits", "on": _on("limits", setup.get("limits", "on"))}
+    yield {"type": "polish", "on": _on("polish", setup.get("polish", "off"))}
     yield {
         "type": "iterations",
         "until_reached": "iterations" not in setup,

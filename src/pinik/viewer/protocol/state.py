@@ -56,6 +56,7 @@ def session_state(session: Session) -> dict[str, Any]:
         "curve": motion.curve,
         "speed": motion.speed,
         "limits": settings.limits,
+        "polish": settings.polish,
         "iterations": {"until_reached": settings.until_reached, "at_most": settings.at_most},
         "tolerance": settings.tolerance._asdict(),
         "step": session.steps,

@@ -218,6 +218,10 @@ class Session:
         """Joint limits on or off."""
         self.apply_settings(dataclasses.replace(self.settings, limits=on))
 
+    def set_polish(self, on: bool) -> None:
+        """Whether methods that converge quadratically go on within the tolerance."""
+        self.apply_settings(dataclasses.replace(self.settings, polish=on))
+
     def set_tolerance(self, position: float, orientation: float) -> None:
         """What counts as reached [m], [rad]."""
         self.apply_settings(dataclasses.replace(self.settings, tolerance=Tolerance.of((position, orientation))))
