@@ -20,6 +20,7 @@ from ..solvers.ccd import CCD
 from ..solvers.registry import Method
 from .attempts import Outcomes
 from .jumps import Excess, Jump, find_excesses, find_jumps
+from .kept import kept_of
 from .native.codec import targets_of
 from .native.outcomes import follow
 from .options import OPTION_NAMES, Options
@@ -108,7 +109,7 @@ def track(
         raise InputError("a path must have at least one point; got none")
     when = None if times is None else check_times(times, len(goals))
     start = robot.neutral() if q0 is None else robot.check_configuration(q0, "q0")
-    prepared = Prepared(robot, pattern, careful(options))
+    prepared = kept_of(robot).prepared(robot, pattern, careful(options))
     native = prepared.native
     outcomes = _follow(prepared, goals, start, on_miss) if native is None else follow(native, goals, start, on_miss)
     angles = _unwound(robot, start, outcomes.q)
