@@ -150,7 +150,7 @@ def test_both_engines_tick_alike_with_a_free_root_and_several_targets():
     robot = load_quietly("lion", root="free_flyer")
     q = robot.poses["relaxed"]
     targets = [
-        Target("nose", robot.placement("nose", q).translation + [0.3, 0.1, 0.0]),
+        Target("nose", robot.placement("nose", q).translation + np.array([0.3, 0.1, 0.0])),
         Target("left_fore_paw", robot.placement("left_fore_paw", q).translation),
     ]
     ways = [

@@ -19,7 +19,17 @@ from robots import load_quietly
 EXAMPLES = Path(__file__).parents[3] / "examples"
 CIRCLE = EXAMPLES / "circle.csv"
 PANDA = ("track", "panda", CIRCLE, "--frame", "panda_hand_tcp", "--pose", "default")
-JUMP = ("track", "two_link", EXAMPLES / "jump.csv", "--frame", "tip", "--start", "joint1=-2.64", "--start", "joint2=1.5")
+JUMP = (
+    "track",
+    "two_link",
+    EXAMPLES / "jump.csv",
+    "--frame",
+    "tip",
+    "--start",
+    "joint1=-2.64",
+    "--start",
+    "joint2=1.5",
+)
 
 
 def table(text):
@@ -104,7 +114,9 @@ def test_json_lines_are_read_and_written(run, tmp_path):
 
 
 def test_bare_positions_and_placements_are_places_for_the_frame(run):
-    result = run("track", "two_link", "-", "--frame", "tip", "--start", "joint2=1", stdin="[0.5, 0.2, 0]\n[0.52, 0.2, 0]\n")
+    result = run(
+        "track", "two_link", "-", "--frame", "tip", "--start", "joint2=1", stdin="[0.5, 0.2, 0]\n[0.52, 0.2, 0]\n"
+    )
     assert result.status == 0
     assert len(table(result.out)[1]) == 2
 
