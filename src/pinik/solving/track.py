@@ -21,6 +21,7 @@ from ..solvers.ccd import CCD
 from ..solvers.registry import Method
 from .attempts import Outcomes
 from .jumps import Excess, Jump, find_excesses, find_jumps
+from .kept import kept_of
 from .native.codec import targets_of
 from .native.outcomes import follow
 from .options import OPTION_NAMES, Options
@@ -121,7 +122,7 @@ def track(
         raise InputError("a path must have at least one point; got none")
     when = None if times is None else check_times(times, len(goals))
     origin = Origin.of(robot, q0)
-    prepared = Prepared(robot, pattern, careful(options))
+    prepared = kept_of(robot).prepared(robot, pattern, careful(options))
     native = prepared.native
     if native is None:
         outcomes = _follow(prepared, goals, origin.q, on_miss)
