@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -87,7 +87,7 @@ class Robot(RobotModel):
         relative_to: str | None = None,
         weight: float = UNWEIGHTED,
         method: Method = "dls",
-        q0: ArrayLike | str | None = None,
+        q0: ArrayLike | Mapping[str, float] | str | None = None,
         limits: bool = True,
         locked: Iterable[str] = (),
         restarts: int | None = None,
@@ -98,6 +98,8 @@ class Robot(RobotModel):
         engine: str = "auto",
         trace: bool = False,
         polish: bool = True,
+        choose: str = "first",
+        choose_weights: Mapping[str, float] | None = None,
         **solver_parameters: Any,
     ) -> Solution:
         """Find joint values that move frames of the robot to their targets.
@@ -108,5 +110,8 @@ class Robot(RobotModel):
         wanted = (
             position, rotation, rpy, quat_xyzw, quat_wxyz, placement, axis, direction, at, tool, relative_to, weight,
         )  # fmt: skip
-        given = (limits, locked, restarts, seed, max_iterations, tolerance, time_limit, engine, trace, polish)
+        given = (
+            limits, locked, restarts, seed, max_iterations, tolerance, time_limit, engine, trace, polish, choose,
+            choose_weights,
+        )  # fmt: skip
         return answer(self, targets, method, wanted, q0, given, solver_parameters)

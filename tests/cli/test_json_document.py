@@ -15,6 +15,7 @@ import pinik
 
 ROOT = Path(__file__).parents[2]
 DOCUMENT = ROOT / "docs" / "json.md"
+JUMP = ROOT / "examples" / "jump.csv"
 PLACEHOLDERS = {
     "angles": "JOINT",
     "joint_placements": "JOINT",
@@ -37,18 +38,7 @@ RUNS = {
         ("solve", "arm", "--frame", "tip", "--position", "0", "0", "9", "--method", "ccd", "--json"),
     ],
     "track": [
-        (
-            "track",
-            "two_link",
-            ROOT / "examples" / "jump.csv",
-            "--frame",
-            "tip",
-            "--start",
-            "joint1=-2.64",
-            "--start",
-            "joint2=1.5",
-            "--json",
-        ),
+        ("track", "two_link", JUMP, "--frame", "tip", "--start", "joint1=-2.64", "--start", "joint2=1.5", "--json"),
     ],
     "fk": [("fk", "panda", "--root", "free_flyer", "--json")],
     "jacobian": [("jacobian", "panda", "--frame", "panda_hand", "--root", "free_flyer", "--json")],

@@ -18,7 +18,7 @@ FRONTS = {
     "solve": (pinik.solve, OPTION_NAMES, OF_A_TARGET),
     "Robot.solve": (pinik.Robot.solve, OPTION_NAMES, OF_A_TARGET),
     "prepare": (pinik.prepare, OPTION_NAMES, OF_A_TARGET),
-    "iterate": (pinik.iterate, ("limits", "locked", "max_iterations", "tolerance"), OF_A_TARGET),
+    "iterate": (pinik.iterate, ("limits", "locked", "max_iterations", "tolerance", "polish"), OF_A_TARGET),
     "solve_many": (
         pinik.solve_many,
         tuple(name for name in OPTION_NAMES if name != "trace"),
@@ -54,6 +54,9 @@ WRONG = {
     "time_limit": 0.0,
     "engine": "gpu",
     "trace": 1,
+    "polish": "fine",
+    "choose": "best",
+    "choose_weights": 2.0,
 }
 
 
@@ -65,7 +68,7 @@ def test_every_front_checks_every_option(front, arm):
     for name in options:
         arguments = ("tip", places) if front == "solve_many" else ("tip",)
         keywords = {} if front == "solve_many" else {"position": [0.2, 0.1, 0.9]}
-        with pytest.raises((InputError, UnknownNameError), match=rf"{name}|no engine 'gpu'"):
+        with pytest.raises((InputError, UnknownNameError), match=rf"{name}|no engine 'gpu'|no choice 'best'"):
             function(arm, *arguments, **keywords, **{name: WRONG[name]})
 
 

@@ -88,7 +88,8 @@ def test_polishing_ends_at_the_last_iteration(engine, panda):
 def test_targets_that_contradict_each_other_within_tolerance_still_converge(engine, panda):
     q0 = panda.random(6)
     place = panda.placement(TIP, q0).translation
-    targets = [Target(TIP, place + np.array([0, 0, 5e-5])), Target(TIP, place - np.array([0, 0, 5e-5]))]
+    apart = np.array([0.0, 0.0, 5e-5])
+    targets = [Target(TIP, place + apart), Target(TIP, place - apart)]
     s = pinik.solve(panda, targets, q0=panda.random(7), engine=engine, tolerance=(1e-4, 1e-3))
     assert s.success
     assert all(error.position <= 1e-4 for error in s.errors)

@@ -59,12 +59,15 @@ void register_answers(nb::module_& m) {
       .def_ro("status", &Answer::status)
       .def_prop_ro("q", [](const Answer& a) { return as_array(a.q); },
                    nb::sig("def q(self) -> NDArray[numpy.float64]"))
+      .def_prop_ro("start", [](const Answer& a) { return as_array(a.start); },
+                   nb::sig("def start(self) -> NDArray[numpy.float64]"))
       .def_prop_ro("errors", [](const Answer& a) { return as_tuple(a.errors); },
                    nb::sig("def errors(self) -> tuple[tuple[float | None, float | None, "
                            "tuple[float, float, float] | None], ...]"))
       .def_ro("iterations", &Answer::iterations)
       .def_ro("joint_updates", &Answer::joint_updates)
       .def_ro("restarts", &Answer::restarts)
+      .def_ro("chosen_from", &Answer::chosen_from)
       .def_ro("seconds", &Answer::seconds)
       .def_prop_ro("goals", &goals_of, nb::sig("def goals(self) -> list[NDArray[numpy.float64]]"))
       .def_prop_ro("proof", &proof_of, nb::sig("def proof(self) -> tuple[int, float, float, bool] | None"))

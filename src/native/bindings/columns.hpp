@@ -11,21 +11,22 @@
 
 namespace pinik {
 
-// For each problem: q, status, the largest position and orientation error, iterations, joint updates, restarts, seconds.
+// For each problem: q, status, the largest position and orientation error, iterations, joint updates, restarts, distinct
+// answers, seconds.
 struct Columns {
   std::vector<double> q, position, orientation, seconds;
   std::vector<int> status;
-  std::vector<std::int64_t> iterations, updates, restarts;
+  std::vector<std::int64_t> iterations, updates, restarts, chosen_from;
 
   Columns(std::size_t count, std::size_t nq)
       : q(count * nq), position(count), orientation(count), seconds(count), status(count), iterations(count),
-        updates(count), restarts(count) {}
+        updates(count), restarts(count), chosen_from(count) {}
 
   // Leave only the first `count` problems.
   void shorten(std::size_t count, std::size_t nq) {
     q.resize(count * nq);
     for (std::vector<double>* column : {&position, &orientation, &seconds}) column->resize(count);
-    for (std::vector<std::int64_t>* column : {&iterations, &updates, &restarts}) column->resize(count);
+    for (std::vector<std::int64_t>* column : {&iterations, &updates, &restarts, &chosen_from}) column->resize(count);
     status.resize(count);
   }
 
@@ -42,6 +43,7 @@ struct Columns {
     iterations[i] = answer.iterations;
     updates[i] = answer.joint_updates;
     restarts[i] = answer.restarts;
+    chosen_from[i] = answer.chosen_from;
     seconds[i] = answer.seconds;
   }
 
@@ -49,7 +51,8 @@ struct Columns {
     return nb::make_tuple(as_array(std::move(q), {count, nq}), as_array(std::move(status), {count}),
                           as_array(std::move(position), {count}), as_array(std::move(orientation), {count}),
                           as_array(std::move(iterations), {count}), as_array(std::move(updates), {count}),
-                          as_array(std::move(restarts), {count}), as_array(std::move(seconds), {count}));
+                          as_array(std::move(restarts), {count}), as_array(std::move(chosen_from), {count}),
+                          as_array(std::move(seconds), {count}));
   }
 };
 

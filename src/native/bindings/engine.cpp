@@ -97,7 +97,7 @@ void register_engine(nb::module_& m) {
            nb::sig("def solve_many(self, starts: NDArray[numpy.float64], goals: NDArray[numpy.float64], "
                    "nearest: bool, threads: int) -> tuple[NDArray[numpy.float64], NDArray[numpy.int32], "
                    "NDArray[numpy.float64], NDArray[numpy.float64], NDArray[numpy.int64], NDArray[numpy.int64], "
-                   "NDArray[numpy.int64], NDArray[numpy.float64]]"));
+                   "NDArray[numpy.int64], NDArray[numpy.int64], NDArray[numpy.float64]]"));
 }
 
 }  // namespace pinik

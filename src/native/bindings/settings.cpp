@@ -51,6 +51,8 @@ void register_settings(nb::module_& m) {
       .def_rw("iterations_to_the_end", &Settings::iterations_to_the_end)
       .def_rw("time_limit", &Settings::time_limit)
       .def_rw("trace", &Settings::trace)
+      .def_rw("choose_nearest", &Settings::choose_nearest)
+      .def_rw("choose_weights", &Settings::choose_weights)
       .def_rw("polish", &Settings::polish);
 }
 

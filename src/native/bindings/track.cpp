@@ -94,7 +94,7 @@ void register_track(nb::module_& m) {
            nb::sig("def follow(self, start: NDArray[numpy.float64], goals: NDArray[numpy.float64], on_miss: OnMiss) -> "
                    "tuple[NDArray[numpy.float64], NDArray[numpy.int32], NDArray[numpy.float64], "
                    "NDArray[numpy.float64], NDArray[numpy.int64], NDArray[numpy.int64], NDArray[numpy.int64], "
-                   "NDArray[numpy.float64]]"))
+                   "NDArray[numpy.int64], NDArray[numpy.float64]]"))
       .def("tick", &tick, "start"_a, "most"_a, "goals"_a,
            nb::sig("def tick(self, start: NDArray[numpy.float64], most: NDArray[numpy.float64], "
                    "goals: NDArray[numpy.float64]) -> tuple[NDArray[numpy.float64], bool, bool, float, float]"))

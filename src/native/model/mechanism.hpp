@@ -40,6 +40,9 @@ void integrate_free(JointKind kind, double* own, const double* step);
 // Write the entries of a floating or planar joint at a part of the way between two placements into `own`.
 void interpolate_free(JointKind kind, const double* from, const double* to, double part, double* own);
 
+// Write the tangent step of a floating or planar joint from one placement to another into `step`.
+void difference_free(JointKind kind, const double* from, const double* to, double* step);
+
 // The joints of a robot, in the order of Pinocchio's model.
 class Mechanism {
  public:
@@ -88,6 +91,17 @@ class Mechanism {
     } else {
       integrate_free(joint.kind, own, step);
     }
+  }
+
+  // Write the tangent step of one joint from configuration a to b into `step`.
+  void difference(const Joint& joint, const double* a, const double* b, double* step) const {
+    const double *from = a + joint.idx_q, *to = b + joint.idx_q;
+    if (joint.nq == 1)
+      step[0] = to[0] - from[0];
+    else if (joint.nq == 2)
+      step[0] = std::atan2(from[0] * to[1] - from[1] * to[0], from[0] * to[0] + from[1] * to[1]);
+    else
+      difference_free(joint.kind, from, to, step);
   }
 
   // Scale (cos, sin) pairs and quaternions to unit length. Returns false if a squared length differs from 1 by more than

@@ -40,6 +40,9 @@ struct Constants {
   double exact_part_of_chain = not_given;
   Patience to_the_end;
   int restarts_when_unreachable = 0;
+  int exact_attempts = 0;
+  double same_answer = not_given;
+  double nothing_new_share = not_given;
   int table_size = 0;
   int table_nearest = 0;
   std::uint64_t table_key = 0;

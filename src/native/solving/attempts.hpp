@@ -1,6 +1,7 @@
 // The attempts of one solve: restarts, and the best state so far; follows pinik.solving.attempts.
 #pragma once
 
+#include "choice.hpp"
 #include "outcome.hpp"
 #include "run.hpp"
 #include "settings.hpp"
@@ -18,8 +19,9 @@ class Attempts {
         run_(settings_.solver, kinematics_),
         limits_(Limits::of(*problem.mechanism, settings.limits, problem.constants.barely_outside)),
         loose_(limits_.loosened()),
-        starts_(problem, limits_, settings.seed) {
+        choice_(problem, limits_, settings.choose_weights), starts_(problem, limits_, settings.seed) {
     kinematics_.target_jacobian = settings.solver.target_jacobian;
+    for (const Joint& joint : problem.mechanism->joints) has_circles_ = has_circles_ || joint.nq == 2;
   }
 
   // Solve from `start`, which is put inside the limits, or with `nearest` from the best start in the table, where `start`
@@ -33,6 +35,7 @@ class Attempts {
     given_ = start;
     target_ = target;
     first_number_ = nearest ? 1 : 0;
+    loosens_ = true;
     outcome_.q = start;
     outcome_.proof = shortfall(problem_, settings_.limits);
     if (problem_.coordinates.empty()) {
@@ -45,6 +48,7 @@ class Attempts {
       outcome_.status = attempt_and_restart(start);
     }
     limits_.wrap(outcome_.q, given_);
+    if (has_circles_) outcome_.start = given_;
     return std::move(outcome_);
   }
 
@@ -59,7 +63,9 @@ class Attempts {
   double least_miss_ = infinity;  // of outcome_.q
   std::uint64_t target_ = 0;
   std::int64_t first_number_ = 0;  // 1 if the first attempt begins at the first of starts_
+  Choice choice_;
   Starts<Rows> starts_;
+  bool has_circles_ = false, loosens_ = true;
   Vector given_, drawn_;
   Linearization<Rows> inside_;
 
@@ -67,12 +73,32 @@ class Attempts {
     const bool proved = outcome_.proof.has_value();
     std::int64_t most = starts_.draws() ? settings_.restarts : 0;
     if (proved) most = std::min<std::int64_t>(most, problem_.constants.restarts_when_unreachable);
+    const auto patience =
+        static_cast<std::int64_t>(std::ceil(problem_.constants.nothing_new_share * static_cast<double>(most)));
+    // With a wide tolerance, the first attempts look for the exact place only. The next one begins where they began.
+    const std::int64_t first_loose = std::min<std::int64_t>(problem_.constants.exact_attempts, most);
+    choice_.begin();
+    Status status = Status::running;
     for (std::int64_t number = 0; number <= most; ++number) {
       outcome_.restarts = number;
-      const Status status =
-          attempt(start_of(number, start), settings_.patience, settings_.max_iterations, !proved, proved, number);
-      if (status == Status::converged || status == Status::time_limit) return status;
+      loosens_ = number >= first_loose;
+      const Vector& own = start_of(number, start);
+      const bool again = problem_.is_wide && number == first_loose && first_number_ == 0;
+      status = attempt(again ? start : own, settings_.patience, settings_.max_iterations, !proved, proved, number);
+      if (status == Status::time_limit || (status == Status::converged && !settings_.choose_nearest)) break;
+      if (status == Status::converged)
+        choice_.add(outcome_.q, given_);
+      else
+        choice_.add_nothing();
+      if (choice_.count() > 0 && choice_.since() >= patience) break;
     }
+    if (choice_.count() > 0) {
+      outcome_.q = choice_.nearest(given_);
+      outcome_.chosen_from = choice_.count();
+      return Status::converged;
+    }
+    if (status == Status::converged || status == Status::time_limit) return status;
+    loosens_ = true;
     const Vector best = outcome_.q;
     return attempt(best, problem_.constants.to_the_end, settings_.iterations_to_the_end, false, true,
                    outcome_.restarts + 1);
@@ -87,7 +113,8 @@ class Attempts {
 
   Status attempt(const Vector& start, Patience patience, std::int64_t max_iterations, bool bold, bool downhill,
                  std::int64_t number) {
-    RunSettings run{max_iterations, patience, bold, downhill, outcome_.proof.has_value(), settings_.polish};
+    RunSettings run{max_iterations, patience, bold, downhill, outcome_.proof.has_value(), settings_.polish,
+                    loosens_};
     Status ended = Status::running;
     std::int64_t iterations = 0, updates = 0;
     const auto see = [&](const Linearization<Rows>& at, std::int64_t iteration, std::int64_t updated, Status status) {

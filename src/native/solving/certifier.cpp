@@ -93,6 +93,16 @@ void interpolate_on(const double* from, const double* to, double part, double* o
   entries = between;
 }
 
+template <int Dimension, int Nq, int Nv>
+void difference_on(const double* from, const double* to, double* step) {
+  const Eigen::Matrix<double, Nq, 1> a = Eigen::Map<const Eigen::Matrix<double, Nq, 1>>(from);
+  const Eigen::Matrix<double, Nq, 1> b = Eigen::Map<const Eigen::Matrix<double, Nq, 1>>(to);
+  Eigen::Matrix<double, Nv, 1> v;
+  pinocchio::SpecialEuclideanOperationTpl<Dimension, double>().difference(a, b, v);
+  Eigen::Map<Eigen::Matrix<double, Nv, 1>> entries(step);
+  entries = v;
+}
+
 }  // namespace
 
 void interpolate_free(JointKind kind, const double* from, const double* to, double part, double* own) {
@@ -107,6 +117,13 @@ void integrate_free(JointKind kind, double* own, const double* step) {
     integrate_on<3, 7, 6>(own, step);
   else
     integrate_on<2, 4, 3>(own, step);
+}
+
+void difference_free(JointKind kind, const double* from, const double* to, double* step) {
+  if (kind == JointKind::floating)
+    difference_on<3, 7, 6>(from, to, step);
+  else
+    difference_on<2, 4, 3>(from, to, step);
 }
 
 struct Certifier::Model {

@@ -10,6 +10,7 @@ struct RunSettings {
   std::int64_t max_iterations = 0;
   Patience patience;
   bool bold = false, downhill = false, beyond = false, polish = false;
+  bool loosens = true;  // whether a run that stalls looks for an answer inside wide tolerances
 };
 
 template <int Rows>
@@ -69,7 +70,7 @@ class Run {
         status = Status::stalled;
       else if (iteration >= settings.max_iterations)
         status = Status::max_iterations;
-      if (status == Status::stalled && kinematics_.problem.is_wide && !kinematics_.loose && !settings.beyond) {
+      if (status == Status::stalled && settings.loosens && problem.is_wide && !kinematics_.loose && !settings.beyond) {
         kinematics_.loose = true;
         scale = 1.0;
         status = Status::running;

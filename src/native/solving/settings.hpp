@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <vector>
 
 #include "../problem/constants.hpp"
 #include "../problem/targets.hpp"
@@ -19,6 +20,8 @@ struct Settings {
   std::int64_t iterations_to_the_end = 0;  // of the last run, which continues the best of the failed attempts
   double time_limit = infinity;  // [s]
   bool trace = false;
+  bool choose_nearest = false;  // of all distinct answers; otherwise the first one is taken
+  std::vector<double> choose_weights;  // for each coordinate, a factor on its change
   bool polish = true;  // whether a run goes on once it has reached the targets
 };
 

@@ -18,7 +18,7 @@ Array = NDArray[np.float64]
 _AT_LIMIT = 1e-6  # [rad or m]: a joint nearer to its limit than this is at its limit
 _TURN = 2.0 * math.pi
 
-BARELY_OUTSIDE = 0.1
+BARELY_OUTSIDE = 0.02
 """The largest distance beyond a limit [rad] from which a hinge goes back to that limit, instead of making a turn."""
 
 
@@ -85,9 +85,8 @@ class Limits:
         """
         near = q if near is None else near
         inside = self.clip(q)
-        entry = np.flatnonzero(
-            self.turning & ((np.abs(q - near) > math.pi) | (inside != q)).reshape(-1, q.shape[-1]).any(0)
-        )
+        moved = (np.abs(q - near) > math.pi) | (inside != q)
+        entry = np.flatnonzero(self.turning & moved.any(axis=tuple(range(q.ndim - 1))))
         if entry.size:
             inside[..., entry] = self._turned(q[..., entry], near[..., entry], self.lower[entry], self.upper[entry])
         return inside

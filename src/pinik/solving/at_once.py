@@ -47,7 +47,7 @@ def attempt_at_once(question: Question, goals: Array, starts: Array) -> Outcomes
     iterations = np.where((status == Status.CONVERGED) | rests, 1, 2) * question.problem.free.any()
     none = np.zeros(count, dtype=np.int64)
     seconds = np.full(count, (time.perf_counter() - began) / count)
-    return Outcomes(q, status, missed, np.full(count, math.nan), iterations, none, none.copy(), seconds)
+    return Outcomes(q, status, missed, np.full(count, math.nan), iterations, none, none.copy(), none + 1, seconds)
 
 
 def _answered(question: Question, positions: Array, starts: Array) -> tuple[Array, Array, NDArray[np.bool_]]:

@@ -14,6 +14,7 @@ from ..problem.kinematics import Kinematics
 from ..problem.reach import Shortfall, shortfall
 from ..problem.targets import Target
 from ..problem.tolerance import TargetError
+from .choice import NOTHING_NEW_SHARE, Choice
 from .question import Question
 from .run import TO_THE_END, Pace, run
 from .starts import Starts
@@ -23,6 +24,9 @@ from .verdict import judge
 __all__ = ["Attempts", "Outcome", "Outcomes"]
 
 Array = NDArray[np.float64]
+
+EXACT_ATTEMPTS = 8
+"""With a wide tolerance, the number of attempts that look for the exact place only."""
 
 RESTARTS_WHEN_UNREACHABLE = 8
 """The maximum number of restarts for a target provably out of reach: the distance to it can have local minima too."""
@@ -34,9 +38,12 @@ class Outcome(NamedTuple):
     Attributes:
         status: The verdict on `q`.
         q: The best configuration (nq,), inside the limits.
+        start: The start (nq,), moved inside the limits; the compiled engine leaves it empty if no joint of the robot is
+            (cos, sin) in q.
         errors: The error of each target at `q`, by plain forward kinematics.
         iterations, joint_updates: Totals over all attempts.
         restarts: The number of restarts used.
+        chosen_from: The number of distinct answers that `q` was chosen from.
         proof: The proof that a target is out of reach, if there is one.
         states: Every state of every attempt, if a trace was requested.
         targets: The targets.
@@ -46,10 +53,12 @@ class Outcome(NamedTuple):
 
     status: Status
     q: Array
+    start: Array
     errors: tuple[TargetError, ...]
     iterations: int
     joint_updates: int
     restarts: int
+    chosen_from: int
     proof: Shortfall | None
     states: tuple[State, ...]
     targets: tuple[Target, ...]
@@ -68,6 +77,7 @@ class Outcomes:
     iterations: NDArray[np.int64]
     joint_updates: NDArray[np.int64]
     restarts: NDArray[np.int64]
+    chosen_from: NDArray[np.int64]
     time: Array
 
 
@@ -122,6 +132,7 @@ class _Search:
         iterations, joint_updates: Totals over the attempts so far.
         restarts: The number of restarts so far.
         best: The state inside the limits with the smallest residual so far.
+        choice: The answers so far, for `choose="nearest"`.
         states: Every state so far, if a trace was requested.
     """
 
@@ -134,6 +145,7 @@ class _Search:
         self.joint_updates = 0
         self.restarts = 0
         self.best: State | None = None
+        self.choice = Choice(self.question, start)
         self.states: list[State] = []
 
     def outcome(self) -> Outcome:
@@ -155,11 +167,25 @@ class _Search:
         if proof is not None:
             most = min(most, RESTARTS_WHEN_UNREACHABLE)
         pace = Pace(options.iterations_at_most, options.method.patience, bold=proof is None, downhill=proof is not None)
+        # With a wide tolerance, the first attempts look for the exact place only. The next one begins where they began.
+        first_loose = min(EXACT_ATTEMPTS, most)
         for self.restarts in range(most + 1):
-            status = self._attempt(self._start(), pace._replace(attempt=self.restarts))
-            if status in (Status.CONVERGED, Status.TIME_LIMIT):
-                return status
+            again = self.question.problem.is_wide and self.restarts == first_loose and not self.nearest
+            start = self.given if again else self._start()
+            loosens = self.restarts >= first_loose
+            status = self._attempt(start, pace._replace(attempt=self.restarts, loosens=loosens))
+            if status is Status.TIME_LIMIT or (status is Status.CONVERGED and options.choose == "first"):
+                break
+            assert self.best is not None
+            self.choice.add(self.best.q if status is Status.CONVERGED else None)
+            if self.choice.found and self.choice.since >= math.ceil(NOTHING_NEW_SHARE * most):
+                break
         assert self.best is not None
+        if self.choice.found:
+            self.best = self.best._replace(q=self.choice.nearest)
+            return Status.CONVERGED
+        if status in (Status.CONVERGED, Status.TIME_LIMIT):
+            return status
         last = Pace(options.iterations_to_the_end, TO_THE_END, downhill=True, attempt=self.restarts + 1)
         return self._attempt(self.best.q, last)
 
@@ -214,6 +240,6 @@ class _Search:
         q, targets = self.question.limits.wrap(self.best.q, self.given), self.kinematics.targets
         status, errors, proof = judge(self.question, targets, q, ended)
         return Outcome(
-            status, q, errors, self.iterations, self.joint_updates, self.restarts, proof, tuple(self.states), targets,
-            time.perf_counter() - self.began,
+            status, q, self.given, errors, self.iterations, self.joint_updates, self.restarts,
+            max(1, len(self.choice.found)), proof, tuple(self.states), targets, time.perf_counter() - self.began,
         )  # fmt: skip

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import warnings
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -19,6 +19,7 @@ from ..solvers.registry import Method
 from .kept import Kept, Key, kept_of
 from .keys import key_of
 from .options import OPTION_NAMES, Options
+from .origin import Origin
 from .prepared import Prepared
 from .question import Question
 from .run import Pace, States, run
@@ -48,7 +49,7 @@ def solve(
     tool: pinocchio.SE3 | ArrayLike | None = None,
     relative_to: str | None = None,
     weight: float = UNWEIGHTED,
-    q0: ArrayLike | str | None = None,
+    q0: ArrayLike | Mapping[str, float] | str | None = None,
     limits: bool = True,
     locked: Iterable[str] = (),
     restarts: int | None = None,
@@ -59,6 +60,8 @@ def solve(
     engine: str = "auto",
     trace: bool = False,
     polish: bool = True,
+    choose: str = "first",
+    choose_weights: Mapping[str, float] | None = None,
     **solver_parameters: Any,
 ) -> Solution:
     """Find joint values that move frames of the robot to their targets.
@@ -80,9 +83,11 @@ def solve(
         tool: The point of the frame that should reach the target, or its placement in the frame.
         relative_to: The frame in which the target is expressed.
         weight: A factor on the target's residual in the step.
-        q0: Start configuration (nq,); neutral when None; "nearest" for a start near the targets, from a table. With
-            limits, all joints of the start are moved inside them first, including joints that move no target frame and
-            locked ones.
+        q0: Start configuration (nq,); or angles by joint name, with all other joints neutral; neutral when None;
+            "nearest" for a start near the targets, from a table. With limits, all joints of the start are moved inside
+            them first, including joints that move no target frame and locked ones. Hinges of the answer are at the
+            whole turn nearest to the start that the limits allow, and the angles of continuous joints in
+            `solution.angles` at the whole turn nearest to the angles given here.
         limits: Whether to enforce the joint limits.
         locked: Names of joints that must not move; floating and planar joints can be locked too.
         restarts: The maximum number of restarts, from starts drawn with `seed`, after a failed attempt; the solver's
@@ -96,6 +101,11 @@ def solve(
             the answer does not.
         polish: Whether "dls" and "pinv" go on once every target is within tolerance, while a step still halves the
             residual. This makes the answer exact to nanometres, usually by one more step.
+        choose: "first" for the first answer found. "nearest" goes on with restarts and takes, of the distinct answers
+            found, the one nearest to `q0` by the largest change of a joint; `solution.chosen_from` counts them. It ends
+            after `restarts` restarts, or once a quarter of them in a row has found nothing new.
+        choose_weights: Joint name → factor of at least 0 on the change of that joint (rad, or m for prismatic joints)
+            in "nearest"; 1 for joints not named.
         **solver_parameters: Parameters of the solver, such as `damping=0.1`.
 
     Returns:
@@ -111,7 +121,10 @@ def solve(
     wanted = (
         position, rotation, rpy, quat_xyzw, quat_wxyz, placement, axis, direction, at, tool, relative_to, weight,
     )  # fmt: skip
-    given = (limits, locked, restarts, seed, max_iterations, tolerance, time_limit, engine, trace, polish)
+    given = (
+        limits, locked, restarts, seed, max_iterations, tolerance, time_limit, engine, trace, polish, choose,
+        choose_weights,
+    )  # fmt: skip
     return answer(robot, targets, method, wanted, q0, given, solver_parameters)
 
 
@@ -142,6 +155,8 @@ def prepare(
     engine: str = "auto",
     trace: bool = False,
     polish: bool = True,
+    choose: str = "first",
+    choose_weights: Mapping[str, float] | None = None,
     **solver_parameters: Any,
 ) -> Prepared:
     """Check and compile a problem once, to solve it many times for other target positions and starts.
@@ -153,7 +168,10 @@ def prepare(
         position, rotation, rpy, quat_xyzw, quat_wxyz, placement, axis, direction, at, tool, relative_to, weight,
     )  # fmt: skip
     asked = asked_targets(targets, wanted, method, solver_parameters, OPTION_NAMES)
-    given = (limits, locked, restarts, seed, max_iterations, tolerance, time_limit, engine, trace, polish)
+    given = (
+        limits, locked, restarts, seed, max_iterations, tolerance, time_limit, engine, trace, polish, choose,
+        choose_weights,
+    )  # fmt: skip
     return Prepared(robot, asked, _options(method, given, solver_parameters))
 
 
@@ -161,7 +179,7 @@ def iterate(
     robot: RobotModel,
     targets: str | Target | Sequence[Target],
     method: Method = "dls",
-    q0: ArrayLike | None = None,
+    q0: ArrayLike | Mapping[str, float] | None = None,
     *,
     position: Position | None = None,
     rotation: ArrayLike | None = None,
@@ -194,7 +212,7 @@ def iterate(
         targets: The name of a frame, with its target in the keywords from `position` to `weight`; or one or several
             Target objects.
         method: A solver's name, class or instance.
-        q0: Start configuration (nq,), moved inside the limits first; neutral when None.
+        q0: Start configuration (nq,), or angles by joint name, moved inside the limits first; neutral when None.
         position, rotation, rpy, quat_xyzw, quat_wxyz, placement, axis, direction, at, tool, relative_to, weight: As for
             `Target`.
         limits: Whether to enforce the joint limits in every state.
@@ -221,8 +239,10 @@ def iterate(
         polish=polish,
     )  # fmt: skip
     question = Question.of(robot, asked, options)
-    q = robot.neutral() if q0 is None else robot.check_configuration(q0, "q0")
-    start = question.limits.wrap(q)
+    origin = Origin.of(robot, q0)
+    if origin.nearest:
+        raise InputError("q0 must be a configuration or angles by joint name; only solve starts 'nearest'")
+    start = question.limits.wrap(origin.q)
     return run(question, Kinematics.of(question.problem), start, Pace(options.iterations_at_most))
 
 
@@ -231,7 +251,7 @@ def answer(
     targets: str | Target | Sequence[Target],
     method: Method,
     wanted: Wanted,
-    q0: ArrayLike | str | None,
+    q0: ArrayLike | Mapping[str, float] | str | None,
     given: tuple[Any, ...],
     parameters: dict[str, Any],
 ) -> Solution:

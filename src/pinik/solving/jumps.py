@@ -101,9 +101,12 @@ def find_jumps(question: Question, goals: Array, q: Array, angles: Array, restar
         restarts: The number of restarts that each point used (M,).
     """
     problem = question.problem
+    suspects = list(_suspects(question, angles))
+    if not suspects:
+        return []
     judge = _Judge(question)
     jumps = []
-    for index in _suspects(question, angles):
+    for index in suspects:
         before, after = q[index - 1], q[index]
         judge.kinematics.retarget(targets_of(problem.targets, goals[index]))
         change = largest_change(problem, before, after)

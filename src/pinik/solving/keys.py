@@ -14,7 +14,7 @@ from .options import OPTION_NAMES
 __all__ = ["key_of"]
 
 _PAIRS = (tuple, list, Tolerance)
-_LOCKED, _TOLERANCE = OPTION_NAMES.index("locked"), OPTION_NAMES.index("tolerance")
+_LOCKED, _TOLERANCE, _WEIGHTS = map(OPTION_NAMES.index, ("locked", "tolerance", "choose_weights"))
 
 
 def key_of(what: object, method: Method, given: tuple[Any, ...], parameters: dict[str, Any]) -> Key | None:
@@ -31,9 +31,10 @@ def key_of(what: object, method: Method, given: tuple[Any, ...], parameters: dic
     meant: object = SOLVERS.get(method) if type(method) is str else method
     if meant is None:
         return None
-    if given[_LOCKED] != () or given[_TOLERANCE] is not None:
+    if given[_LOCKED] != () or given[_TOLERANCE] is not None or given[_WEIGHTS] is not None:
         plain = list(given)
         plain[_LOCKED], plain[_TOLERANCE] = _as_names(given[_LOCKED]), _as_pair(given[_TOLERANCE])
+        plain[_WEIGHTS] = _as_key(given[_WEIGHTS])
         if plain[_LOCKED] is None or (plain[_TOLERANCE] is None and given[_TOLERANCE] is not None):
             return None
         given = tuple(plain)

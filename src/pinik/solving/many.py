@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -23,8 +23,9 @@ from .attempts import Outcome, Outcomes
 from .native.codec import targets_of
 from .native.outcomes import attempt_many
 from .options import OPTION_NAMES, Options
+from .origin import Origin, is_nearest
 from .places import read_questions
-from .prepared import Prepared, is_nearest
+from .prepared import Prepared
 from .processors import processors
 from .solution import Solution
 from .state import Status
@@ -48,7 +49,7 @@ def solve_many(
     *,
     tool: pinocchio.SE3 | ArrayLike | None = None,
     relative_to: str | None = None,
-    q0: ArrayLike | str | None = None,
+    q0: ArrayLike | Mapping[str, float] | str | None = None,
     threads: int | None = None,
     limits: bool = True,
     locked: Iterable[str] = (),
@@ -59,6 +60,8 @@ def solve_many(
     time_limit: float | None = None,
     engine: str = "auto",
     polish: bool = True,
+    choose: str = "first",
+    choose_weights: Mapping[str, float] | None = None,
     **solver_parameters: Any,
 ) -> Solutions:
     """Solve N problems of the same kind, independently of each other.
@@ -73,11 +76,12 @@ def solve_many(
         places: (N, 4, 4) homogeneous matrices or N SE3, for positions and rotations; or positions (N, 3) [m].
         method: As for `pinik.solve`.
         tool, relative_to: As for `Target`; only with the name of a frame.
-        q0: One start (nq,) or N starts (N, nq); neutral when None; "nearest" for a start near each target, from a
-            table.
+        q0: One start (nq,) or N starts (N, nq); angles by joint name, with all other joints neutral; neutral when None;
+            "nearest" for a start near each target, from a table.
         threads: The number of threads; one for each processor available to this process when None. The Python engine
             uses one thread.
-        limits, locked, restarts, seed, max_iterations, tolerance, engine, polish: As for `pinik.solve`.
+        limits, locked, restarts, seed, max_iterations, tolerance, engine, polish, choose, choose_weights: As for
+            `pinik.solve`.
         time_limit: Time limit for each problem [s].
         **solver_parameters: Parameters of the solver.
 
@@ -95,15 +99,18 @@ def solve_many(
     options = Options.of(
         method, solver_parameters, limits=limits, locked=locked, restarts=restarts, seed=seed,
         max_iterations=max_iterations, tolerance=tolerance, time_limit=time_limit, engine=engine,
-        polish=polish,
+        polish=polish, choose=choose, choose_weights=choose_weights,
     )  # fmt: skip
     count = processors() if threads is None else min(as_count(threads, "threads"), _MOST_THREADS)
     began = time.perf_counter()
     pattern, goals = read_questions(targets, places, tool, relative_to)
-    starts = _starts(robot, None if is_nearest(q0) else q0, len(goals))
+    starts, turned = _starts(robot, q0, len(goals))
     prepared = Prepared(robot, pattern, options) if pattern else None
     outcomes = _nothing(robot) if prepared is None else _outcomes(prepared, goals, starts, is_nearest(q0), count)
-    return Solutions(**vars(outcomes), total_time=time.perf_counter() - began, prepared=prepared, _goals=goals)
+    seconds = time.perf_counter() - began
+    return Solutions(
+        **vars(outcomes), total_time=seconds, prepared=prepared, _goals=goals, _starts=starts, _turned=turned
+    )
 
 
 def _outcomes(prepared: Prepared, goals: Array, starts: Array, nearest: bool, threads: int) -> Outcomes:
@@ -118,7 +125,7 @@ def _nothing(robot: RobotModel) -> Outcomes:
     """What no solves came to."""
     none, counts = np.zeros(0), np.zeros(0, dtype=np.int64)
     status = np.zeros(0, dtype=object)
-    return Outcomes(np.zeros((0, robot.model.nq)), status, none, none, counts, counts, counts, none)
+    return Outcomes(np.zeros((0, robot.model.nq)), status, none, none, counts, counts, counts, counts, none)
 
 
 @dataclass(frozen=True, eq=False)
@@ -132,7 +139,7 @@ class Solutions(Outcomes):
         status: The reason why each solve ended: an array (N,) of `Status`.
         position_error: The largest position error of each problem's targets (N,) [m]; NaN if there are no positions.
         orientation_error: The largest orientation error, likewise (N,) [rad].
-        iterations, joint_updates, restarts: As in `Solution`, for each problem (N,).
+        iterations, joint_updates, restarts, chosen_from: As in `Solution`, for each problem (N,).
         time: The duration of each solve (N,) [s]; equal shares of the total if one vectorised call solved all.
         total_time: The duration of the call [s].
         prepared: The compiled problem; None if `solve_many` was called without any targets.
@@ -141,6 +148,8 @@ class Solutions(Outcomes):
     total_time: float
     prepared: Prepared | None = field(repr=False)
     _goals: Array = field(repr=False)
+    _starts: Array = field(repr=False)
+    _turned: Mapping[str, float] = field(repr=False)
 
     @property
     def success(self) -> NDArray[np.bool_]:
@@ -173,29 +182,30 @@ class Solutions(Outcomes):
         outcome = Outcome(
             self.status[index],
             self.q[index].copy(),
+            self._starts[index % len(self._starts)],
             measure_errors(question.robot, targets, self.q[index], tolerance),
             int(self.iterations[index]),
             int(self.joint_updates[index]),
             int(self.restarts[index]),
+            int(self.chosen_from[index]),
             shortfall(targets, question.bounds, tolerance) if missed else None,
             (),
             targets,
             float(self.time[index]),
             self.engine,
         )
-        return Solution(outcome, question)
+        return Solution(outcome, question, self._turned)
 
 
-def _starts(robot: RobotModel, q0: ArrayLike | None, count: int) -> Array:
-    """The starts (1, nq) or (N, nq), checked."""
-    if q0 is None:
-        return robot.neutral()[np.newaxis]
-    if as_numbers(q0, "q0").ndim != 2:
-        return robot.check_configuration(q0, "q0")[np.newaxis]
+def _starts(robot: RobotModel, q0: Any, count: int) -> tuple[Array, Mapping[str, float]]:
+    """(the starts (1, nq) or (N, nq), checked; the angles of continuous joints that were given by their angle)."""
+    if q0 is None or isinstance(q0, Mapping) or is_nearest(q0) or as_numbers(q0, "q0").ndim != 2:
+        origin = Origin.of(robot, q0)
+        return origin.q[np.newaxis], origin.turned
     starts = robot.check_configurations(q0, "q0")
     if len(starts) != count:
         raise InputError(f"q0 must be one start, or one for each of the {count} targets; got {len(starts)}")
-    return starts
+    return starts, {}
 
 
 def _attempt_one_by_one(prepared: Prepared, goals: Array, starts: Array, nearest: bool) -> Outcomes:
@@ -214,5 +224,6 @@ def _attempt_one_by_one(prepared: Prepared, goals: Array, starts: Array, nearest
         np.array([outcome.iterations for outcome in outcomes], dtype=np.int64),
         np.array([outcome.joint_updates for outcome in outcomes], dtype=np.int64),
         np.array([outcome.restarts for outcome in outcomes], dtype=np.int64),
+        np.array([outcome.chosen_from for outcome in outcomes], dtype=np.int64),
         np.array([outcome.time for outcome in outcomes]),
     )

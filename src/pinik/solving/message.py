@@ -22,6 +22,7 @@ def explain(
     verdict: Verdict,
     active: Mapping[str, str],
     alone: Sequence[str] = (),
+    chosen_from: int = 1,
 ) -> str:
     """Explain why the solve ended, which errors remain, and which joints are at their limits.
 
@@ -31,13 +32,15 @@ def explain(
         verdict: The verdict on the answer.
         active: Joint name → "lower", "upper" or "both", for the joints at a limit.
         alone: Which of "position" and "orientation" is found when it is asked for alone.
+        chosen_from: The number of distinct answers that this one was chosen from.
     """
     status, errors, proof = verdict
     if status is Status.CONVERGED:
         position, orientation = largest_of(errors)
         words = [] if position is None else [_length(position)]
         words += [] if orientation is None else [_angle(orientation)]
-        return f"converged, {' and '.join(words)} off"
+        chosen = f"; the nearest of {chosen_from} answers" if chosen_from > 1 else ""
+        return f"converged, {' and '.join(words)} off{chosen}"
     tolerances = [term.tolerance for term in question.problem.terms]
     missed = _missed(targets, errors, tolerances)
     if not question.problem.free.any():
@@ -135,6 +138,6 @@ def _angle(radians: float) -> str:
     degrees = math.degrees(radians)
     if degrees >= 10.0:
         return f"{degrees:.0f}°"
-    if degrees >= 1e-4:
-        return f"{degrees:.2g}°" if degrees >= 0.001 else f"{degrees:.4f}°"
-    return "less than 0.0001°"
+    if degrees >= 0.001:
+        return f"{degrees:.2g}°"
+    return f"{degrees:.4f}°" if degrees >= 0.00005 else "less than 0.0001°"

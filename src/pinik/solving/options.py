@@ -4,23 +4,25 @@ from __future__ import annotations
 
 import dataclasses
 import math
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ..checks import as_count, as_names, as_positive_number
+from ..checks import as_count, as_finite_number, as_names, as_positive_number
 from ..errors import InputError, UnknownNameError
 from ..problem.tolerance import Tolerance
 from ..solvers.base import Solver
 from ..solvers.damped_least_squares import DampedLeastSquares
+from ..solvers.parameter import JointValues
 from ..solvers.registry import Method, make_solver
 
-__all__ = ["ENGINES", "OPTION_NAMES", "Options"]
+__all__ = ["CHOICES", "ENGINES", "OPTION_NAMES", "Options"]
 
 ENGINES = ("auto", "python", "native")
+CHOICES = ("first", "nearest")
 
 # The maximum number of iterations of the last run, which continues the best failed attempt.
 _TO_THE_END_AT_MOST = 5000
@@ -59,6 +61,22 @@ def _engine(value: str, what: str) -> str:
     return value
 
 
+def _choice(value: str, what: str) -> str:
+    if value not in CHOICES:
+        raise UnknownNameError("choice", value, CHOICES)
+    return value
+
+
+def _factors(value: Mapping[str, float] | None, what: str) -> JointValues:
+    if value is not None and not isinstance(value, Mapping):
+        raise InputError(f"must map joint names to numbers; got {value!r}", argument=what)
+    factors = {name: as_finite_number(factor, f"{what}[{name!r}]") for name, factor in (value or {}).items()}
+    for name, factor in factors.items():
+        if factor < 0.0:
+            raise InputError(f"must be at least 0; got {factor:g}", argument=f"{what}[{name!r}]")
+    return JointValues(factors)
+
+
 @dataclass(frozen=True)
 class Options:
     """The options of a solve: checked, immutable and hashable.
@@ -74,10 +92,13 @@ class Options:
         time_limit: Time limit for one problem [s]; infinite, or None, for no limit.
         engine: "auto", "python" or "native".
         trace: Whether to keep every state.
-        polish: Whether methods that converge quadratically go on within the tolerance while a step still gains.
+        polish: Whether methods that converge quadratically go on within the tolerance, while a step still halves the
+            residual.
+        choose: "first" for the first answer found; "nearest" for the distinct answer nearest to the start.
+        choose_weights: Joint name → factor on the change of that joint in "nearest"; 1 for joints not named.
 
     Raises:
-        UnknownNameError: There is no such method or engine.
+        UnknownNameError: There is no such method, engine or choice.
         InputError: A value has the wrong type or is out of range.
     """
 
@@ -92,6 +113,8 @@ class Options:
     engine: str = field(default="auto", metadata={"check": _engine})
     trace: bool = field(default=False, metadata={"check": _truth})
     polish: bool = field(default=True, metadata={"check": _truth})
+    choose: str = field(default="first", metadata={"check": _choice})
+    choose_weights: Mapping[str, float] = field(default=JointValues(), metadata={"check": _factors})
 
     def __post_init__(self) -> None:
         """Check every option."""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -19,10 +19,11 @@ from .native.codec import goals_of
 from .native.compiling import make_engine
 from .native.module import why_not
 from .options import Options
+from .origin import Origin
 from .question import Question
 from .solution import Solution
 
-__all__ = ["Prepared", "is_nearest"]
+__all__ = ["Prepared"]
 
 Array = NDArray[np.float64]
 
@@ -71,14 +72,15 @@ class Prepared:
     def __call__(
         self,
         targets: Target | Sequence[Target] | pinocchio.SE3 | ArrayLike | None = None,
-        q0: ArrayLike | str | None = None,
+        q0: ArrayLike | Mapping[str, float] | str | None = None,
     ) -> Solution:
         """Solve.
 
         Args:
             targets: The new target: an SE3 or 4×4 matrix, or a position (3,) [m] if the target has no orientation; or
                 Target objects of the same kinds as those that it was prepared with. The original targets when None.
-            q0: Start (nq,); neutral when None; "nearest" for a start near the targets, from a table.
+            q0: Start (nq,); angles by joint name, with all other joints neutral; neutral when None; "nearest" for a
+                start near the targets, from a table.
 
         Raises:
             InputError: The targets differ in kind from those it was prepared with, or the start has the wrong shape.
@@ -90,7 +92,10 @@ class Prepared:
         return self.answer(self.targets if targets is None else self.as_asked(targets), q0, began)
 
     def answer(
-        self, asked: tuple[Target, ...], q0: ArrayLike | str | None = None, began: float | None = None
+        self,
+        asked: tuple[Target, ...],
+        q0: ArrayLike | Mapping[str, float] | str | None = None,
+        began: float | None = None,
     ) -> Solution:
         """Solve for targets of exactly the same kinds as those that it was prepared with.
 
@@ -100,11 +105,10 @@ class Prepared:
             began: The time at which the time limit began to run, from `time.perf_counter` [s]; now when None.
         """
         began = time.perf_counter() if began is None else began
-        nearest = is_nearest(q0)
-        start = self._neutral if q0 is None or nearest else self.robot.check_configuration(q0, "q0")
+        start, nearest, turned = Origin.of(self.robot, q0)
         if self.native is not None:
-            return Solution(self.native.solve(start, goals_of(asked), nearest), self.question)
-        return Solution(self.attempts(asked, start, nearest=nearest, began=began), self.question)
+            return Solution(self.native.solve(start, goals_of(asked), nearest), self.question, turned)
+        return Solution(self.attempts(asked, start, nearest=nearest, began=began), self.question, turned)
 
     def at(self, place: object, q0: object = None) -> Solution | None:
         """Solve for one frame with minimal overhead, if the compiled engine accepts the arguments without conversion.
@@ -146,11 +150,6 @@ class Prepared:
                 "call prepare again for other kinds"
             )
         return asked
-
-
-def is_nearest(q0: object) -> bool:
-    """Whether a start is the string "nearest"."""
-    return isinstance(q0, str) and q0 == "nearest"
 
 
 def _are_targets(value: object) -> bool:

@@ -49,6 +49,8 @@ class Question:
             raise InputError(f"robot must be what pinik.load returns; got {robot!r}")
         solver = options.method
         check_joint_names(robot, solver)
+        for name in options.choose_weights:
+            robot.settable_joint(name)
         at_target = isinstance(solver, JacobianSolver) and solver.target_jacobian
         problem = Problem(
             robot,

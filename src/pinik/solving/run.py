@@ -56,6 +56,7 @@ class Pace(NamedTuple):
         downhill: Whether a Jacobian method's step is shortened until the residual decreases, so that the run converges
             where it would otherwise oscillate.
         attempt: The number of the run.
+        loosens: Whether a run that stalls looks for an answer inside wide tolerances.
     """
 
     max_iterations: int
@@ -63,6 +64,7 @@ class Pace(NamedTuple):
     bold: bool = False
     downhill: bool = False
     attempt: int = 0
+    loosens: bool = True
 
 
 def run(question: Question, kinematics: Kinematics, start: Array, pace: Pace, near: Array | None = None) -> States:
@@ -161,7 +163,8 @@ class _Loop:
 
     def can_loosen(self) -> bool:
         """Whether an answer inside wide tolerances remains to be looked for."""
-        return self.problem.is_wide and not (self.kinematics.loose or self.beyond or self.question.solver.exact)
+        wanted = self.problem.is_wide and self.pace.loosens
+        return wanted and not (self.kinematics.loose or self.beyond or self.question.solver.exact)
 
     def is_worth_another_step(self, reached: bool) -> bool:
         """Whether to go on although the targets are or were within tolerance; if not, keep the better of two states."""

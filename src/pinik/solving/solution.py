@@ -20,6 +20,7 @@ from .attempts import Outcome
 from .message import explain
 from .native.module import why_not
 from .native.outcomes import NativeOutcome
+from .origin import unwound
 from .question import Question
 from .state import State, Status
 from .verdict import Verdict
@@ -38,11 +39,22 @@ class Solution:
     """The result of a solve, checked by plain Pinocchio."""
 
     _q: Array | None = None
+    _turned: Mapping[str, float] = {}
 
-    def __init__(self, outcome: Outcome | _native.Answer, question: Question) -> None:
-        """Store the outcome of a solve; all other attributes are computed when they are first read."""
+    def __init__(
+        self, outcome: Outcome | _native.Answer, question: Question, turned: Mapping[str, float] | None = None
+    ) -> None:
+        """Store the outcome of a solve; all other attributes are computed when they are first read.
+
+        Args:
+            outcome: The outcome.
+            question: The problem and the options.
+            turned: The start's angles [rad] of the continuous joints that were given by their angle.
+        """
         self._came_to = outcome
         self._question = question
+        if turned:
+            self._turned = turned
 
     @property
     def _outcome(self) -> Outcome | NativeOutcome:
@@ -52,7 +64,7 @@ class Solution:
     def __getstate__(self) -> dict[str, Any]:
         """Pickle the results only, without the compiled problem."""
         outcome = Outcome(*(getattr(self._outcome, name) for name in Outcome._fields))
-        return {name: getattr(self, name) for name in _IN_WORDS} | {"_came_to": outcome}
+        return {name: getattr(self, name) for name in _IN_WORDS} | {"_came_to": outcome, "_turned": dict(self._turned)}
 
     @cached_property
     def robot(self) -> RobotModel:
@@ -109,6 +121,11 @@ class Solution:
         return self._outcome.restarts
 
     @cached_property
+    def chosen_from(self) -> int:
+        """The number of distinct answers that this one was chosen from; always 1 with `choose="first"`."""
+        return self._outcome.chosen_from
+
+    @cached_property
     def method(self) -> str:
         """The solver's short name."""
         return self._question.solver.name
@@ -125,7 +142,7 @@ class Solution:
         verdict = Verdict(outcome.status, outcome.errors, outcome.proof)
         clueless = outcome.proof is None and outcome.status not in (Status.CONVERGED, Status.TIME_LIMIT)
         alone = found_alone(self._question, self.targets, self.q) if clueless else []
-        return explain(self._question, self.targets, verdict, self._sides_of_limits, alone)
+        return explain(self._question, self.targets, verdict, self._sides_of_limits, alone, outcome.chosen_from)
 
     @cached_property
     def active_limits(self) -> tuple[str, ...]:
@@ -168,8 +185,12 @@ class Solution:
 
     @property
     def angles(self) -> dict[str, float]:
-        """Joint name → angle [rad], or displacement [m] for prismatic joints, at `q`."""
-        return self.robot.angles(self.q)
+        """Joint name → angle [rad], or displacement [m] for prismatic joints, at `q`.
+
+        The angle of a continuous joint is the one nearest to its angle at the start: 3.35 after a start at 3.3, not
+        −2.93. If the start was given as a configuration, its angle lies in (−π, π].
+        """
+        return unwound(self.robot, self.q, self._outcome.start, self._turned)
 
     @property
     def joint_placements(self) -> dict[str, pinocchio.SE3]:
@@ -216,6 +237,7 @@ class Solution:
             "iterations": self.iterations,
             "joint_updates": self.joint_updates,
             "restarts": self.restarts,
+            "chosen_from": self.chosen_from,
             "time_s": self.time,
             "active_limits": list(self.active_limits),
             "method": self.method,

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 import time
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -21,9 +21,11 @@ from ..solvers.ccd import CCD
 from ..solvers.registry import Method
 from .attempts import Outcomes
 from .jumps import Excess, Jump, find_excesses, find_jumps
+from .kept import kept_of
 from .native.codec import targets_of
 from .native.outcomes import follow
 from .options import OPTION_NAMES, Options
+from .origin import Origin
 from .places import read_questions
 from .prepared import Prepared
 from .state import Status
@@ -37,7 +39,16 @@ Array = NDArray[np.float64]
 
 ON_MISS = ("hold", "nearest", "stop")
 
-_KEYWORDS = ("places", "q0", "times", "on_miss", "tool", "relative_to", *(n for n in OPTION_NAMES if n != "trace"))
+_MISSING = ("trace", "choose", "choose_weights")
+_KEYWORDS = (
+    "places",
+    "q0",
+    "times",
+    "on_miss",
+    "tool",
+    "relative_to",
+    *(name for name in OPTION_NAMES if name not in _MISSING),
+)
 
 CAREFUL_STEP = 0.05
 """The largest change of a joint in one update of CCD along a path [rad or m]; larger ones lead to other branches."""
@@ -47,7 +58,7 @@ def track(
     robot: RobotModel,
     targets: str | Target | Sequence[Target] | Sequence[Sequence[Target]],
     places: ArrayLike | Sequence[pinocchio.SE3] | None = None,
-    q0: ArrayLike | None = None,
+    q0: ArrayLike | Mapping[str, float] | None = None,
     method: Method = "dls",
     *,
     times: ArrayLike | None = None,
@@ -62,6 +73,7 @@ def track(
     tolerance: Tolerance | ArrayLike | None = None,
     time_limit: float | None = None,
     engine: str = "auto",
+    polish: bool = True,
     **solver_parameters: Any,
 ) -> Track:
     """Follow a path of N points in one call.
@@ -76,8 +88,8 @@ def track(
         targets: The name of a frame, or one Target as a pattern, with the N targets in `places`; or N targets of the
             same kind; or N sequences with the same number of targets of the same kinds.
         places: (N, 4, 4) homogeneous matrices or N SE3, for positions and rotations; or positions (N, 3) [m].
-        q0: The start (nq,), from which the first point is solved; neutral when None. The way to the first point is not
-            part of the path, and is never reported as a jump.
+        q0: The start, from which the first point is solved: a configuration (nq,), or angles by joint name; neutral
+            when None. The way to the first point is not part of the path, and is never reported as a jump.
         method: As for `pinik.solve`.
         times: When each point is reached (N,) [s], increasing; then `Track.too_fast` names the joints that would have
             to exceed `robot.velocity_limits`.
@@ -85,7 +97,7 @@ def track(
             "nearest" takes the nearest configuration found and goes on from there, "stop" ends the path with this
             point, at which the last configuration is kept.
         tool, relative_to: As for `Target`; only with the name of a frame.
-        limits, locked, restarts, seed, max_iterations, tolerance, engine: As for `pinik.solve`.
+        limits, locked, restarts, seed, max_iterations, tolerance, engine, polish: As for `pinik.solve`.
         time_limit: Time limit for each point [s].
         **solver_parameters: Parameters of the solver.
 
@@ -102,17 +114,21 @@ def track(
     options = Options.of(
         method, solver_parameters, limits=limits, locked=locked, restarts=restarts, seed=seed,
         max_iterations=max_iterations, tolerance=tolerance, time_limit=time_limit, engine=engine,
+        polish=polish,
     )  # fmt: skip
     began = time.perf_counter()
     pattern, goals = read_questions(targets, places, tool, relative_to)
     if not len(goals):
         raise InputError("a path must have at least one point; got none")
     when = None if times is None else check_times(times, len(goals))
-    start = robot.neutral() if q0 is None else robot.check_configuration(q0, "q0")
-    prepared = Prepared(robot, pattern, careful(options))
+    origin = Origin.of(robot, q0)
+    prepared = kept_of(robot).prepared(robot, pattern, careful(options))
     native = prepared.native
-    outcomes = _follow(prepared, goals, start, on_miss) if native is None else follow(native, goals, start, on_miss)
-    angles = _unwound(robot, start, outcomes.q)
+    if native is None:
+        outcomes = _follow(prepared, goals, origin.q, on_miss)
+    else:
+        outcomes = follow(native, goals, origin.q, on_miss)
+    angles = _unwound(robot, origin, outcomes.q)
     jumps = find_jumps(prepared.question, goals, outcomes.q, angles, outcomes.restarts)
     excesses = [] if when is None else find_excesses(robot.joint_names, angles, when, robot.velocity_limits)
     total = time.perf_counter() - began
@@ -131,7 +147,7 @@ class Track(Outcomes):
     Attributes:
         q: The configurations (M, nq), inside the limits.
         angles: The angles (M, n_joints) [rad or m], in the order of `robot.joint_names`. Those of continuous joints
-            are unwound: they go on beyond ±π, from the start's angle in (−π, π].
+            are unwound: they go on beyond ±π, from the start's angle.
         status: What came of each point: an array (M,) of `Status`. A point that was missed has the configuration that
             `on_miss` says.
         position_error: The largest position error of each point's targets (M,) [m], at its configuration; NaN if there
@@ -269,11 +285,11 @@ def _follow(prepared: Prepared, goals: Array, start: Array, on_miss: str) -> Out
     return Outcomes(
         np.array(kept), np.array(status, dtype=object), np.array(position, dtype=np.float64),
         np.array(orientation, dtype=np.float64), counts, np.zeros_like(counts), np.array(restarts, dtype=np.int64),
-        np.array(seconds),
+        np.ones_like(counts), np.array(seconds),
     )  # fmt: skip
 
 
-def _unwound(robot: RobotModel, start: Array, q: Array) -> Array:
+def _unwound(robot: RobotModel, origin: Origin, q: Array) -> Array:
     """The angles (M, n_joints) at configurations (M, nq); those of continuous joints go on from the start's angle."""
     columns = []
     for name in robot.joint_names:
@@ -282,7 +298,8 @@ def _unwound(robot: RobotModel, start: Array, q: Array) -> Array:
             columns.append(q[:, joint.idx_q])
             continue
         sines, cosines = q[:, joint.idx_q + 1], q[:, joint.idx_q]
-        angles = np.concatenate(([joint.angle(start)], np.arctan2(sines, cosines)))
+        begin = origin.turned.get(name, joint.angle(origin.q))
+        angles = np.concatenate(([begin], np.arctan2(sines, cosines)))
         columns.append(np.unwrap(angles)[1:])
     return np.column_stack(columns) if columns else np.zeros((len(q), 0))
 

@@ -20,6 +20,7 @@ from ..solvers.registry import Method
 from .native.codec import goals_of
 from .native.module import load
 from .options import OPTION_NAMES, Options
+from .origin import Origin
 from .prepared import Prepared
 from .track import careful
 from .verdict import all_within, measure_errors
@@ -33,7 +34,8 @@ if TYPE_CHECKING:
 
 Array = NDArray[np.float64]
 
-_KEYWORDS = ("q0", "rate", "velocity", *(name for name in OPTION_NAMES if name not in ("trace", "restarts", "seed")))
+_MISSING = ("trace", "restarts", "seed", "polish", "choose", "choose_weights")
+_KEYWORDS = ("q0", "rate", "velocity", *(name for name in OPTION_NAMES if name not in _MISSING))
 
 _TOLERANCE = Tolerance(1e-6, 1e-5)
 
@@ -71,7 +73,7 @@ class Tracker:
         self,
         robot: RobotModel,
         targets: str | Target | Sequence[Target],
-        q0: ArrayLike | None = None,
+        q0: ArrayLike | Mapping[str, float] | None = None,
         rate: float = 100.0,
         velocity: float | Mapping[str, float] | None = None,
         method: Method = "dls",
@@ -90,7 +92,7 @@ class Tracker:
             robot: The robot.
             targets: The name of a frame, whose position and orientation will be given; or one or several Targets, which
                 say what each call gives.
-            q0: The start (nq,), moved inside the limits; neutral when None.
+            q0: The start, moved inside the limits: a configuration (nq,), or angles by joint name; neutral when None.
             rate: The number of calls per second [Hz].
             velocity: The largest joint velocity [rad/s or m/s]: one number for all joints, or one for each joint by
                 name, where the others keep that of the file; `robot.velocity_limits` when None.
@@ -127,7 +129,7 @@ class Tracker:
         self.status = TrackerStatus.OK
         self.position_error: float | None = None
         self.orientation_error: float | None = None
-        self.reset(robot.neutral() if q0 is None else q0)
+        self.reset(Origin.of(robot, q0).q)
 
     @property
     def q(self) -> Array:

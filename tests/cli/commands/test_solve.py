@@ -134,6 +134,46 @@ def test_a_named_pose_is_the_start_and_start_options_go_on_top(run):
     assert moved["iterations"] > 0
 
 
+def test_a_start_keeps_the_turns_of_a_continuous_joint(run, tmp_path):
+    file = tmp_path / "wheel.urdf"
+    file.write_text(
+        '<robot name="wheel"><link name="a"/><link name="b"/><link name="c"/><joint name="j" type="continuous">'
+        '<parent link="a"/><child link="b"/><axis xyz="0 0 1"/></joint><joint name="k" type="fixed">'
+        '<parent link="b"/><child link="c"/><origin xyz="1 0 0"/></joint></robot>'
+    )
+    place = ("--position", math.cos(3.35), math.sin(3.35), 0)
+    for start, expected in ((3.3, 3.35), (3.3 - 4 * math.pi, 3.35 - 4 * math.pi)):
+        answer = run("solve", file, "--frame", "c", *place, "--start", f"j={start}", "--json").json
+        assert answer["angles"]["j"] == pytest.approx(expected, abs=1e-6)
+    turns = run("solve", file, "--frame", "c", *place, "--start", "j=520", "--deg", "--json").json["angles"]["j"]
+    assert turns == pytest.approx(3.35 + 2 * math.pi, abs=1e-6)
+
+
+def test_choose_takes_the_nearest_answer_and_says_of_how_many(run):
+    there = pinik.load("two_link")
+    position = there.placement("tip", there.configuration({"joint1": 0.5, "joint2": 1.2})).translation
+    place = ("solve", "two_link", "--frame", "tip", "--position", *position, "--choose", "nearest")
+    first, other = "joint1", "joint2"
+    changes = {}
+    for heavy in (first, other):
+        answer = run(*place, "--choose-weight", f"{heavy}=100", "--json").json
+        assert answer["success"]
+        assert answer["chosen_from"] == 2
+        changes[heavy] = {name: abs(answer["angles"][name]) for name in (first, other)}
+    assert changes[first][first] <= changes[other][first] + 1e-6
+    assert changes[other][other] <= changes[first][other] + 1e-6
+    assert run(*place, "--choose-weight", "joint3=2").err.startswith("error: no joint 'joint3'")
+    assert run(*place, "--choose-weight", "joint2=x").status == 2
+    assert run(*place, "--choose-weight", "joint2=-1").status == 2
+
+
+def test_no_polish_stops_at_the_tolerance(run):
+    place = ("solve", "panda", "--frame", "panda_hand_tcp", "--position", 0.4, 0.1, 0.5, "--json")
+    polished, plain = run(*place).json, run(*place, "--no-polish").json
+    assert polished["position_error_m"] < 1e-8 < plain["position_error_m"]
+    assert plain["iterations"] < polished["iterations"]
+
+
 def test_solver_parameters_are_json_or_words(run):
     options = ("--method", "ccd", "--param", 'stiffness={"bone1_x": 0.2}', "--param", "scaling=printed")
     parameters = run(*ARM, "--position", 0.3, 0.1, 0.8, *options, "--json").json["parameters"]
@@ -317,7 +357,7 @@ def test_an_endless_targets_file_is_refused_in_words(run):
 def test_a_start_outside_the_limits_is_said_and_moved_inside(run):
     options = ("--position", 0.3, 0.1, 0.8, "--start", "bone1_x=90", "--deg")
     inside = run(*ARM, *options, "--json")
-    assert inside.err == "note: --start bone1_x=90 is outside the limits -45.000 … 45.000 deg; moved to the limit\n"
+    assert inside.err == "note: --start bone1_x=90 is outside the limits -45.000 … 45.000 deg; moved inside\n"
     assert inside.status == 0
     assert run(*ARM, *options, "--no-limits").err == ""
 

@@ -150,6 +150,15 @@ def test_another_solver_empties_the_statistics_another_chase_does_not(arm):
     assert one.q is q
 
 
+def test_a_step_stops_at_the_tolerance_unless_it_is_polished(arm):
+    place = arm.placement("tip", home_configuration(arm) + 0.1).translation
+    plain, polished = (instance(arm, "dls", polish=on) for on in (False, True))
+    for one in (plain, polished):
+        one.step([pinik.Target("tip", place)])
+    assert plain.last.iterations < polished.last.iterations
+    assert distance(arm, polished.q, "tip", place) < 1e-8 < distance(arm, plain.q, "tip", place) < 1e-4
+
+
 def test_limits_hold_when_they_are_on_and_only_then(arm):
     free, kept = (instance(arm, "pinv", limits=on) for on in (False, True))
     rng = np.random.default_rng(1)

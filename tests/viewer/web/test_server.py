@@ -171,6 +171,7 @@ DONE = {
     "view": lambda s: s["view"] == len(s["instances"]) == 2,
     "method": lambda s: s["instances"][0]["method"] == "dls",
     "limits": lambda s: s["limits"] is False,
+    "polish": lambda s: s["polish"] is True,
     "motion": lambda s: s["motion"] == "random",
     "curve": lambda s: s["curve"] == "knot",
     "speed": lambda s: s["speed"] == 2.5,

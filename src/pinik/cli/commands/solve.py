@@ -13,7 +13,7 @@ from ...solvers.base import Solver
 from ...solving.front import solve as solve_targets
 from ...solving.solution import Solution
 from ..inputs import solve_options as given
-from ..inputs.assignments import configuration, solver_with
+from ..inputs.assignments import numbers_by_joint, origin, solver_with
 from ..inputs.loading import load_robot
 from ..inputs.options import AsJson, Degrees, PackageDirs, RobotSource, Root
 from ..inputs.targets import check_frames, option_of, read_position, target_from_options, targets_from_file
@@ -48,6 +48,8 @@ def solve(
     seed: given.Seed = 0,
     engine: given.Engine = "auto",
     no_polish: given.NoPolish = False,
+    choose: given.Choose = "first",
+    choose_weight: given.ChooseWeight = None,
     start: given.Start = None,
     pose: given.StartPose = None,
     lock: given.Lock = None,
@@ -90,8 +92,10 @@ def solve(
         "limits": not no_limits,
         "locked": lock or (),
         "polish": not no_polish,
+        "choose": choose,
+        "choose_weights": numbers_by_joint(choose_weight, "--choose-weight", "JOINT=W"),
+        "q0": origin(machine, pose, start, "--start", units, None if no_limits else "moved inside"),
     }
-    options["q0"] = configuration(machine, pose, start, "--start", units, None if no_limits else "moved to the limit")
     solution = _solved(machine, asked, solver, method, options)
     _emit(solution, units, as_json)
     return ExitStatus.ANSWERED if solution.success else ExitStatus.MISSED

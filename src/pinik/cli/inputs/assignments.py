@@ -12,11 +12,12 @@ from ...errors import PinikError, UnknownNameError
 from ...robot import Robot
 from ...solvers.base import Solver
 from ...solvers.registry import SOLVERS, make_solver
+from ...solving.origin import Origin
 from ..terminal.exits import CommandError, in_words
 from ..terminal.output import say
 from ..terminal.units import Units
 
-__all__ = ["configuration", "solver_with", "solvers_with"]
+__all__ = ["configuration", "numbers_by_joint", "origin", "solver_with", "solvers_with"]
 
 
 def configuration(
@@ -65,6 +66,36 @@ def configuration(
             low, high = units.show_limits(lower, upper, joint)
             say(f"note: {option} {name}={text} is outside the limits {low} … {high} {units.of(joint)}; {beyond_limits}")
     return q
+
+
+def origin(
+    robot: Robot,
+    pose: str | None,
+    assignments: Iterable[str] | None,
+    option: str,
+    units: Units,
+    beyond_limits: str | None,
+) -> Origin:
+    """The start of a solve, in which continuous joints keep their turns; otherwise as `configuration`."""
+    q = configuration(robot, pose, assignments, option, units, beyond_limits)
+    given = dict(_pairs(assignments, option, "JOINT=ANGLE", split_at_last=True))
+    turning = [robot.joint(name) for name in given if robot.joint(name).nq == 2]
+    return Origin(q, turned={joint.name: units.scalar(float(given[joint.name]), joint) for joint in turning})
+
+
+def numbers_by_joint(assignments: Iterable[str] | None, option: str, form: str) -> dict[str, float]:
+    """The numbers of joints, from "JOINT=NUMBER" texts.
+
+    Raises:
+        CommandError: A text that cannot be used.
+    """
+    numbers = {}
+    for name, text in _pairs(assignments, option, form, split_at_last=True):
+        try:
+            numbers[name] = float(text)
+        except ValueError:
+            raise CommandError(f"{option} {name} must be a number; got {text!r}") from None
+    return numbers
 
 
 def solver_with(method: str, parameters: Iterable[str] | None) -> Solver:

@@ -9,6 +9,8 @@ import typer
 __all__ = [
     "At",
     "Axis",
+    "Choose",
+    "ChooseWeight",
     "Direction",
     "Engine",
     "Frame",
@@ -98,6 +100,14 @@ TimeLimit = Annotated[float | None, _solver("The most seconds in all.", "S")]
 Restarts = Annotated[int | None, _solver("The most restarts from other configurations; 0 for the bare method.", "N")]
 Seed = Annotated[int, _solver("The seed of the restarts.", "N")]
 Engine = Annotated[str, _solver("The engine to use; auto takes native if it is available.", "auto|python|native")]
+Choose = Annotated[
+    str,
+    _solver("Take the first answer, or of several the one nearest to the start.", "first|nearest"),
+]
+ChooseWeight = Annotated[
+    list[str] | None,
+    _solver("With --choose nearest, a factor on the change of this joint; repeatable.", "JOINT=W"),
+]
 Start = Annotated[
     list[str] | None,
     _start(

@@ -48,6 +48,8 @@ def make_engine(question: Question) -> Engine:
     asked.iterations_to_the_end = min(options.iterations_to_the_end, _MOST)
     asked.time_limit = options.time_limit
     asked.trace = options.trace
+    asked.choose_nearest = options.choose == "nearest"
+    asked.choose_weights = [options.choose_weights.get(c.joint.name, 1.0) for c in problem.coordinates]
     asked.polish = options.polish and question.solver.converges_quadratically
     engine: Engine = module.Engine(robot, _problem(robot, problem), asked)
     return engine

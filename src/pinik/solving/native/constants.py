@@ -8,7 +8,7 @@ from ... import checks
 from ...model import configurations, joint, limits
 from ...problem import problem, reach, slack, targets
 from ...solvers import ccd, damped_least_squares, pseudo_inverse
-from .. import attempts, changes, run, starts, walk
+from .. import attempts, changes, choice, run, starts, walk
 from .module import load
 
 __all__ = ["CONSTANTS", "make_constants"]
@@ -33,6 +33,9 @@ CONSTANTS = {
     "polishing_gain": run.POLISHING_GAIN,
     "exact_part_of_chain": run.EXACT_SHARE_OF_CHAIN,
     "restarts_when_unreachable": attempts.RESTARTS_WHEN_UNREACHABLE,
+    "exact_attempts": attempts.EXACT_ATTEMPTS,
+    "same_answer": choice.SAME_ANSWER,
+    "nothing_new_share": choice.NOTHING_NEW_SHARE,
     "table_size": starts.SIZE,
     "table_nearest": starts.NEAREST,
     "table_key": starts.OF_THE_TABLE,

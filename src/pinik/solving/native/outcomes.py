@@ -43,19 +43,19 @@ def _numbered() -> NDArray[np.object_]:
 
 def attempt_many(engine: Engine, goals: Array, starts: Array, nearest: bool, threads: int) -> Outcomes:
     """Solve for goals (N, n, 18) from starts (N or 1, nq). The number of a question seeds its restarts."""
-    q, status, position, orientation, iterations, updates, restarts, seconds = engine.solve_many(
+    q, status, position, orientation, iterations, updates, restarts, chosen_from, seconds = engine.solve_many(
         starts, goals, nearest, threads
     )
-    return Outcomes(q, _numbered()[status], position, orientation, iterations, updates, restarts, seconds)
+    return Outcomes(q, _numbered()[status], position, orientation, iterations, updates, restarts, chosen_from, seconds)
 
 
 def follow(engine: Engine, goals: Array, start: Array, on_miss: str) -> Outcomes:
     """Follow a path of goals (N, n, 18) from a start (nq,); fewer than N outcomes if the path stops at a miss."""
     module = load()
-    q, status, position, orientation, iterations, updates, restarts, seconds = module.Track(engine).follow(
+    q, status, position, orientation, iterations, updates, restarts, chosen_from, seconds = module.Track(engine).follow(
         start, goals, module.OnMiss[on_miss]
     )
-    return Outcomes(q, _numbered()[status], position, orientation, iterations, updates, restarts, seconds)
+    return Outcomes(q, _numbered()[status], position, orientation, iterations, updates, restarts, chosen_from, seconds)
 
 
 class NativeOutcome:
@@ -96,6 +96,11 @@ class NativeOutcome:
         return self._answer.q
 
     @property
+    def start(self) -> Array:
+        """The start (nq,), moved inside the limits; empty if no joint of the robot is (cos, sin) in q."""
+        return self._answer.start
+
+    @property
     def errors(self) -> tuple[TargetError, ...]:
         """The error of each target at `q`."""
         return _errors(self._answer.errors)
@@ -114,6 +119,11 @@ class NativeOutcome:
     def restarts(self) -> int:
         """The number of attempts after the first."""
         return self._answer.restarts
+
+    @property
+    def chosen_from(self) -> int:
+        """The number of distinct answers that `q` was chosen from."""
+        return self._answer.chosen_from
 
     @property
     def proof(self) -> Shortfall | None:

@@ -20,8 +20,8 @@ __all__ = ["Setup", "apply_setup", "read_setup", "write_setup"]
 Setup = dict[str, str]
 _LONGEST = 20_000
 _JSON_NAMES = {list: "array", dict: "object"}
-_KEYS = ("robot", "root", "view", "methods", "parameters", "motion", "curve", "speed", "limits", "iterations",
-         "tolerance", "polish", "balls", "run")  # fmt: skip
+_KEYS = ("robot", "root", "view", "methods", "parameters", "motion", "curve", "speed", "limits", "polish", "iterations",
+         "tolerance", "balls", "run")  # fmt: skip
 
 
 def write_setup(session: Session) -> str:
@@ -43,12 +43,12 @@ def write_setup(session: Session) -> str:
         setup["speed"] = _short(motion.speed)
     if settings.limits != default.limits:
         setup["limits"] = "off"
+    if settings.polish != default.polish:
+        setup["polish"] = "on"
     if not settings.until_reached:
         setup["iterations"] = str(settings.at_most)
     if settings.tolerance != default.tolerance:
         setup["tolerance"] = ",".join(map(_short, (settings.tolerance.farthest, settings.tolerance.orientation)))
-    if settings.polish != default.polish:
-        setup["polish"] = "on"
     setup["balls"] = _compact([_ball(session, index) for index in range(len(session.balls))])
     setup["run"] = "on" if session.running else "off"
     return urlencode(setup, quote_via=quote, safe=",:[]{}")
@@ -135,6 +135,7 @@ def _messages(session: Session, setup: Setup) -> Iterator[dict[str, Any]]:
                 yield {"type": "parameter", "instance": index, "name": name, "value": value}
     settings = session.settings
     yield {"type": "limits", "on": _on("limits", setup.get("limits", "on"))}
+    yield {"type": "polish", "on": _on("polish", setup.get("polish", "off"))}
     yield {
         "type": "iterations",
         "until_reached": "iterations" not in setup,
@@ -142,7 +143,6 @@ def _messages(session: Session, setup: Setup) -> Iterator[dict[str, Any]]:
     }
     tolerance = _numbers("tolerance", setup["tolerance"], 2) if "tolerance" in setup else Tolerance()
     yield {"type": "tolerance", "position": tolerance[0], "orientation": tolerance[1]}
-    yield {"type": "polish", "on": _on("polish", setup.get("polish", "off"))}
     if "curve" in setup:
         yield {"type": "curve", "curve": setup["curve"]}
     yield {"type": "speed", "value": _numbers("speed", setup["speed"], 1)[0] if "speed" in setup else 1.0}

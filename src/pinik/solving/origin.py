@@ -1,0 +1,77 @@
+"""The start of a solve as users give it, and the angles of continuous joints that are unwound from it."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..model.robot_model import RobotModel
+
+__all__ = ["Origin", "is_nearest", "unwound"]
+
+Array = NDArray[np.float64]
+
+_TURN = 2.0 * math.pi
+_NONE: Mapping[str, float] = {}
+
+
+class Origin(NamedTuple):
+    """The start of a solve.
+
+    Attributes:
+        q: The configuration (nq,).
+        nearest: Whether the first attempt starts near the targets instead, from a table.
+        turned: Joint name → angle [rad], for continuous joints that were given by their angle.
+    """
+
+    q: Array
+    nearest: bool = False
+    turned: Mapping[str, float] = _NONE
+
+    @classmethod
+    def of(cls, robot: RobotModel, q0: Any) -> Origin:
+        """The start that `q0` stands for.
+
+        Args:
+            robot: The robot.
+            q0: A configuration (nq,); angles by joint name [rad, or m for prismatic joints], with all other joints
+                neutral; "nearest"; an Origin; or None for the neutral configuration.
+
+        Raises:
+            UnknownNameError: There is no such joint.
+            InputError: A wrong shape, or a value that cannot be used.
+        """
+        if isinstance(q0, Origin):
+            return q0
+        if q0 is None or is_nearest(q0):
+            return cls(robot.neutral(), q0 is not None)
+        if isinstance(q0, Mapping):
+            q = robot.configuration(q0)
+            return cls(q, turned={name: float(angle) for name, angle in q0.items() if robot.joint(name).nq == 2})
+        return cls(robot.check_configuration(q0, "q0"))
+
+
+def is_nearest(q0: object) -> bool:
+    """Whether a start is the string "nearest"."""
+    return isinstance(q0, str) and q0 == "nearest"
+
+
+def unwound(robot: RobotModel, q: Array, start: Array, turned: Mapping[str, float] = _NONE) -> dict[str, float]:
+    """The angles at `q`, with each continuous joint at the whole turn nearest to its start.
+
+    Args:
+        robot: The robot.
+        q: The configuration (nq,).
+        start: The start (nq,); it may be empty if no joint is (cos, sin) in q.
+        turned: The start's angles of the continuous joints that were given by their angle.
+    """
+    angles = robot.angles(q)
+    for joint in robot.joints:
+        if joint.nq == 2 and joint.has_one_axis:
+            near = turned.get(joint.name, joint.angle(start))
+            angles[joint.name] += _TURN * round((near - angles[joint.name]) / _TURN)
+    return angles
