@@ -255,6 +255,11 @@ def test_balls(arm):
     shown = after(arm, "ball", index=1, position=[0.1, -100, 100])
     assert shown.balls[1].position.tolist() == [0.1, -100.0, 100.0]
     assert shown.motion.kind == "hand"
+    assert after(arm, "free", index=0, axes="xz").balls[0].target.along == (False, True, False)
+    for tolerance in ([0.01, 0.2], [[0.01, 0.02, 0.03], 0.2]):
+        own = after(arm, "ball_tolerance", index=0, tolerance=tolerance).balls[0].target.tolerance
+        assert own == pinik.Tolerance.of(tolerance)
+    assert after(arm, "ball_tolerance", index=0, tolerance=None).balls[0].target.tolerance is None
     shown = after(arm, "orientation", index=0, on=True, rpy=[0.1, 0.2, 0.3])
     assert (shown.balls[0].oriented, shown.balls[0].rpy.tolist()) == (True, [0.1, 0.2, 0.3])
     assert [ball.mode for ball in after(arm, "effector", index=1, mode="off").balls] == ["on", "off"]

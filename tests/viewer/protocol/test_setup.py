@@ -26,6 +26,7 @@ ARM = load_quietly("two_link")
 FRAMES = ["base", "link1", "link2", "tip"]
 NUMBER = st.floats(-2, 2)
 POINT = st.lists(NUMBER, min_size=3, max_size=3)
+LENGTH = st.floats(1e-6, 1.0)
 PARAMETERS = [
     ("max_step", st.none() | st.floats(1e-6, 10)),
     ("max_residual", st.none() | st.floats(1e-6, 10)),
@@ -66,6 +67,16 @@ MESSAGES = st.one_of(
         st.integers(0, 3),
         st.booleans(),
         POINT,
+    ),
+    st.builds(
+        lambda i, axes: {"type": "free", "index": i, "axes": axes},
+        st.integers(0, 3),
+        st.sampled_from(["", "x", "y", "z", "xy", "xz", "yz", "xyz"]),
+    ),
+    st.builds(
+        lambda i, tolerance: {"type": "ball_tolerance", "index": i, "tolerance": tolerance},
+        st.integers(0, 3),
+        st.none() | st.tuples(LENGTH | st.lists(LENGTH, min_size=3, max_size=3), st.floats(1e-6, 3.2)).map(list),
     ),
     st.builds(
         lambda i, m: {"type": "effector", "index": i, "mode": m},
@@ -264,6 +275,13 @@ def test_parameters_that_are_not_said_are_the_defaults():
         ("balls=[[]]", "a ball must be"),
         ('balls=[["tip"]]', "a ball must be"),
         ('balls=[["tip","on",null,null,null]]', "a ball must be"),
+        ('balls=[["tip","on",null,null,{},0]]', "a ball must be"),
+        ('balls=[["tip","on",null,null,{"fre":"x"}]]', "a ball must be"),
+        ('balls=[["tip","on",null,null,{"free":5}]]', "axes must be a text"),
+        ('balls=[["tip","on",null,null,{"free":"yx"}]]', 'letters of "xyz" in order'),
+        ('balls=[["tip","on",null,null,{"free":"xyz"}]]', "at least one axis, or for an orientation"),
+        ('balls=[["tip","on",null,null,{"tolerance":0.1}]]', "null or [metres, radians]"),
+        ('balls=[["tip","on",null,null,{"tolerance":[[1,2],0.1]}]]', "one length, or three for a box"),
         ('balls=[["nope","on"]]', "no frame 'nope'"),
         ('balls=[[5,"on"]]', "frame must be a text"),
         ('balls=[[{},"on"]]', "frame must be a text"),
@@ -310,3 +328,17 @@ def test_no_set_up_does_more_than_raise_in_words(parts):
         apply_setup(shown, read_setup("&".join(f"{name}={quote(value)}" for name, value in parts)))
     json.dumps(json.loads(snapshot(shown)), allow_nan=False)
     shown.step()
+
+
+def test_a_link_keeps_free_axes_and_a_balls_own_tolerance(arm):
+    shown, other = (Session(arm, clock=Clock()) for _ in range(2))
+    ball = shown.balls[0]
+    ball.orient(True, [0.1, 0.2, 0.3])
+    ball.release("xyz")
+    ball.tolerate(pinik.Tolerance((0.01, 0.02, 1 / 3), 0.5))
+    apply_setup(other, read_setup(write_setup(shown)))
+    assert other.balls[0].target.position is None
+    assert other.balls[0].target.tolerance == pinik.Tolerance((0.01, 0.02, 1 / 3), 0.5)
+    apply_setup(other, read_setup(write_setup(Session(arm, clock=Clock()))))
+    back = other.balls[0]
+    assert (back.oriented, back.free, back.tolerance, back.target.along) == (False, "", None, (True, True, True))

@@ -77,6 +77,8 @@ def test_a_state_tells_the_session(arm):
     session.add_ball("bone2")
     session.set_mode(1, "pinned")
     session.balls[1].orient(True, [0.1, 0.2, 0.3])
+    session.balls[1].release("xy")
+    session.balls[1].tolerate(pinik.Tolerance((0.01, 0.02, 0.03), 0.4))
     session.set_motion("curve")
     session.set_curve("wave")
     session.motion.speed = 1.5
@@ -96,6 +98,8 @@ def test_a_state_tells_the_session(arm):
     assert first["position"] == session.balls[0].position.tolist()
     assert (second["frame"], second["mode"], second["curve"], second["oriented"]) == ("bone2", "pinned", [], True)
     assert second["rpy"] == [0.1, 0.2, 0.3]
+    assert (first["free"], first["tolerance"]) == ("", None)
+    assert (second["free"], second["tolerance"]) == ("xy", [[0.01, 0.02, 0.03], 0.4])
     assert [one["method"] for one in state["instances"]] == ["ccd", "dls"]
     relaxation = next(p for p in state["instances"][0]["parameters"] if p["name"] == "relaxation")
     assert (relaxation["value"], relaxation["default"]) == (0.5, None)

@@ -76,3 +76,44 @@ def test_a_wrong_place_or_orientation_changes_nothing(wrong):
         here.orient(True, wrong)
     assert here.placement.tolist() == before
     assert not here.oriented
+
+
+def test_a_position_is_free_along_some_axes_wherever_the_ball_is_put():
+    here = ball()
+    here.put([1, 2, 3])
+    here.release("xz")
+    assert here.target.to_dict()["position"] == [None, 2.0, None]
+    here.put([4, 5, 6])
+    assert here.target.to_dict()["position"] == [None, 5.0, None]
+    assert here.placement[:3].tolist() == [4, 5, 6]
+    here.release("")
+    assert here.target.position.tolist() == [4, 5, 6]
+
+
+def test_something_is_always_asked_for():
+    here = ball()
+    here.release("xy")
+    with pytest.raises(pinik.InputError, match="ball 'tip' must ask for the position along at least one axis"):
+        here.release("xyz")
+    assert here.free == "xy"
+    here.orient(True, [0, 0, 1])
+    here.release("xyz")
+    assert here.target.position is None
+    with pytest.raises(pinik.InputError, match="ball 'tip' must ask for the position along at least one axis"):
+        here.orient(False, [0, 0, 2])
+    assert (here.oriented, here.rpy.tolist()) == (True, [0, 0, 1])
+
+
+@pytest.mark.parametrize("wrong", ["yx", "xx", "w", "x y", "X"])
+def test_axes_are_letters_in_order(wrong):
+    with pytest.raises(pinik.InputError, match=r'letters of "xyz" in order; got'):
+        ball().release(wrong)
+
+
+def test_a_balls_own_tolerance_is_its_targets():
+    here = ball()
+    assert here.target.tolerance is None
+    here.tolerate(pinik.Tolerance((0.01, 0.02, 0.03), 0.1))
+    assert here.target.tolerance == pinik.Tolerance((0.01, 0.02, 0.03), 0.1)
+    here.tolerate(None)
+    assert here.target.tolerance is None

@@ -566,3 +566,76 @@ def test_another_robot_keeps_the_settings_and_drops_joints_that_it_lacks(arm, pa
     assert other.balls[0].position.tolist() == fresh.balls[0].position.tolist()  # the seed as well
     kept = shown.with_robot(load_quietly("arm", root="free_flyer"))
     assert dict(kept.instances[0].solver.stiffness) == stiff
+
+
+def test_a_ball_with_free_axes_asks_for_the_others_alone(arm):
+    shown = session(arm)
+    shown.move_ball(0, [9.0, -9.0, 0.6])  # out of reach, were x and y not free
+    shown.balls[0].release("xy")
+    steps(shown, 40)
+    for one in shown.instances:
+        height = plain_placement(arm, "tip", one.q).translation[2]
+        verdict = one.verdict()
+        assert verdict.status == "CONVERGED"
+        assert abs(height - 0.6) <= 1e-4
+        assert verdict.position_error == pytest.approx(abs(height - 0.6), abs=1e-12)
+
+
+def test_a_ball_with_a_free_axis_follows_its_curve_along_the_others(arm):
+    shown = session(arm, "dls")
+    shown.set_motion("curve")
+    shown.balls[0].release("y")
+    places = []
+    for _ in range(60):
+        shown.step()
+        x, _, z = plain_placement(arm, "tip", shown.instances[0].q).translation
+        places.append(shown.balls[0].position.tolist())
+        if shown.instances[0].status == "CONVERGED":
+            assert np.hypot(x - places[-1][0], z - places[-1][2]) <= 1e-4
+    assert np.ptp(places, axis=0)[1] > 0.01, "the ball itself moves along the free axis too"
+    assert shown.instances[0].statistics.summary().efficiency > 0.9
+
+
+def test_a_balls_own_box_is_what_counts_as_reached(arm):
+    shown = session(arm, "dls")
+    place = plain_placement(arm, "tip", arm.configuration(dict.fromkeys(arm.joint_names, 0.2))).translation
+    shown.move_ball(0, place)
+    shown.balls[0].tolerate(pinik.Tolerance((0.03, 1e-4, 0.03), 1e-3))
+    steps(shown, 30)
+    off = np.abs(plain_placement(arm, "tip", shown.instances[0].q).translation - place)
+    assert shown.instances[0].verdict().status == "CONVERGED"
+    assert (off <= [0.03, 1e-4, 0.03]).all()
+    assert off.max() > 1e-4, "the step would have stopped at the session's tolerance alike"
+
+
+@pytest.mark.parametrize("at_most", [None, 10])
+@pytest.mark.parametrize("method", ["dls", "pinv", "jt", "ccd"])
+def test_five_joints_reach_a_pose_within_twenty_degrees(method, at_most):
+    """A pose that they reach, turned by 12 degrees: the exact one does not exist."""
+    so101 = load_quietly("so101")
+    shown = session(so101, method)
+    shown.change_settings(tolerance=pinik.Tolerance(1e-4, np.radians(20)))
+    if at_most:
+        shown.change_settings(until_reached=False, at_most=at_most)
+    ball = shown.balls[0]
+    M = plain_placement(so101, ball.frame, np.full(so101.model.nq, 0.2))
+    turned = M.rotation @ pinocchio.exp3(np.radians([7.0, 7.0, 7.0]))
+    shown.move_ball(0, M.translation)
+    ball.orient(True, pinocchio.rpy.matrixToRpy(turned))
+    steps(shown, 60)
+    one = shown.instances[0]
+    at = plain_placement(so101, ball.frame, one.q)
+    assert one.verdict().status == "CONVERGED"
+    assert np.linalg.norm(at.translation - ball.position) <= 1e-4
+    assert np.linalg.norm(pinocchio.log3(turned @ at.rotation.T)) <= np.radians(20)
+
+
+def test_five_joints_stay_within_twenty_degrees_of_a_moving_pose():
+    so101 = load_quietly("so101")
+    shown = session(so101, "dls")
+    shown.change_settings(tolerance=pinik.Tolerance(1e-4, np.radians(20)), until_reached=False, at_most=20)
+    ball = shown.balls[0]
+    ball.orient(True, pinocchio.rpy.matrixToRpy(pinocchio.rpy.rpyToMatrix(ball.rpy) @ pinocchio.exp3(np.full(3, 0.12))))
+    shown.set_motion("curve")
+    steps(shown, 100)
+    assert shown.instances[0].statistics.summary().efficiency > 0.9
