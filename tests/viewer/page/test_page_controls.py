@@ -211,6 +211,17 @@ def test_the_tolerance_is_typed_in_millimetres_and_degrees(open_panel):
     assert state["tolerance"]["position"] == pytest.approx(0.02)
 
 
+def test_polish_goes_on_within_the_tolerance(open_panel, arm):
+    desk = open_panel(methods=("dls",), running=True)
+    desk.expect("polish").not_to_be_checked()
+    desk.part("polish").check()
+    desk.until(lambda s: s["polish"])
+    desk.view.move_ball(arm.placement("tip", arm.random(np.random.default_rng(4))).translation)
+    desk.until(lambda s: np.linalg.norm(desk.effectors(s)[0].translation - s["balls"][0]["position"]) < 1e-8)
+    desk.part("polish").uncheck()
+    desk.until(lambda s: not s["polish"])
+
+
 def test_a_number_out_of_range_is_refused_in_words_and_changes_nothing(open_panel):
     desk = open_panel("two_link", methods=("dls",))
     before = desk.agree()

@@ -135,10 +135,9 @@ class Session:
     def step(self) -> None:
         """Advance the balls by 1/60 s, and let every visible instance chase them."""
         self.motion.advance(self.balls, 1.0 / STEPS_PER_SECOND)
-        targets = self.balls.targets
         share = _SOLVERS_SHARE / STEPS_PER_SECOND / self.view
         for instance in self.seen:
-            instance.step(targets, share)
+            instance.step(self.balls.targets, share)
         self.steps += 1
         if not self.running or self._clock() - self._refreshed >= 1.0:
             self._refresh_statistics()
