@@ -3,13 +3,14 @@
 from collections.abc import Sequence
 import enum
 from typing import Annotated
+import typing
 
 import numpy
 from numpy.typing import NDArray
 
 pinocchio_version: str = "4.1.0"
 
-abi: str = "2c06d2c08aa32b72"
+abi: str = "f95cad6502839d9a"
 
 class JointKind(enum.Enum):
     revolute = 0
@@ -341,7 +342,6 @@ class Engine:
         goals: Annotated[NDArray[numpy.float64], dict(shape=(None, 18), order="C", writable=False)],
         nearest: bool,
     ) -> Answer: ...
-    def solve_at(self, place: object, start: object, nearest: bool) -> Answer | None: ...
     def solve_many(
         self, starts: NDArray[numpy.float64], goals: NDArray[numpy.float64], nearest: bool, threads: int
     ) -> tuple[
@@ -355,6 +355,16 @@ class Engine:
         NDArray[numpy.float64],
     ]: ...
 
+class Call:
+    def __init__(self, engine: Engine, neutral: object, placement: type, solution: type, question: object) -> None: ...
+    def solve(self, place: object, start: object) -> typing.Any: ...
+
+def note(call: Call) -> None: ...
+def recalling(function: typing.Any, place: int, methods: dict[str, typing.Any]) -> typing.Any: ...
+def read_places(
+    places: object, farthest: float, threads: int
+) -> tuple[NDArray[numpy.float64], NDArray[numpy.int64]] | None: ...
+
 class ReferenceFrame(enum.Enum):
     WORLD = 0
 
@@ -362,7 +372,7 @@ class ReferenceFrame(enum.Enum):
 
     LOCAL_WORLD_ALIGNED = 2
 
-class Walk:
+class FrameWalk:
     def __init__(
         self,
         robot: Robot,

@@ -14,6 +14,7 @@ from .problem.targets import Target, Tolerance
 from .solvers.registry import Method
 from .solving import batch
 from .solving.front import answer
+from .solving.native.recalling import recalling
 from .solving.solution import Solution
 from .solving.words import UNWEIGHTED
 
@@ -69,6 +70,7 @@ class Robot(RobotModel):
         """
         return batch.jacobians(self, frame, Q, axes, relative_to)
 
+    @recalling(place=2)
     def solve(
         self,
         targets: str | Target | Sequence[Target],

@@ -5,6 +5,6 @@ namespace pinik {
 
 // Identifies the signatures of the module: the digest of its stub, as tests/solving/test_native.py computes it. It must
 // equal ABI in pinik/solving/native/module.py, which refuses a module from another build.
-constexpr const char* abi = "2c06d2c08aa32b72";
+constexpr const char* abi = "f95cad6502839d9a";
 
 }  // namespace pinik

@@ -9,8 +9,10 @@
 #include <stdexcept>
 #include <string>
 
+#include "call.hpp"
 #include "interface.hpp"
 #include "numbers.hpp"
+#include "places.hpp"
 #include "signals.hpp"
 
 namespace pinik {
@@ -37,29 +39,18 @@ Answer solve(Engine& engine, Vector start, std::vector<Goal> goals, bool nearest
   return answer;
 }
 
-// A rotation matrix up to the last bits. Python checks anything less exact, since it also reports what is wrong.
-bool is_rotation(const Mat3& R) {
-  return (R * R.transpose() - Mat3::Identity()).cwiseAbs().maxCoeff() < 1e-14 && R.determinant() > 0.0;
-}
-
 // The goal of a target that asks for a position, a rotation or both, from a 4×4 matrix or from a position alone. Nothing
 // if there is any doubt about the numbers.
 std::optional<Goal> goal_at(const Term& term, nb::handle place, double farthest) {
   Goal goal;
   if (term.asks_axis) return std::nullopt;
-  if (const double* matrix = numbers_of(place, {4, 4})) {
-    const Eigen::Map<const Eigen::Matrix<double, 4, 4, Eigen::RowMajor>> M(matrix);
-    goal.position = M.topRightCorner<3, 1>();
-    goal.rotation = M.topLeftCorner<3, 3>();
-    if (M.row(3) != Eigen::RowVector4d(0.0, 0.0, 0.0, 1.0) || !is_rotation(goal.rotation)) return std::nullopt;
-  } else if (const double* point = numbers_of(place, {3}); point && !term.asks_rotation) {
-    goal.position = Eigen::Map<const Vec3>(point);
-  } else {
-    return std::nullopt;
-  }
-  if (!goal.position.allFinite() || goal.position.cwiseAbs().maxCoeff() > farthest) return std::nullopt;
+  const double* matrix = numbers_of(place, {4, 4});
+  const double* point = matrix || term.asks_rotation ? nullptr : numbers_of(place, {3});
+  if (matrix ? !read_matrix(matrix, farthest, goal) : !point || !read_point(point, farthest, goal)) return std::nullopt;
   return goal;
 }
+
+}  // namespace
 
 std::optional<Answer> solve_at(Engine& engine, nb::handle place, nb::handle start, bool nearest) {
   const int nq = engine.mechanism().nq;
@@ -71,6 +62,8 @@ std::optional<Answer> solve_at(Engine& engine, nb::handle place, nb::handle star
   if (!goal || !engine.mechanism().normalize(q, problem.constants.largest_unit_error)) return std::nullopt;
   return solve(engine, std::move(q), {*goal}, nearest);
 }
+
+namespace {
 
 // For each problem: q, status, the largest position and orientation error, iterations, joint updates, restarts, seconds.
 struct Columns {
@@ -148,8 +141,6 @@ void register_engine(nb::module_& m) {
            [](Engine& self, Vector start, nb::ndarray<const double, nb::shape<-1, numbers_of_a_goal>, nb::c_contig> goals,
               bool nearest) { return solve(self, std::move(start), goals_from(goals.data(), goals.shape(0)), nearest); },
            "start"_a, "goals"_a, "nearest"_a)
-      .def("solve_at", &solve_at, "place"_a.none(), "start"_a.none(), "nearest"_a,
-           nb::sig("def solve_at(self, place: object, start: object, nearest: bool) -> Answer | None"))
       .def("solve_many", &solve_many, "starts"_a, "goals"_a, "nearest"_a, "threads"_a,
            nb::sig("def solve_many(self, starts: NDArray[numpy.float64], goals: NDArray[numpy.float64], "
                    "nearest: bool, threads: int) -> tuple[NDArray[numpy.float64], NDArray[numpy.int32], "

@@ -11,6 +11,8 @@ void register_descriptions(nb::module_& m);  // Constants, Robot and Problem
 void register_settings(nb::module_& m);      // Solver and Settings
 void register_answers(nb::module_& m);       // Status and Answer
 void register_engine(nb::module_& m);        // Engine
-void register_kinematics(nb::module_& m);    // ReferenceFrame and Walk
+void register_calls(nb::module_& m);         // Call, recalling
+void register_places(nb::module_& m);        // read_places
+void register_kinematics(nb::module_& m);    // ReferenceFrame and FrameWalk
 
 }  // namespace pinik

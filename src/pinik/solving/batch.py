@@ -11,8 +11,8 @@ from numpy.typing import ArrayLike, NDArray
 
 from ..model.jacobians import as_reference_frame
 from ..model.robot_model import RobotModel
+from .native.kinematics import make_walk
 from .native.module import load, why_not
-from .native.walks import make_walk
 from .processors import processors
 
 __all__ = ["jacobians", "placements"]
@@ -26,7 +26,7 @@ Array = NDArray[np.float64]
 def placements(robot: RobotModel, frame: str, Q: ArrayLike, relative_to: str | None) -> Array:
     """The placements (N, 4, 4) of a frame; `Robot.placements` explains the arguments."""
 
-    def at_once(walk: _native.Walk, q: object) -> Array | None:
+    def at_once(walk: _native.FrameWalk, q: object) -> Array | None:
         return walk.placements(q, processors())
 
     def one(q: Array) -> Array:
@@ -41,7 +41,7 @@ def jacobians(
     """The Jacobians (N, 6, nv) of a frame; `Robot.jacobians` explains the arguments."""
     reference_frame = as_reference_frame(axes)
 
-    def at_once(walk: _native.Walk, q: object) -> Array | None:
+    def at_once(walk: _native.FrameWalk, q: object) -> Array | None:
         return walk.jacobians(q, load().ReferenceFrame[reference_frame.name], processors())
 
     def one(q: Array) -> Array:
@@ -55,7 +55,7 @@ def _at_many(
     frame: str,
     Q: ArrayLike,
     relative_to: str | None,
-    at_once: Callable[[_native.Walk, object], Array | None],
+    at_once: Callable[[_native.FrameWalk, object], Array | None],
     one: Callable[[Array], Array],
     shape: tuple[int, int],
 ) -> Array:

@@ -17,6 +17,7 @@ from ..problem.targets import Target, Tolerance
 from ..solvers.registry import Method
 from .kept import Kept, Key, kept_of
 from .keys import key_of
+from .native.recalling import recalling
 from .options import OPTION_NAMES, Options
 from .prepared import Prepared
 from .question import Question
@@ -30,6 +31,7 @@ __all__ = ["answer", "iterate", "prepare", "solve"]
 _OPTIONS_OF_ITERATE = ("q0", "limits", "locked", "max_iterations", "tolerance")
 
 
+@recalling()
 def solve(
     robot: RobotModel,
     targets: str | Target | Sequence[Target],
@@ -246,6 +248,7 @@ def answer(
         if prepared is not None:
             quick = prepared.at(wanted[5] if position is None else _as_point(position), q0)
             if quick is not None:
+                prepared.recall()
                 return quick
     asked = asked_targets(targets, wanted, method, parameters)
     if key is None:

@@ -19,7 +19,7 @@ from ..problem.targets import Target, Tolerance, as_targets, largest_of
 from ..solvers.registry import Method
 from .at_once import attempt_at_once, lands_at_once
 from .attempts import Outcome, Outcomes
-from .native.codec import goals_of, targets_of
+from .native.codec import goals_of, read_places, targets_of
 from .native.outcomes import attempt_many
 from .options import OPTION_NAMES, Options
 from .prepared import Prepared, is_nearest
@@ -92,7 +92,7 @@ def solve_many(
     )  # fmt: skip
     count = processors() if threads is None else min(as_count(threads, "threads"), _MOST_THREADS)
     began = time.perf_counter()
-    pattern, goals = _questions(robot, targets, places, tool, relative_to)
+    pattern, goals = _questions(targets, places, tool, relative_to, count)
     starts = _starts(robot, None if is_nearest(q0) else q0, len(goals))
     prepared = Prepared(robot, pattern, options) if pattern else None
     outcomes = _nothing(robot) if prepared is None else _outcomes(prepared, goals, starts, is_nearest(q0), count)
@@ -180,7 +180,7 @@ class Solutions(Outcomes):
 
 
 def _questions(
-    robot: RobotModel, targets: Any, places: Any, tool: Any, relative_to: str | None
+    targets: Any, places: Any, tool: Any, relative_to: str | None, threads: int
 ) -> tuple[tuple[Target, ...], Array]:
     """(the pattern of the targets, empty without targets; their numbers (N, targets, 18))."""
     if not isinstance(targets, str) and (tool is not None or relative_to is not None):
@@ -189,8 +189,13 @@ def _questions(
         )
     if places is None:
         return _listed(targets)
-    rotations, points = _read_places(places)
-    return _placed(targets, rotations, points, tool, relative_to)
+    goals, turned = _goals_at(places, threads)
+    pattern = _pattern(targets, turned, tool, relative_to)
+    if pattern.position is None:
+        goals[:, :3] = 0.0
+    if pattern.rotation is None:
+        goals[:, 3:] = 0.0
+    return (pattern,), goals[:, np.newaxis]
 
 
 def _listed(targets: Any) -> tuple[tuple[Target, ...], Array]:
@@ -211,6 +216,34 @@ def _listed(targets: Any) -> tuple[tuple[Target, ...], Array]:
     return asked[0], np.array([goals_of(each) for each in asked])
 
 
+def _goals_at(places: Any, threads: int) -> tuple[Array, bool]:
+    """(the numbers of the targets at these places (N, 18), whether they have rotations).
+
+    The compiled engine reads what needs no conversion, and only the rest is checked here.
+    """
+    read = read_places(places, threads)
+    if read is None:
+        rotations, points = _read_places(places)
+        return _as_goals(rotations, points), rotations is not None
+    goals, doubtful = read
+    if len(doubtful):
+        try:
+            rotations, points = _read_places(places[doubtful])
+        except InputError:
+            _read_places(places)  # raises the error with the index of the place
+            raise
+        goals[doubtful] = _as_goals(rotations, points)
+    return goals, places.ndim == 3
+
+
+def _as_goals(rotations: Array | None, points: Array) -> Array:
+    goals = np.zeros((len(points), 18))
+    goals[:, :3] = points
+    if rotations is not None:
+        goals[:, 3:12] = rotations.reshape(-1, 9)
+    return goals
+
+
 def _read_places(places: Any) -> tuple[Array | None, Array]:
     """(rotations (N, 3, 3) or None, points (N, 3) [m])."""
     if isinstance(places, Sequence) and any(isinstance(place, pinocchio.SE3) for place in places):
@@ -226,26 +259,16 @@ def _read_places(places: Any) -> tuple[Array | None, Array]:
     return as_rotations(matrices[:, :3, :3], "places"), as_points(matrices[:, :3, 3], "places")
 
 
-def _placed(
-    targets: Any, rotations: Array | None, points: Array, tool: Any, relative_to: str | None
-) -> tuple[tuple[Target, ...], Array]:
-    """Problems given as a frame or a pattern, and places."""
+def _pattern(targets: Any, turned: bool, tool: Any, relative_to: str | None) -> Target:
+    """The pattern of targets that are given as a frame or a pattern, and places."""
     if isinstance(targets, str):
-        orientation = None if rotations is None else np.eye(3)
-        pattern = Target(targets, np.zeros(3), rotation=orientation, tool=tool, relative_to=relative_to)
-    elif isinstance(targets, Target):
-        pattern = targets
-    else:
+        rotation = np.eye(3) if turned else None
+        return Target(targets, np.zeros(3), rotation=rotation, tool=tool, relative_to=relative_to)
+    if not isinstance(targets, Target):
         raise InputError(f"with places, targets must be a frame's name or one Target; got {targets!r}")
-    if pattern.axis is not None or (pattern.rotation is not None and rotations is None):
-        raise InputError(f"places do not specify all that the target of {pattern.frame!r} needs; give N Target objects")
-    goals = np.zeros((len(points), 1, 18))
-    if pattern.position is not None:
-        goals[:, 0, :3] = points
-    if pattern.rotation is not None:
-        assert rotations is not None
-        goals[:, 0, 3:12] = rotations.reshape(-1, 9)
-    return (pattern,), goals
+    if targets.axis is not None or (targets.rotation is not None and not turned):
+        raise InputError(f"places do not specify all that the target of {targets.frame!r} needs; give N Target objects")
+    return targets
 
 
 def _starts(robot: RobotModel, q0: ArrayLike | None, count: int) -> Array:

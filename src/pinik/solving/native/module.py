@@ -17,7 +17,7 @@ from ...solvers.transpose import JacobianTranspose
 
 __all__ = ["ABI", "METHODS", "load", "why_not"]
 
-ABI = "2c06d2c08aa32b72"
+ABI = "f95cad6502839d9a"
 """The digest of the module's stub, which identifies its signatures; the module contains the same digest
 (src/native/bindings/abi.hpp)."""
 

@@ -81,7 +81,7 @@ class Branch {
 
 // A walk to a frame from its reference: the branches of both, from the joint where they meet. Holds the working memory of
 // one thread.
-class Walk {
+class FrameWalk {
  public:
   // A frame and the joint to which it is fixed; the world at first.
   struct Place {
@@ -90,8 +90,8 @@ class Walk {
   };
 
   // Squared lengths of (cos, sin) pairs and quaternions may differ from 1 by at most `largest_unit_error`.
-  Walk(const Mechanism& mechanism, const Place& frame, const Place& reference, double largest_unit_error)
-      : Walk(mechanism, frame, reference, largest_unit_error, meeting(mechanism, frame.joint, reference.joint)) {}
+  FrameWalk(const Mechanism& mechanism, const Place& frame, const Place& reference, double largest_unit_error)
+      : FrameWalk(mechanism, frame, reference, largest_unit_error, meeting(mechanism, frame.joint, reference.joint)) {}
 
   int entries() const { return mechanism_.nq; }
 
@@ -133,7 +133,7 @@ class Walk {
   int columns_ = 0;
   Vector q_;
 
-  Walk(const Mechanism& mechanism, const Place& frame, const Place& reference, double largest_unit_error, int meeting)
+  FrameWalk(const Mechanism& mechanism, const Place& frame, const Place& reference, double largest_unit_error, int meeting)
       : mechanism_(mechanism), frame_(mechanism, meeting, frame.joint, frame.placement),
         reference_(mechanism, meeting, reference.joint, reference.placement),
         has_reference_(reference.joint != 0 || !reference.placement.R.isIdentity(0.0) || !reference.placement.p.isZero(0.0)),
@@ -177,7 +177,7 @@ class Walk {
 };
 
 // Write the placements of `count` configurations, one after another. Returns how many came before the first faulty one.
-PINIK_FAST static std::size_t write_placements(Walk& walk, const double* q, std::size_t count, double* out) {
+PINIK_FAST static std::size_t write_placements(FrameWalk& walk, const double* q, std::size_t count, double* out) {
   const std::size_t entries = static_cast<std::size_t>(walk.entries());
   std::size_t row = 0;
   while (row < count && walk.placement(q + row * entries, out + row * 16)) ++row;
@@ -185,7 +185,7 @@ PINIK_FAST static std::size_t write_placements(Walk& walk, const double* q, std:
 }
 
 // Write their Jacobians, likewise.
-PINIK_FAST static std::size_t write_jacobians(Walk& walk, ReferenceFrame axes, const double* q, std::size_t count,
+PINIK_FAST static std::size_t write_jacobians(FrameWalk& walk, ReferenceFrame axes, const double* q, std::size_t count,
                                               double* out) {
   const std::size_t entries = static_cast<std::size_t>(walk.entries());
   const std::size_t numbers = 6 * static_cast<std::size_t>(walk.columns());

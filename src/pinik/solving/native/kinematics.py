@@ -14,12 +14,12 @@ from .module import load
 __all__ = ["make_walk"]
 
 if TYPE_CHECKING:
-    from ..._native import Walk
+    from ..._native import FrameWalk
 
 _WORLD = (0, pinocchio.SE3.Identity())
 
 
-def make_walk(robot: RobotModel, frame: int, reference: int | None) -> Walk:
+def make_walk(robot: RobotModel, frame: int, reference: int | None) -> FrameWalk:
     """Compile the walk to a frame.
 
     Args:
@@ -29,7 +29,7 @@ def make_walk(robot: RobotModel, frame: int, reference: int | None) -> Walk:
     """
     joint, placement = _fixed_to(robot, frame)
     reference_joint, reference_placement = _WORLD if reference is None else _fixed_to(robot, reference)
-    walk: Walk = load().Walk(
+    walk: FrameWalk = load().FrameWalk(
         robot=native_robot(robot),
         frame_joint=joint,
         frame_rotation=placement.rotation,
