@@ -2,15 +2,14 @@
 
 from collections.abc import Sequence
 import enum
-from typing import Annotated
-import typing
+from typing import Annotated, Any
 
 import numpy
 from numpy.typing import NDArray
 
 pinocchio_version: str = "4.1.0"
 
-abi: str = "f95cad6502839d9a"
+abi: str = "9efe9fb5b1e4b0d3"
 
 class JointKind(enum.Enum):
     revolute = 0
@@ -357,10 +356,10 @@ class Engine:
 
 class Call:
     def __init__(self, engine: Engine, neutral: object, placement: type, solution: type, question: object) -> None: ...
-    def solve(self, place: object, start: object) -> typing.Any: ...
+    def solve(self, place: object, start: object) -> Any: ...
 
 def note(call: Call) -> None: ...
-def recalling(function: typing.Any, place: int, methods: dict[str, typing.Any]) -> typing.Any: ...
+def recalling(function: Any, place: int, methods: dict[str, Any]) -> Any: ...
 def read_places(
     places: object, farthest: float, threads: int
 ) -> tuple[NDArray[numpy.float64], NDArray[numpy.int64]] | None: ...

@@ -48,7 +48,7 @@ nb::object Call::solve(nb::handle place, nb::handle start) const {
     if (!matrix.is_valid()) throw nb::python_error();
     place = matrix;
   }
-  std::optional<Answer> answer = solve_at(nb::cast<Engine&>(engine_), place, start, nearest);
+  std::optional<Answer> answer = solve_at(*nb::inst_ptr<Engine>(engine_), place, start, nearest);
   return answer ? made_from(std::move(*answer)) : nb::none();
 }
 
