@@ -19,12 +19,8 @@ if TYPE_CHECKING:
 _WORLD = (0, pinocchio.SE3.Identity())
 
 
-<<<<<<<< HEAD:src/pinik/solving/native/frame_walks.py
-def make_frame_walk(robot: RobotModel, frame: int, reference: int | None) -> FrameWalk:
-========
-def make_walk(robot: RobotModel, frame: int, reference: int | None) -> FrameWalk:
->>>>>>>> 765121adbc5c69d4835ffd84cd2331c93fefd0cb:src/pinik/solving/native/kinematics.py
-    """Compile the walk to a frame.
+<def make_walk(robot: RobotModel, frame: int, reference: int | None) -> FrameWalk:
+>    """Compile the walk to a frame.
 
     Args:
         robot: The robot.
