@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from ..model.jacobians import as_reference_frame
 from ..model.robot_model import RobotModel
+from .native.kinematics import make_walk
 from .native.module import load, why_not
 from .processors import processors
 
