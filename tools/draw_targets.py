@@ -8,8 +8,8 @@ from __future__ import annotations
 import io
 import re
 import sys
-from collections.abc import Mapping
-from dataclasses import dataclass, field
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -32,13 +32,16 @@ FOLDER = ROOT / "docs" / "images" / "targets"
 SIZE = (640, 480)
 INK = "#1d2733"
 _LENS = float(np.tan(np.deg2rad(26.0) / 2))
-_GHOST, _BEHIND = 0.22, 0.5  # opacity of the start; of marks that the robot hides
+_GHOST, _BEHIND = 0.3, 0.6  # opacity of the start; of marks that the robot hides
 _FINE = 3  # the labels are drawn this many times as large, and shrunk
 
 
 @dataclass(frozen=True)
 class Label:
-    """Words beside a named point of the picture, `dx` to the right and `dy` down [pixels]."""
+    """Words beside a named point of the picture, `dx` to the right and `dy` down [pixels].
+
+    `{position}` [cm] and `{angle}` [degrees] stand for the answer's errors.
+    """
 
     words: str
     at: str
@@ -55,7 +58,9 @@ class View:
         azimuth: Of the camera as seen from the robot [degrees].
         elevation: The same.
         unit: Length of the axes that are drawn [m].
-        near: The camera shows a ball of this radius around the target [m]; the whole robot when None.
+        near: The camera shows a ball of this radius [m]; the whole robot when None.
+        aim: From the target to the ball's centre [m].
+        ghost: Whether the start is shown.
     """
 
     labels: tuple[Label, ...]
@@ -63,20 +68,55 @@ class View:
     elevation: float = 18.0
     unit: float = 0.2
     near: float | None = None
-    aim: tuple[float, float, float] = field(default=(0.0, 0.0, 0.0))
+    aim: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    ghost: bool = True
+
+    @property
+    def back(self) -> Array:
+        """The unit vector (3,) from the robot to the camera."""
+        azimuth, elevation = np.deg2rad([self.azimuth, self.elevation])
+        flat = np.cos(elevation) * np.array([np.cos(azimuth), np.sin(azimuth)])
+        return np.array([*flat, np.sin(elevation)])
 
 
 VIEWS: Mapping[str, View] = {
     "position": View((Label("position", "goal", 60, -40), Label("start", "start", 60, 20)), unit=0.25),
-    "pose": View((Label("position and orientation", "goal", -40, 90), Label("start", "start", 60, 20))),
-    "axis": View((Label("direction", "goal", 60, -40), Label("free spin", "spin", 60, 20))),
-    "at": View((Label("at", "at", 60, -40), Label("axis z", "goal", 60, 20))),
-    "tool": View((Label("tool point", "goal", 60, -40), Label("frame", "frame", 60, -20))),
-    "relative_to": View((Label("relative_to", "reference", 60, -40), Label("position", "goal", 60, -20))),
-    "several": View((Label("position", "goal", 60, 40), Label("at", "goal", 60, -20))),
-    "free_axes": View((Label("z = 0.3", "goal", 60, -40), Label("start", "start", 60, -20))),
-    "wide_angle": View((Label("20°", "goal", 60, -40),), unit=0.1, near=0.2),
-    "box": View((Label("±5 cm", "goal", 60, -40),), unit=0.1, near=0.2),
+    "pose": View((Label("position and rpy", "goal", 70, 60),), azimuth=-62),
+    "axis": View((Label("axis z, along direction", "axis", -60, 10), Label("free", "spin", -60, -25)), azimuth=-62),
+    "at": View((Label("at", "at", -50, -10), Label("axis z", "axis", 50, -30), Label("free", "spin", -30, 70))),
+    "tool": View((Label("tool point", "goal", -70, 20), Label("frame", "frame", 60, -20)), azimuth=-35),
+    "relative_to": View(
+        (Label("relative_to: the head's axes", "reference", -130, -40), Label("position", "goal", -30, 110)),
+        azimuth=-40,
+        unit=0.3,
+    ),
+    "several": View(
+        (Label("position, weight 1", "goal", -40, 70), Label("axis x at the ball,\nweight 0.5", "axis2", 88, -205)),
+        unit=0.3,
+    ),
+    "free_axes": View((Label("z = 0.3, x and y free", "corner", -30, 30), Label("start", "start", 70, -10))),
+    "wide_angle": View(
+        (
+            Label("target: within 20°", "rim", 10, 60),
+            Label("answer: {angle:.0f}° off", "answer", 10, -90),
+        ),
+        azimuth=-60,
+        elevation=45,
+        unit=0.09,
+        near=0.165,
+        aim=(-0.02, 0.0, 0.01),
+        ghost=False,
+    ),
+    "box": View(
+        (
+            Label("±5 cm along x, ±1 mm across", "end", -10, 70),
+            Label("answer: {position:.1f} cm off", "answer", -90, 30),
+        ),
+        azimuth=-70,
+        unit=0.07,
+        near=0.135,
+        aim=(0.0, 0.0, 0.035),
+    ),
 }
 
 
@@ -96,39 +136,42 @@ def drawn(name: str, solution: pinik.Solution, start: Array) -> bytes:
     """The picture as a PNG file."""
     robot, view = solution.robot, VIEWS[name]
     assert isinstance(robot, pinik.Robot)
-    marks = Marks(view.unit)
+    marks = Marks(view.unit, view.back)
     for target in solution.targets:
         marks.add(robot, target, solution.q)
     marks.points["start"] = robot.placement(solution.targets[0].frame, start).translation
     solid = bodies_of(robot, solution.q)
-    ghost = [Body(b.solid, 0.4 * b.color + 0.6 * as_color("#8fa6bd"), _GHOST) for b in bodies_of(robot, start)]
+    ghost = []
+    if view.ghost:
+        ghost = [Body(b.solid, 0.3 * b.color + 0.7 * as_color("#7f9dbb"), _GHOST) for b in bodies_of(robot, start)]
     camera = _camera(view, marks, [*solid, *ghost, *marks.solid])
     floor = min(float(body.solid.vertices[:, 2].min()) for body in solid)
     image = Image.fromarray(render([solid], camera, SIZE, floor, np.ones(3)))
     for layers, share in (
-        ([[*solid, *marks.solid], ghost, *marks.translucent()], 1.0),
+        ([[*solid, *marks.solid], *([ghost] if ghost else []), *marks.translucent()], 1.0),
         ([marks.solid], _BEHIND),
     ):
         over = Image.fromarray(render(layers, camera, SIZE, None, None))
         over.putalpha(over.getchannel("A").point(lambda a, share=share: round(share * a)))
         image = Image.alpha_composite(image, over)
     file = io.BytesIO()
-    written = _written(image, camera, view.labels, marks.points).convert("RGB")
-    written.quantize(256, Image.Quantize.MEDIANCUT, dither=Image.Dither.NONE).save(file, "png", optimize=True)
+    position, angle = solution.position_error or 0.0, solution.orientation_error or 0.0
+    errors = {"position": 100.0 * position, "angle": float(np.rad2deg(angle))}
+    labels = [replace(label, words=label.words.format(**errors)) for label in view.labels]
+    written = _written(image, camera, labels, marks.points).convert("RGB")
+    written.point(lambda value: value | 1).save(file, "png", optimize=True)
     return file.getvalue()
 
 
 def _camera(view: View, marks: Marks, bodies: list[Body]) -> Camera:
-    azimuth, elevation = np.deg2rad([view.azimuth, view.elevation])
-    back = np.array([np.cos(elevation) * np.cos(azimuth), np.cos(elevation) * np.sin(azimuth), np.sin(elevation)])
     points = np.vstack([body.solid.vertices for body in bodies])
     if view.near is not None:
         corners = np.array(list(np.ndindex(2, 2, 2))) * 2.0 - 1.0
         points = marks.points["goal"] + view.aim + view.near / np.sqrt(3.0) * corners
-    return look_from(back, points, aspect=SIZE[0] / SIZE[1], lens=_LENS, filled=0.88)
+    return look_from(view.back, points, aspect=SIZE[0] / SIZE[1], lens=_LENS, filled=0.82)
 
 
-def _written(image: Image.Image, camera: Camera, labels: tuple[Label, ...], points: Mapping[str, Array]) -> Image.Image:
+def _written(image: Image.Image, camera: Camera, labels: Sequence[Label], points: Mapping[str, Array]) -> Image.Image:
     """The picture with its labels, each with a line to its point."""
     paper = Image.new("RGBA", (SIZE[0] * _FINE, SIZE[1] * _FINE))
     pen, font = ImageDraw.Draw(paper), ImageFont.truetype(findfont("DejaVu Sans"), 17 * _FINE)
@@ -140,12 +183,12 @@ def _written(image: Image.Image, camera: Camera, labels: tuple[Label, ...], poin
         line = [_FINE * c for c in (x + near * label.dx, y + near * label.dy, *end)]
         anchor = "lm" if label.dx > 0 else "rm"
         if abs(label.dx) < 0.5 * abs(label.dy):
-            anchor = "mt" if label.dy > 0 else "mb"
+            anchor = "ma" if label.dy > 0 else "md"
         for width, color in ((5, "#ffffffc0"), (1.4, INK)):
             pen.line(line, color, round(width * _FINE))
-        pad = {"l": 5, "r": -5, "m": 0}[anchor[0]], {"t": 4, "b": -4, "m": 0}[anchor[1]]
+        pad = {"l": 5, "r": -5, "m": 0}[anchor[0]], {"a": 3, "d": -3, "m": 0}[anchor[1]]
         at = (_FINE * (end[0] + pad[0]), _FINE * (end[1] + pad[1]))
-        pen.text(at, label.words, INK, font, anchor, stroke_width=3 * _FINE, stroke_fill="#ffffffe0")
+        pen.text(at, label.words, INK, font, anchor, align="center", stroke_width=3 * _FINE, stroke_fill="#ffffffe0")
     return Image.alpha_composite(image, paper.resize(SIZE, Image.Resampling.LANCZOS))
 
 

@@ -30,17 +30,19 @@ class Marks:
 
     Args:
         unit: The length of the axes that are drawn [m].
+        back: The unit vector (3,) to the camera.
 
     Attributes:
         solid: The opaque bodies.
         points: Names of places (3,) [m], for labels.
     """
 
-    def __init__(self, unit: float) -> None:
-        self.unit = unit
+    def __init__(self, unit: float, back: Array) -> None:
+        self.unit, self.back = unit, back
         self.solid: list[Body] = []
         self.points: dict[str, Array] = {}
         self._clear: list[Body] = []
+        self._count = 0
 
     def translucent(self) -> list[list[Body]]:
         """The translucent bodies, each a layer of its own."""
@@ -57,7 +59,7 @@ class Marks:
         if target.position is not None:
             own = reference.actInv(goal)
             goal = reference.act(np.where(target.along, target.position, own))
-        self.points |= {"goal": goal, "frame": here.translation, "reference": reference.translation}
+        self._named(goal=goal, frame=here.translation, reference=reference.translation)
         if target.tool is not None:
             self._rod(here.translation, goal, 0.035, TOOL)
         if target.relative_to is not None:
@@ -66,31 +68,40 @@ class Marks:
         if target.position is not None and not all(target.along):
             self._free(goal, reference.rotation, target.along)
         if target.rotation is not None:
-            self._triad(goal, reference.rotation @ target.rotation)
+            thin = target.tolerance is not None
+            self._triad(goal, reference.rotation @ target.rotation, thick=0.012 if thin else 0.03)
         elif target.position is not None:
-            self._ball(goal, 0.10 if target.axis is None else 0.06)
+            self._ball(goal, 0.14 if target.axis is None else 0.06)
         if target.axis is not None:
             self._axis(goal, reached.rotation @ target.axis, target, reference)
         if target.tolerance is not None:
             rotation = reference.rotation if target.rotation is None else reference.rotation @ target.rotation
             self._within(goal, rotation, reached, target.tolerance)
 
+        self._count += 1
+
+    def _named(self, **points: Array) -> None:
+        """Keep places for labels; those of the second target end in 2."""
+        suffix = "" if self._count == 0 else str(self._count + 1)
+        self.points |= {name + suffix: np.asarray(point) for name, point in points.items()}
+
     def _axis(self, goal: Array, axis: Array, target: pinik.Target, reference: pinocchio.SE3) -> None:
         color = AXES[int(np.argmax(np.abs(target.axis)))]
         if target.at is not None:
             at = reference.act(target.at)
-            self.points["at"] = at
+            self._named(at=at)
             self._ball(at, 0.16)
             self._dashes(goal, at, color)
         self._arrow(goal, goal + self.unit * axis, color)
         middle, radius = goal + 0.55 * self.unit * axis, 0.3 * self.unit
-        across = np.linalg.svd(axis[None])[2][1:]
-        turn = np.linspace(0.0, 1.5 * np.pi, 40)
-        ring = middle + radius * (np.cos(turn)[:, None] * across[0] + np.sin(turn)[:, None] * across[1])
+        front = self.back - (self.back @ axis) * axis
+        front /= np.linalg.norm(front)
+        turn = np.linspace(0.4 * np.pi, 2.05 * np.pi, 48)
+        ring = middle + radius * (np.cos(turn)[:, None] * front + np.sin(turn)[:, None] * np.cross(axis, front))
         for a, b in pairwise(ring[:-6]):
             self._rod(a, b, 0.018, FREE)
-        self._arrow(ring[-8], ring[-1], FREE, 0.02)
-        self.points["spin"] = ring[16]
+        self._arrow(ring[-8], ring[-1], FREE, 0.025)
+        self._named(spin=ring[0], axis=goal + 0.8 * self.unit * axis)
 
     def _free(self, goal: Array, rotation: Array, along: tuple[bool, bool, bool]) -> None:
         """A plane if one axis is asked for, a line if two are."""
@@ -106,7 +117,7 @@ class Marks:
         for way in ways:
             for sign in (-1.0, 1.0):
                 self._arrow(goal + 0.2 * sign * self.unit * way, goal + 0.75 * sign * self.unit * way, FREE, 0.02)
-        self.points["corner"] = corners[1]
+        self._named(corner=corners[1])
 
     def _within(self, goal: Array, rotation: Array, reached: pinocchio.SE3, tolerance: pinik.Tolerance) -> None:
         if tolerance.box is not None:
@@ -118,21 +129,21 @@ class Marks:
                     self._flat(corners, WITHIN, 0.5)
                     for a, b in pairwise([*corners, corners[0]]):
                         self._rod(a, b, 0.008, WITHIN)
-            self.points["end"] = goal + rotation[:, 0] * half[0]
+            self._named(end=goal + rotation[:, 0] * half[0])
             self._ball(reached.translation, 0.05, TOOL)
+            self._named(answer=reached.translation)
         elif tolerance.orientation > _WIDE:
             tip = goal + 1.25 * self.unit * np.cos(tolerance.orientation) * rotation[:, 2]
             wide = 1.25 * self.unit * np.sin(tolerance.orientation)
             self._clear.append(Body(rod(goal, tip, 1e-6, wide), as_color(WITHIN), 0.3, glow=0.4))
             self._arrow(goal, goal + 1.25 * self.unit * reached.rotation[:, 2], TOOL, 0.025)
-            self.points["answer"] = goal + 1.25 * self.unit * reached.rotation[:, 2]
-            self.points["rim"] = tip + wide * rotation[:, 0]
-        self.points["asked"] = goal + self.unit * rotation[:, 2]
+            self._named(answer=goal + 1.25 * self.unit * reached.rotation[:, 2])
+            self._named(rim=tip + wide * rotation[:, 0])
 
-    def _triad(self, at: Array, rotation: Array, share: float = 1.0) -> None:
+    def _triad(self, at: Array, rotation: Array, share: float = 1.0, thick: float = 0.03) -> None:
         for k, color in enumerate(AXES):
-            self._arrow(at, at + share * self.unit * rotation[:, k], color)
-        self._ball(at, 0.05, "#ffffff")
+            self._arrow(at, at + share * self.unit * rotation[:, k], color, thick)
+        self._ball(at, 1.6 * thick, "#ffffff")
 
     def _arrow(self, start: Array, end: Array, color: str, thick: float = 0.03) -> None:
         head = min(4.5 * thick * self.unit / float(np.linalg.norm(end - start)), 0.8)
