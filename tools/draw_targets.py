@@ -18,6 +18,7 @@ from marks import Marks, as_color
 from matplotlib.font_manager import findfont
 from numpy.typing import NDArray
 from PIL import Image, ImageDraw, ImageFont
+from PIL.PngImagePlugin import PngInfo
 
 import pinik
 from pinik.picture.bodies import Body, bodies_of
@@ -109,7 +110,7 @@ VIEWS: Mapping[str, View] = {
     ),
     "box": View(
         (
-            Label("±5 cm along x, ±1 mm across", "end", -10, 70),
+            Label("±5 cm along x, ±1 mm across", "end", 25, -80),
             Label("answer: {position:.1f} cm off", "answer", -90, 30),
         ),
         azimuth=-70,
@@ -130,6 +131,11 @@ def answers() -> dict[str, tuple[pinik.Solution, Array]]:
         assert picture, f"a section of {PAGE.name} has no picture"
         found[picture[1]] = (names["solution"], names["start"])
     return found
+
+
+def description(name: str, solution: pinik.Solution) -> str:
+    """What a picture shows, as text that is kept in its file: a test finds pictures that are out of date."""
+    return f"{[target.to_dict() for target in solution.targets]} {VIEWS[name]}"
 
 
 def drawn(name: str, solution: pinik.Solution, start: Array) -> bytes:
@@ -159,7 +165,9 @@ def drawn(name: str, solution: pinik.Solution, start: Array) -> bytes:
     errors = {"position": 100.0 * position, "angle": float(np.rad2deg(angle))}
     labels = [replace(label, words=label.words.format(**errors)) for label in view.labels]
     written = _written(image, camera, labels, marks.points).convert("RGB")
-    written.point(lambda value: value | 1).save(file, "png", optimize=True)
+    note = PngInfo()
+    note.add_itxt("Description", description(name, solution))
+    written.point(lambda value: value | 1).save(file, "png", optimize=True, pnginfo=note)  # 7 bits make smaller files
     return file.getvalue()
 
 
