@@ -6,6 +6,7 @@
 from __future__ import annotations
 
 import io
+import json
 import re
 import sys
 from collections.abc import Mapping, Sequence
@@ -135,7 +136,9 @@ def answers() -> dict[str, tuple[pinik.Solution, Array]]:
 
 def description(name: str, solution: pinik.Solution) -> str:
     """What a picture shows, as text that is kept in its file: a test finds pictures that are out of date."""
-    return f"{[target.to_dict() for target in solution.targets]} {VIEWS[name]}"
+    exact = json.dumps([target.to_dict() for target in solution.targets])
+    rounded = json.loads(exact, parse_float=lambda text: round(float(text), 6) + 0.0)
+    return f"{rounded} {VIEWS[name]}"
 
 
 def drawn(name: str, solution: pinik.Solution, start: Array) -> bytes:
