@@ -56,8 +56,9 @@ nb::object Call::solve(nb::handle place, nb::handle start) const {
 nb::object Call::made_from(Answer&& answer) const {
   static PyObject* const came_to = name("_came_to");
   static PyObject* const asked = name("_question");
+  static PyObject* const no_arguments = PyTuple_New(0);
   auto* type = reinterpret_cast<PyTypeObject*>(solution_.ptr());
-  nb::object solution = nb::steal(type->tp_alloc(type, 0));
+  const nb::object solution = nb::steal(type->tp_new(type, no_arguments, nullptr));
   const nb::object outcome = nb::cast(std::move(answer));
   if (!solution.is_valid() || PyObject_SetAttr(solution.ptr(), came_to, outcome.ptr()) < 0 ||
       PyObject_SetAttr(solution.ptr(), asked, question_.ptr()) < 0)
