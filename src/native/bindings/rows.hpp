@@ -16,6 +16,8 @@ namespace pinik {
 template <class Make>
 bool share_rows(std::uint64_t count, int threads, const Make& make) {
   constexpr std::uint64_t rows_at_once = 256;
+  constexpr std::uint64_t blocks_alone = 8;  // to start a thread takes longer than so few blocks
+  constexpr std::uint64_t blocks_between = 64;
   const nanobind::gil_scoped_release release;
   std::atomic<std::uint64_t> next{0};
   std::atomic<bool> stop{false};
@@ -32,10 +34,16 @@ bool share_rows(std::uint64_t count, int threads, const Make& make) {
     return !interrupted;
   };
   const std::uint64_t blocks = (count + rows_at_once - 1) / rows_at_once;
-  if (blocks <= 1)
-    make_work()();  // a thread would take longer than the rows
-  else
+  if (threads == 1 || blocks <= blocks_alone) {
+    auto work = make();
+    for (std::uint64_t block = 0; block < blocks && !stop; ++block) {
+      const std::uint64_t first = block * rows_at_once;
+      stop = (block % blocks_between == blocks_between - 1 && !pause()) ||
+             !work(first, std::min(rows_at_once, count - first));
+    }
+  } else {
     share(std::min<std::uint64_t>(static_cast<std::uint64_t>(threads), blocks), stop, make_work, pause);
+  }
   if (interrupted) {
     const nanobind::gil_scoped_acquire acquire;
     throw nanobind::python_error();
