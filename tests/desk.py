@@ -204,5 +204,6 @@ class Desk:
 def settings(state: State) -> State:
     """The settings in a state, without what changes by itself."""
     moving = ("step", "steps_per_second", "instances", "balls")
-    balls = [[ball["frame"], ball["mode"], ball["oriented"], ball["rpy"]] for ball in state["balls"]]
+    asked = ("frame", "mode", "oriented", "rpy", "free", "tolerance")
+    balls = [[ball[name] for name in asked] for ball in state["balls"]]
     return {name: value for name, value in state.items() if name not in moving} | {"balls": balls}

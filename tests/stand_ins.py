@@ -43,6 +43,11 @@ GOOD = {
         {"index": 0, "on": True, "rpy": [0.1, 0.2, 0.3]},
         {"index": "index", "on": "truth", "rpy": "angles"},
     ),
+    "free": ({"index": 0, "axes": "xy"}, {"index": "index", "axes": "axes"}),
+    "ball_tolerance": (
+        {"index": 0, "tolerance": [[0.01, 0.01, 0.1], 0.3]},
+        {"index": "index", "tolerance": "tolerance"},
+    ),
     "effector": ({"index": 0, "mode": "pinned"}, {"index": "index", "mode": "name"}),
     "add_effector": ({"frame": "bone3"}, {"frame": "name"}),
     "remove_effector": ({"index": 1}, {"index": "index"}),

@@ -189,3 +189,52 @@ def test_a_whole_position_after_a_partial_one_is_asked_for_as_a_whole():
         assert_good(robot.solve("tool0", p), {"frame": "tool0", "position": p})
     prepared = pinik.prepare(robot, "tool0", position=[None, p[1], None])
     assert_good(prepared(p), {"frame": "tool0", "position": [None, p[1], None]})
+
+
+def within_20_degrees(robot: pinik.Robot, M: np.ndarray, q: np.ndarray) -> bool:
+    at = plain_placement(robot, HAND, q)
+    turned = np.linalg.norm(pinocchio.log3(M[:3, :3] @ at.rotation.T))
+    return bool(np.linalg.norm(at.translation - M[:3, 3]) <= 1e-4 and turned <= 20.0 * DEGREES)
+
+
+@pytest.mark.parametrize("method", ["dls", "pinv", "jt", "ccd"])
+def test_the_same_target_sent_in_again_does_not_interrupt_the_wait_for_a_stall(method):
+    robot = load_quietly("so101")
+    target = Target(HAND, placement=turned_near(robot, 0.0))
+    states = pinik.iterate(robot, target, method, tolerance=(1e-4, 20.0 * DEGREES), max_iterations=10)
+    next(states)
+    for _ in range(100):
+        state = last_of(states, target)
+        if state.status is pinik.Status.CONVERGED:
+            break
+    assert within_20_degrees(robot, turned_near(robot, 0.0), state.q)
+
+
+@pytest.mark.parametrize("method", ["dls", "pinv"])
+def test_targets_that_move_before_they_are_reached_are_met_inside_their_tolerance(method):
+    robot = load_quietly("so101")
+    places = [turned_near(robot, 0.004 * step) for step in range(60)]
+    states = pinik.iterate(
+        robot, Target(HAND, placement=places[0]), method, tolerance=(1e-4, 20.0 * DEGREES), max_iterations=15
+    )
+    next(states)
+    met = []
+    for M in places:
+        state = last_of(states, Target(HAND, placement=M))
+        met.append(within_20_degrees(robot, M, state.q))
+    assert sum(met[3:]) >= 50
+
+
+def turned_near(robot: pinik.Robot, further: float) -> np.ndarray:
+    """A pose that so101's five joints reach, turned by 12 degrees; the joints are `further` [rad] along a path."""
+    q = np.full(robot.model.nq, 0.2 + further)
+    M = robot.placement(HAND, q)
+    return pinocchio.SE3(M.rotation @ pinocchio.exp3(np.full(3, 7.0 * DEGREES)), M.translation).homogeneous
+
+
+def last_of(states, target: Target) -> pinik.State:
+    """Send a target in, and run to the last state."""
+    state = states.send(target)
+    while state.status is None:
+        state = next(states)
+    return state

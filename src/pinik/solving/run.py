@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from ..problem.kinematics import Kinematics, Linearization
 from ..problem.reach import Bounds, bounds_of, shortfall
-from ..problem.targets import Target
+from ..problem.targets import Target, as_targets
 from ..solvers.base import JacobianSolver, Patience, SweepingSolver
 from .question import Question
 from .state import State, Status
@@ -74,7 +74,7 @@ def run(question: Question, kinematics: Kinematics, start: Array, pace: Pace, ne
     chain's length. Otherwise a stretched arm would swing from side to side when λ² is small compared with d · L.
 
     If a tolerance is wide and the run stalls, it goes on inside the limits with residuals that stop pulling inside
-    their tolerances.
+    their tolerances. It stays so when the targets move.
 
     Args:
         question: The problem and the options.
@@ -179,15 +179,24 @@ class _Loop:
         return False
 
     def aim_at(self, targets: Target | Sequence[Target]) -> None:
-        """Move the targets, and reset the iteration limit."""
-        self.kinematics.retarget(targets)
-        self.kinematics.loose = False
-        if self.kinematics.problem is not self.problem:
-            self.problem = self.kinematics.problem
+        """Move the targets, and reset the iteration limit.
+
+        If a tolerance is wide, targets that move before they are reached leave no time to stall, so the run looks for
+        answers inside the tolerances at once. The same targets again do not interrupt the wait for a stall.
+        """
+        kinematics = self.kinematics
+        waits = self.can_loosen() and self.since < self.pace.patience.iterations and not self.is_reached()
+        moved = as_targets(targets) != kinematics.targets
+        kinematics.retarget(targets)
+        kinematics.loose = kinematics.loose or (waits and moved)
+        if kinematics.problem is not self.problem:
+            self.problem, kinematics.loose = kinematics.problem, False
             self.bounds = bounds_of(self.problem, self.question.limits) if self.damps else []
         self.beyond = self.is_beyond()
-        self.at = self.kinematics.linearize(self.at.q)
-        self.milestone, self.since, self.last = math.inf, 0, self.iteration + self.pace.max_iterations
+        self.at = kinematics.linearize(self.at.q)
+        if moved or not waits:
+            self.milestone, self.since = math.inf, 0
+        self.last = self.iteration + self.pace.max_iterations
         self.before = None
 
     def step(self) -> None:

@@ -63,7 +63,7 @@ def test_the_figures_are_those_of_the_last_step(arm):
 
 def test_an_orientation_error_is_told_where_it_is_asked_for(panda):
     session = Session(panda, ["dls"], clock=Clock())
-    session.orient_ball(0, True, [1.0, 0.5, 0.2])
+    session.balls[0].orient(True, [1.0, 0.5, 0.2])
     session.apply_settings(session.settings.__class__(until_reached=False, at_most=1))
     session.step()
     (block,) = read_frame(FrameMaker(panda, 1).frame(session)).blocks

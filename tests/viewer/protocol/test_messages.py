@@ -46,6 +46,26 @@ WRONG = {
     "value": [None, True, "0.3", [], {}, [0.3], {"damping": 0.3}, -1, 10**400, math.inf, "x" * 60_000],
     "point": [*NO_VECTOR, [0, 0, 100.5], [-101, 0, 0], [1e300, 0, 0]],
     "angles": NO_VECTOR,
+    "axes": [None, True, 1, [], ["x"], {}, "xyz", "yx", "xx", "w", "x y", "X", "x" * 201],
+    "tolerance": [
+        *(wrong for wrong in NO_NUMBER if wrong is not None),
+        [0.01, 0.1, 0.1],
+        [[], 0.1],
+        [[0.1, 0.1], 0.1],
+        [[0.1] * 4, 0.1],
+        [[0.1, 0.1, None], 0.1],
+        [[0.1, 0.1, 2.0], 0.1],
+        [[[0.1]] * 3, 0.1],
+        [0.0, 0.1],
+        [1.1, 0.1],
+        [0.1, 0.0],
+        [0.1, 3.3],
+        [0.1, None],
+        [None, 0.1],
+        ["0.1", 0.1],
+        [True, 0.1],
+        {"position": 0.1, "orientation": 0.1},
+    ],
 }
 
 
@@ -235,6 +255,11 @@ def test_balls(arm):
     shown = after(arm, "ball", index=1, position=[0.1, -100, 100])
     assert shown.balls[1].position.tolist() == [0.1, -100.0, 100.0]
     assert shown.motion.kind == "hand"
+    assert after(arm, "free", index=0, axes="xz").balls[0].target.along == (False, True, False)
+    for tolerance in ([0.01, 0.2], [[0.01, 0.02, 0.03], 0.2]):
+        own = after(arm, "ball_tolerance", index=0, tolerance=tolerance).balls[0].target.tolerance
+        assert own == pinik.Tolerance.of(tolerance)
+    assert after(arm, "ball_tolerance", index=0, tolerance=None).balls[0].target.tolerance is None
     shown = after(arm, "orientation", index=0, on=True, rpy=[0.1, 0.2, 0.3])
     assert (shown.balls[0].oriented, shown.balls[0].rpy.tolist()) == (True, [0.1, 0.2, 0.3])
     assert [ball.mode for ball in after(arm, "effector", index=1, mode="off").balls] == ["on", "off"]

@@ -26,6 +26,7 @@ ARM = load_quietly("two_link")
 FRAMES = ["base", "link1", "link2", "tip"]
 NUMBER = st.floats(-2, 2)
 POINT = st.lists(NUMBER, min_size=3, max_size=3)
+LENGTH = st.floats(1e-6, 1.0)
 PARAMETERS = [
     ("max_step", st.none() | st.floats(1e-6, 10)),
     ("max_residual", st.none() | st.floats(1e-6, 10)),
@@ -66,6 +67,16 @@ MESSAGES = st.one_of(
         st.integers(0, 3),
         st.booleans(),
         POINT,
+    ),
+    st.builds(
+        lambda i, axes: {"type": "free", "index": i, "axes": axes},
+        st.integers(0, 3),
+        st.sampled_from(["", "x", "y", "z", "xy", "xz", "yz", "xyz"]),
+    ),
+    st.builds(
+        lambda i, tolerance: {"type": "ball_tolerance", "index": i, "tolerance": tolerance},
+        st.integers(0, 3),
+        st.none() | st.tuples(LENGTH | st.lists(LENGTH, min_size=3, max_size=3), st.floats(1e-6, 3.2)).map(list),
     ),
     st.builds(
         lambda i, m: {"type": "effector", "index": i, "mode": m},
@@ -119,11 +130,11 @@ def test_a_set_up_says_what_differs_from_the_beginning_in_plain_words(arm):
     shown.set_motion("curve")
     shown.set_curve("knot")
     shown.motion.speed = 2.5
-    shown.set_limits(False)
+    shown.change_settings(limits=False)
     shown.apply_settings(shown.settings.__class__(limits=False, until_reached=False, at_most=9))
-    shown.set_polish(True)
-    shown.set_tolerance(0.001, 0.01)
-    shown.orient_ball(0, True, [0.1, 0.2, 0.3])
+    shown.change_settings(polish=True)
+    shown.change_settings(tolerance=pinik.Tolerance(0.001, 0.01))
+    shown.balls[0].orient(True, [0.1, 0.2, 0.3])
     shown.running = True
     said = {name: values[0] for name, values in parse_qs(write_setup(shown), strict_parsing=True).items()}
     assert json.loads(said.pop("parameters")) == {"0": {"position_weight": 7.0}}
@@ -160,7 +171,7 @@ def test_a_set_up_fits_into_an_address():
 def test_numbers_are_kept_to_the_last_digit(arm):
     shown, other = (Session(arm, clock=Clock()) for _ in range(2))
     shown.motion.speed = math.pi
-    shown.set_tolerance(1.23456789e-5, math.e / 3)
+    shown.change_settings(tolerance=pinik.Tolerance(1.23456789e-5, math.e / 3))
     shown.set_parameter(3, "damping", 1 / 3)
     apply_setup(other, read_setup(write_setup(shown)))
     assert other.motion.speed == math.pi
@@ -171,7 +182,7 @@ def test_numbers_are_kept_to_the_last_digit(arm):
 def test_the_order_of_balls_is_kept():
     lion = load_quietly("lion")
     shown, other = (Session(lion, clock=Clock()) for _ in range(2))
-    shown.remove_ball(0)
+    shown.balls.remove(0)
     shown.add_ball("left_fore_paw")
     apply_setup(other, read_setup(write_setup(shown)))
     assert [ball.frame for ball in other.balls] == [ball.frame for ball in shown.balls]
@@ -186,7 +197,7 @@ def test_twelve_other_balls_fit_where_there_were_six():
     for frame in others:
         shown.add_ball(frame)
         if shown.balls[0].frame in ends:
-            shown.remove_ball(0)
+            shown.balls.remove(0)
     apply_setup(other, read_setup(write_setup(shown)))
     assert [ball.frame for ball in other.balls] == others
     assert write_setup(other) == write_setup(shown)
@@ -264,6 +275,13 @@ def test_parameters_that_are_not_said_are_the_defaults():
         ("balls=[[]]", "a ball must be"),
         ('balls=[["tip"]]', "a ball must be"),
         ('balls=[["tip","on",null,null,null]]', "a ball must be"),
+        ('balls=[["tip","on",null,null,{},0]]', "a ball must be"),
+        ('balls=[["tip","on",null,null,{"fre":"x"}]]', "a ball must be"),
+        ('balls=[["tip","on",null,null,{"free":5}]]', "axes must be a text"),
+        ('balls=[["tip","on",null,null,{"free":"yx"}]]', 'letters of "xyz" in order'),
+        ('balls=[["tip","on",null,null,{"free":"xyz"}]]', "at least one axis, or for an orientation"),
+        ('balls=[["tip","on",null,null,{"tolerance":0.1}]]', "null or [metres, radians]"),
+        ('balls=[["tip","on",null,null,{"tolerance":[[1,2],0.1]}]]', "one length, or three for a box"),
         ('balls=[["nope","on"]]', "no frame 'nope'"),
         ('balls=[[5,"on"]]', "frame must be a text"),
         ('balls=[[{},"on"]]', "frame must be a text"),
@@ -310,3 +328,17 @@ def test_no_set_up_does_more_than_raise_in_words(parts):
         apply_setup(shown, read_setup("&".join(f"{name}={quote(value)}" for name, value in parts)))
     json.dumps(json.loads(snapshot(shown)), allow_nan=False)
     shown.step()
+
+
+def test_a_link_keeps_free_axes_and_a_balls_own_tolerance(arm):
+    shown, other = (Session(arm, clock=Clock()) for _ in range(2))
+    ball = shown.balls[0]
+    ball.orient(True, [0.1, 0.2, 0.3])
+    ball.release("xyz")
+    ball.tolerate(pinik.Tolerance((0.01, 0.02, 1 / 3), 0.5))
+    apply_setup(other, read_setup(write_setup(shown)))
+    assert other.balls[0].target.position is None
+    assert other.balls[0].target.tolerance == pinik.Tolerance((0.01, 0.02, 1 / 3), 0.5)
+    apply_setup(other, read_setup(write_setup(Session(arm, clock=Clock()))))
+    back = other.balls[0]
+    assert (back.oriented, back.free, back.tolerance, back.target.along) == (False, "", None, (True, True, True))

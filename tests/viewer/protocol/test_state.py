@@ -76,12 +76,14 @@ def test_a_state_tells_the_session(arm):
     session = Session(arm, [pinik.CCD(relaxation=0.5), "dls"], clock=Clock())
     session.add_ball("bone2")
     session.set_mode(1, "pinned")
-    session.orient_ball(1, True, [0.1, 0.2, 0.3])
+    session.balls[1].orient(True, [0.1, 0.2, 0.3])
+    session.balls[1].release("xy")
+    session.balls[1].tolerate(pinik.Tolerance((0.01, 0.02, 0.03), 0.4))
     session.set_motion("curve")
     session.set_curve("wave")
     session.motion.speed = 1.5
-    session.set_tolerance(0.001, 0.01)
-    session.set_limits(False)
+    session.change_settings(tolerance=pinik.Tolerance(0.001, 0.01))
+    session.change_settings(limits=False)
     session.running = True
     for _ in range(5):
         session.tick()
@@ -96,6 +98,8 @@ def test_a_state_tells_the_session(arm):
     assert first["position"] == session.balls[0].position.tolist()
     assert (second["frame"], second["mode"], second["curve"], second["oriented"]) == ("bone2", "pinned", [], True)
     assert second["rpy"] == [0.1, 0.2, 0.3]
+    assert (first["free"], first["tolerance"]) == ("", None)
+    assert (second["free"], second["tolerance"]) == ("xy", [[0.01, 0.02, 0.03], 0.4])
     assert [one["method"] for one in state["instances"]] == ["ccd", "dls"]
     relaxation = next(p for p in state["instances"][0]["parameters"] if p["name"] == "relaxation")
     assert (relaxation["value"], relaxation["default"]) == (0.5, None)

@@ -1,78 +1,56 @@
-"""The balls: where they are, what they ask for."""
+"""The balls of a session: which there are, and in which order."""
 
 from __future__ import annotations
 
-import math
-
-import numpy as np
 import pinocchio
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
 
 import pinik
-from by_hand import homogeneous, random_placement, rotation_about, rotation_from_rpy
-from pinik.viewer.simulation.balls import Ball
-
-ANGLES = st.tuples(*[st.floats(-3.1, 3.1)] * 3)
-
-
-def ball(mode="on"):
-    return Ball("tip", pinocchio.SE3(random_placement(np.random.default_rng(3))), mode)
+from judge import plain_placement
+from pinik.model.home import home_configuration
+from pinik.viewer.simulation.balls import MOST_BALLS, Balls
+from robots import load_quietly
 
 
-def rotation_of(quaternion):
-    x, y, z, w = quaternion
-    length = math.hypot(x, y, z)
-    return rotation_about(np.array([x, y, z]) / (length or 1.0), 2 * math.atan2(length, w))
+@pytest.fixture(scope="module")
+def lion():
+    return load_quietly("lion", root="free_flyer")
 
 
-@given(ANGLES)
-def test_a_placement_is_the_position_and_the_rotation_of_roll_pitch_yaw(rpy):
-    here = ball()
-    here.put([1, 2, 3])
-    here.orient(True, rpy)
-    assert here.placement[:3].tolist() == [1, 2, 3]
-    assert np.linalg.norm(here.placement[3:]) == pytest.approx(1.0)
-    assert np.allclose(rotation_of(here.placement[3:]), rotation_from_rpy(*rpy), atol=1e-9)
-    assert np.allclose(here.target.rotation, rotation_from_rpy(*rpy), atol=1e-9)
+def test_the_first_ball_is_on_and_the_paws_on_the_ground_are_pinned(lion):
+    balls = Balls(lion)
+    assert [ball.mode for ball in balls] == ["on", "pinned", "pinned", "pinned", "off", "off"]
+    assert [target.frame for target in balls.targets] == balls.frames[:4]
+    assert {ball.mode for ball in Balls(load_quietly("lion"))} == {"on", "off"}
 
 
-def test_a_ball_begins_at_its_frame_and_returns_there():
-    home = random_placement(np.random.default_rng(3))
-    here = ball()
-    for _ in range(2):
-        assert here.position.tolist() == home[:3, 3].tolist()
-        assert np.allclose(homogeneous(rotation_of(here.placement[3:]), here.position), home)
-        here.put([0, 0, 1])
-        here.orient(True, [1, 1, 1])
-        here.go_home()
+def test_a_new_ball_is_at_its_frame_in_the_home_configuration(lion):
+    ball = Balls(lion).add("head", "pinned")
+    at = plain_placement(lion, "head", home_configuration(lion))
+    assert pinocchio.XYZQUATToSE3(ball.placement).isApprox(at, 1e-9)
 
 
-def test_a_target_is_the_same_object_until_something_changed():
-    here = ball()
-    first = here.target
-    assert here.target is first
-    assert first.rotation is None
-    assert first.position.tolist() == here.position.tolist()
-    here.put([0, 0, 1])
-    second = here.target
-    assert second is not first
-    assert second.position.tolist() == [0, 0, 1]
-    here.orient(True, [0, 0, 0])
-    assert here.target is not second
-    assert here.target.rotation is not None
-    here.orient(False, [0, 0, 0])
-    assert here.target.rotation is None
+def test_balls_have_frames_of_their_own_and_are_neither_too_many_nor_none(lion):
+    balls = Balls(lion)
+    with pytest.raises(pinik.UnknownNameError, match="no frame 'tail'"):
+        balls.add("tail", "on")
+    with pytest.raises(pinik.InputError, match="already has a ball"):
+        balls.add(balls.frames[2], "on")
+    for name in [name for name in lion.description.links if name not in balls.frames][: MOST_BALLS - len(balls)]:
+        balls.add(name, "off")
+    with pytest.raises(pinik.InputError, match=f"at most {MOST_BALLS} balls"):
+        balls.add(next(name for name in lion.description.links if name not in balls.frames), "off")
+    while len(balls) > 1:
+        balls.remove(0)
+    with pytest.raises(pinik.InputError, match="last ball cannot be removed"):
+        balls.remove(0)
 
 
-@pytest.mark.parametrize("wrong", [[1, 2], [1, 2, math.nan], [1, 2, math.inf], "abc", None, [1, 2, True], 5])
-def test_a_wrong_place_or_orientation_changes_nothing(wrong):
-    here = ball()
-    before = here.placement.tolist()
-    with pytest.raises(pinik.InputError, match="position of ball 'tip'"):
-        here.put(wrong)
-    with pytest.raises(pinik.InputError, match="orientation of ball 'tip'"):
-        here.orient(True, wrong)
-    assert here.placement.tolist() == before
-    assert not here.oriented
+def test_balls_are_arranged_by_frame(lion):
+    balls = Balls(lion)
+    order = balls.frames[::-1]
+    balls.arrange(order)
+    assert balls.frames == [ball.frame for ball in balls] == order
+    assert balls.number(5).mode == "on"
+    with pytest.raises(pinik.InputError, match="from 0 to 5; got 6"):
+        balls.number(6)

@@ -102,7 +102,7 @@ def test_a_ball_that_only_limits_keep_away_is_unreachable_as_well():
     verdict = shown.instances[1].verdict()
     assert (verdict.status, len(verdict.active_limits)) == ("UNREACHABLE", 2)
     assert "at their only values" in verdict.message
-    shown.set_limits(False)
+    shown.change_settings(limits=False)
     shown.step()
     assert shown.instances[1].verdict().status == "CONVERGED"
     assert missed(shown, shown.instances[1]) < 1e-12
@@ -130,12 +130,12 @@ def test_while_it_cannot_do_what_is_asked_it_waits_and_says_why(two_link):
     assert (one.status, shown.summaries[1].steps) == ("CONVERGED", 6)
     assert missed(shown, one) < 1e-12
 
-    shown.orient_ball(0, True, [0.0, 0.0, 0.5])
+    shown.balls[0].orient(True, [0.0, 0.0, 0.5])
     before = changed(shown)
     steps(shown, 5)
     assert "only a position; target 'tip' has an orientation" in one.verdict().message
     assert changed(shown) == before
-    shown.orient_ball(0, False, [0.0, 0.0, 0.0])
+    shown.balls[0].orient(False, [0.0, 0.0, 0.0])
     shown.step()
     assert one.status == "CONVERGED"
 
@@ -153,7 +153,7 @@ def test_what_is_offered_follows_the_balls(two_link):
     shown.add_ball("link1")
     assert "two_bone" in shown.offered
     link = write_setup(shown).replace("methods=dls", "methods=two_bone")
-    shown.remove_ball(0)
+    shown.balls.remove(0)
     assert shown.offered == EVERY_ROBOTS
     with pytest.raises(pinik.InputError, match=f"frame 'link1' {ALONE}: only one joint moves it"):
         shown.set_method(0, "two_bone")

@@ -10,7 +10,7 @@ import pytest
 import pinik
 from judge import is_inside, plain_placement
 from pinik.model.home import home_configuration, lowest_point
-from pinik.viewer.simulation.balls import Ball
+from pinik.viewer.simulation.ball import Ball
 from pinik.viewer.simulation.motion import Motion
 from robots import load_quietly
 

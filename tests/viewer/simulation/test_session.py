@@ -13,7 +13,8 @@ import pinik
 from by_hand import rotation_from_rpy
 from judge import is_inside, plain_placement
 from pinik.viewer.protocol.setup import apply_setup, read_setup, write_setup
-from pinik.viewer.simulation.session import MOST_BALLS, STEPS_PER_SECOND, Session
+from pinik.viewer.simulation.balls import MOST_BALLS
+from pinik.viewer.simulation.session import STEPS_PER_SECOND, Session
 from robots import load_quietly
 from stand_ins import Clock, snapshot
 
@@ -159,7 +160,7 @@ def test_a_reset_is_the_beginning_again(arm):
     for one in (shown, fresh):
         one.set_motion("random")
     begin = snapshot(fresh)
-    shown.orient_ball(0, False, [1, 2, 3])
+    shown.balls[0].orient(False, [1, 2, 3])
     steps(shown, 100)
     assert snapshot(shown) != begin
     shown.reset()
@@ -179,8 +180,8 @@ def test_the_same_calls_give_the_same_configurations_to_the_last_bit():
         shown.set_mode(4, "on")
         shown.set_motion("random")
         steps(shown, 10)
-        shown.orient_ball(0, True, [0.1, 0.2, 0.3])
-        shown.set_limits(False)
+        shown.balls[0].orient(True, [0.1, 0.2, 0.3])
+        shown.change_settings(limits=False)
         steps(shown, 5)
         return [one.q.tobytes() for one in shown.instances], snapshot(shown)
 
@@ -265,8 +266,8 @@ def test_a_value_that_is_there_already_changes_nothing(arm):
         shown.set_method(index, one.solver.name)
         for name, value in one.solver.parameters.items():
             shown.set_parameter(index, name, value)
-    shown.set_limits(True)
-    shown.set_tolerance(*shown.settings.tolerance)
+    shown.change_settings(limits=True)
+    shown.change_settings(tolerance=shown.settings.tolerance)
     shown.set_motion("curve")
     shown.set_view(4)
     assert snapshot(shown) == before
@@ -286,15 +287,16 @@ def test_a_value_that_is_there_already_changes_nothing(arm):
         (lambda s: s.set_parameter(0, "stiffness", {"nope": 1.0}), "no joint 'nope'"),
         (lambda s: s.set_motion("dance"), "no motion 'dance'"),
         (lambda s: s.set_curve("line"), "no curve 'line'"),
-        (lambda s: s.set_tolerance(0.0, 1.0), "positive"),
         (lambda s: s.set_mode(0, "in"), "no mode 'in'"),
         (lambda s: s.set_mode(1, "on"), "from 0 to 0; got 1"),
         (lambda s: s.move_ball(0, [1, 2]), "3 finite numbers"),
         (lambda s: s.move_ball(-1, [1, 2, 3]), "from 0 to 0"),
-        (lambda s: s.orient_ball(0, True, [math.nan, 0, 0]), "3 finite numbers"),
+        (lambda s: s.balls[0].orient(True, [math.nan, 0, 0]), "3 finite numbers"),
+        (lambda s: s.balls[0].release("xyz"), "at least one axis, or for an orientation"),
+        (lambda s: s.balls[0].release("yx"), "letters of \"xyz\" in order; got 'yx'"),
         (lambda s: s.add_ball("tipp"), "did you mean 'tip'"),
         (lambda s: s.add_ball("tip"), "already has a ball"),
-        (lambda s: s.remove_ball(0), "the last ball cannot be removed"),
+        (lambda s: s.balls.remove(0), "the last ball cannot be removed"),
     ],
 )
 def test_what_cannot_be_is_said_in_words_and_changes_nothing(arm, call, fault):
@@ -314,13 +316,13 @@ def test_limits_keep_every_configuration_inside(arm):
     for _ in range(60):
         shown.step()
         assert all(is_inside(arm, one.q) for one in shown.instances)
-    shown.set_limits(False)
+    shown.change_settings(limits=False)
     outside = 0
     for _ in range(120):
         shown.step()
         outside += sum(not is_inside(arm, one.q) for one in shown.instances)
     assert outside > 0
-    shown.set_limits(True)
+    shown.change_settings(limits=True)
     shown.step()
     assert all(is_inside(arm, one.q) for one in shown.instances)
 
@@ -328,7 +330,7 @@ def test_limits_keep_every_configuration_inside(arm):
 def test_the_tolerance_is_what_counts_as_reached(arm):
     shown = session(arm, ["dls"])
     shown.apply_settings(shown.settings.__class__(until_reached=False, at_most=1))
-    shown.set_tolerance(0.05, 0.1)
+    shown.change_settings(tolerance=pinik.Tolerance(0.05, 0.1))
     shown.move_ball(0, ELSEWHERE)
     one = shown.instances[0]
     while one.status != "CONVERGED":
@@ -336,7 +338,7 @@ def test_the_tolerance_is_what_counts_as_reached(arm):
         assert (missed(arm, one.q, shown.balls[0]) <= 0.05) == (one.status == "CONVERGED")
     loose = missed(arm, one.q, shown.balls[0])
     assert loose > 1e-6
-    shown.set_tolerance(1e-6, 1e-3)
+    shown.change_settings(tolerance=pinik.Tolerance(1e-6, 1e-3))
     steps(shown, 50)
     assert missed(arm, one.q, shown.balls[0]) <= 1e-6
 
@@ -378,7 +380,7 @@ def test_random_balls_can_be_reached(arm):
 def test_an_orientation_is_reached_too(panda):
     shown = session(panda)
     shown.move_ball(0, [0.45, 0.2, 0.4])
-    shown.orient_ball(0, True, [3.0, 0.2, 0.5])
+    shown.balls[0].orient(True, [3.0, 0.2, 0.5])
     steps(shown, 150)
     wanted = rotation_from_rpy(3.0, 0.2, 0.5)
     reached = 0
@@ -392,7 +394,7 @@ def test_an_orientation_is_reached_too(panda):
             assert off <= 1.1e-3
             assert np.linalg.norm(at.translation - [0.45, 0.2, 0.4]) <= 1e-4
     assert reached >= 2
-    shown.orient_ball(0, False, [0, 0, 0])
+    shown.balls[0].orient(False, [0, 0, 0])
     shown.step()
     assert all(one.verdict().orientation_error is None for one in shown.seen)
 
@@ -461,7 +463,7 @@ def test_balls_come_and_go(lion):
     steps(shown, 10)
     assert missed(lion, shown.instances[0].q, shown.balls[6]) <= 1e-4
     for _ in range(6):
-        shown.remove_ball(0)
+        shown.balls.remove(0)
     assert [ball.frame for ball in shown.balls] == ["head"]
     shown.step()
     for frame in [name for name in lion.description.links if name != "head"][: MOST_BALLS - 1]:
@@ -544,8 +546,8 @@ def test_another_robot_keeps_the_settings_and_drops_joints_that_it_lacks(arm, pa
     shown.set_motion("random")
     shown.set_curve("knot")
     shown.motion.speed = 2.5
-    shown.set_limits(False)
-    shown.set_tolerance(1e-3, 1e-2)
+    shown.change_settings(limits=False)
+    shown.change_settings(tolerance=pinik.Tolerance(1e-3, 1e-2))
     shown.running = True
     steps(shown, 3)
     other = shown.with_robot(panda)
@@ -564,3 +566,76 @@ def test_another_robot_keeps_the_settings_and_drops_joints_that_it_lacks(arm, pa
     assert other.balls[0].position.tolist() == fresh.balls[0].position.tolist()  # the seed as well
     kept = shown.with_robot(load_quietly("arm", root="free_flyer"))
     assert dict(kept.instances[0].solver.stiffness) == stiff
+
+
+def test_a_ball_with_free_axes_asks_for_the_others_alone(arm):
+    shown = session(arm)
+    shown.move_ball(0, [9.0, -9.0, 0.6])  # out of reach, were x and y not free
+    shown.balls[0].release("xy")
+    steps(shown, 40)
+    for one in shown.instances:
+        height = plain_placement(arm, "tip", one.q).translation[2]
+        verdict = one.verdict()
+        assert verdict.status == "CONVERGED"
+        assert abs(height - 0.6) <= 1e-4
+        assert verdict.position_error == pytest.approx(abs(height - 0.6), abs=1e-12)
+
+
+def test_a_ball_with_a_free_axis_follows_its_curve_along_the_others(arm):
+    shown = session(arm, "dls")
+    shown.set_motion("curve")
+    shown.balls[0].release("y")
+    places = []
+    for _ in range(60):
+        shown.step()
+        x, _, z = plain_placement(arm, "tip", shown.instances[0].q).translation
+        places.append(shown.balls[0].position.tolist())
+        if shown.instances[0].status == "CONVERGED":
+            assert np.hypot(x - places[-1][0], z - places[-1][2]) <= 1e-4
+    assert np.ptp(places, axis=0)[1] > 0.01, "the ball itself moves along the free axis too"
+    assert shown.instances[0].statistics.summary().efficiency > 0.9
+
+
+def test_a_balls_own_box_is_what_counts_as_reached(arm):
+    shown = session(arm, "dls")
+    place = plain_placement(arm, "tip", arm.configuration(dict.fromkeys(arm.joint_names, 0.2))).translation
+    shown.move_ball(0, place)
+    shown.balls[0].tolerate(pinik.Tolerance((0.03, 1e-4, 0.03), 1e-3))
+    steps(shown, 30)
+    off = np.abs(plain_placement(arm, "tip", shown.instances[0].q).translation - place)
+    assert shown.instances[0].verdict().status == "CONVERGED"
+    assert (off <= [0.03, 1e-4, 0.03]).all()
+    assert off.max() > 1e-4, "the step would have stopped at the session's tolerance alike"
+
+
+@pytest.mark.parametrize("at_most", [None, 10])
+@pytest.mark.parametrize("method", ["dls", "pinv", "jt", "ccd"])
+def test_five_joints_reach_a_pose_within_twenty_degrees(method, at_most):
+    """A pose that they reach, turned by 12 degrees: the exact one does not exist."""
+    so101 = load_quietly("so101")
+    shown = session(so101, method)
+    shown.change_settings(tolerance=pinik.Tolerance(1e-4, np.radians(20)))
+    if at_most:
+        shown.change_settings(until_reached=False, at_most=at_most)
+    ball = shown.balls[0]
+    M = plain_placement(so101, ball.frame, np.full(so101.model.nq, 0.2))
+    turned = M.rotation @ pinocchio.exp3(np.radians([7.0, 7.0, 7.0]))
+    shown.move_ball(0, M.translation)
+    ball.orient(True, pinocchio.rpy.matrixToRpy(turned))
+    steps(shown, 60)
+    one = shown.instances[0]
+    at = plain_placement(so101, ball.frame, one.q)
+    assert one.verdict().status == "CONVERGED"
+    assert np.linalg.norm(at.translation - ball.position) <= 1e-4
+    assert np.linalg.norm(pinocchio.log3(turned @ at.rotation.T)) <= np.radians(20)
+
+
+def test_five_joints_stay_within_twenty_degrees_of_a_moving_pose():
+    so101 = load_quietly("so101")
+    shown = session(so101, "dls")
+    shown.change_settings(tolerance=pinik.Tolerance(1e-4, np.radians(20)), until_reached=False, at_most=20)
+    ball = shown.balls[0]
+    ball.orient(True, pinocchio.rpy.matrixToRpy(pinocchio.rpy.rpyToMatrix(ball.rpy) @ pinocchio.exp3(np.full(3, 0.12))))
+    shown.set_motion("curve")
+    steps(shown, 100)
+    assert shown.instances[0].statistics.summary().efficiency > 0.9

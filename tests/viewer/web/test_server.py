@@ -181,6 +181,8 @@ DONE = {
     "step": lambda s: s["step"] == 1,
     "reset": lambda s: s["step"] == 0,
     "ball": lambda s: s["balls"][0]["position"] == [0.1, 0.2, 0.3] and s["motion"] == "hand",
+    "free": lambda s: s["balls"][0]["free"] == "xy",
+    "ball_tolerance": lambda s: s["balls"][0]["tolerance"] == [[0.01, 0.01, 0.1], 0.3],
     "orientation": lambda s: s["balls"][0]["oriented"] and s["balls"][0]["rpy"] == [0.1, 0.2, 0.3],
     "effector": lambda s: s["balls"][0]["mode"] == "pinned",
     "add_effector": lambda s: [b["frame"] for b in s["balls"]] == ["tip", "bone3"],

@@ -1,5 +1,6 @@
 /** One copy of a ball: a glossy sphere, or a pin if the ball is pinned. */
 
+import { Freedom } from "pinik/freedom.js";
 import { THREE } from "pinik/three.js";
 
 const SPHERE = new THREE.SphereGeometry(1, 40, 28);
@@ -28,21 +29,24 @@ export class Ball {
         this._pin.add(mesh(NEEDLE, this._pinSkin), mesh(HEAD, this._pinSkin));
         this._triad = triad();
         this._halo = halo();
-        this.group.add(this._sphere, this._pin, this._triad, this._halo);
+        this._freedom = new Freedom();
+        this.group.add(this._sphere, this._pin, this._triad, this._halo, this._freedom.group);
     }
 
     /** @param ball from the state; `selected` and `near` (under the pointer) change its look */
-    show({ mode, oriented }, selected, near) {
+    show({ mode, oriented, free }, selected, near) {
         this.group.visible = mode !== "off";
         this._sphere.visible = mode === "on";
         this._pin.visible = mode === "pinned";
         this._triad.visible = oriented;
+        this._freedom.show(free);
         this._halo.visible = selected || near;
         this._halo.material.opacity = near ? 1 : 0.75;
     }
 
     paint(theme) {
         this._skin.color.set(theme.color("ball")).convertSRGBToLinear();
+        this._freedom.paint(theme);
         this._pinSkin.color.set(theme.color("pin")).convertSRGBToLinear();
         this._halo.material.color.set(theme.color("halo")).convertSRGBToLinear();
     }
@@ -54,6 +58,7 @@ export class Ball {
 
     dispose() {
         this.group.parent?.remove(this.group);
+        this._freedom.dispose();
         this._skin.dispose();
         this._pinSkin.dispose();
         this._halo.material.dispose();

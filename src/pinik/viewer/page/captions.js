@@ -19,16 +19,16 @@ export class Captions {
     }
 
     /** Show each instance's result, but not more often than one can read. */
-    say(now, frame, { instances, tolerance }) {
+    say(now, frame, state) {
         if (now - this._said < WORDS) return;
         this._said = now;
-        const texts = instances.slice(0, frame.instances).map(({ title, method }, i) => {
+        const texts = state.instances.slice(0, frame.instances).map(({ title, method }, i) => {
             const { status, positionError, orientationError } = frame.figures(i);
             const name = this._statuses[status];
             return {
                 title,
                 method,
-                words: verdict(name, positionError, orientationError, tolerance),
+                words: verdict(name, positionError, orientationError, state),
                 good: name === "CONVERGED",
             };
         });

@@ -21,6 +21,7 @@ export class Controls {
         byId("motion").addEventListener("change", ({ target }) => send("motion", { motion: target.value }));
         byId("curve").addEventListener("change", ({ target }) => send("curve", { curve: target.value }));
         byId("limits").addEventListener("change", ({ target }) => send("limits", { on: target.checked }));
+        byId("polish").addEventListener("change", ({ target }) => send("polish", { on: target.checked }));
         byId("start").addEventListener("click", () => this.toggleRun());
         byId("step").addEventListener("click", () => this.step());
         byId("reset").addEventListener("click", () => send("reset"));
@@ -128,6 +129,7 @@ export class Controls {
             );
         for (const name of ["robot", "root", "motion", "curve"]) write(byId(name), state[name]);
         write(byId("limits"), state.limits);
+        write(byId("polish"), state.polish);
         write(byId("speed"), plain(state.speed));
         write(byId("speed-slider"), this._speed.position(state.speed));
         write(byId("until-reached"), state.iterations.until_reached);

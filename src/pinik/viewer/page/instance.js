@@ -33,7 +33,6 @@ export class Instance {
     setState(state, radius, selected, near) {
         const { balls } = state;
         this._asked = askedJoints(this._message, state);
-        this._tolerance = state.tolerance.position;
         if (this._sets.length !== balls.length || this._radius !== radius) {
             this._clearBalls();
             this._radius = radius;
@@ -43,6 +42,8 @@ export class Instance {
         balls.forEach((ball, k) => {
             const set = this._sets[k];
             set.mode = ball.mode;
+            set.free = ball.free;
+            set.tolerance = Math.max(...[ball.tolerance?.[0] ?? state.tolerance.position].flat());
             set.ball.show(ball, k === selected, k === near);
             this._layCurve(set, ball.curve);
         });
@@ -82,9 +83,10 @@ export class Instance {
     update(frame, places) {
         this.robot.update(frame, this._index, this._asked);
         const points = frame.points(this._index);
-        this._sets.forEach(({ ball, gap, trail, mode }, k) => {
+        this._sets.forEach(({ ball, gap, trail, mode, free, tolerance }, k) => {
             const { position, quaternion } = places[k];
             const [x, y, z] = points.subarray(3 * k, 3 * k + 3);
+            const asked = nearest(position, { x, y, z }, free);
             ball.place(position.x, position.y, position.z, quaternion);
             if (mode === "off") {
                 trail.clear();
@@ -92,9 +94,9 @@ export class Instance {
                 return;
             }
             trail.add(frame.step, x, y, z);
-            const away = Math.hypot(position.x - x, position.y - y, position.z - z);
-            const visible = away > Math.max(1.1 * this._radius, this._tolerance);
-            gap.set([x, y, z, position.x, position.y, position.z], visible ? 2 : 0);
+            const away = Math.hypot(asked[0] - x, asked[1] - y, asked[2] - z);
+            const visible = away > Math.max(1.1 * this._radius, tolerance);
+            gap.set([x, y, z, ...asked], visible ? 2 : 0);
         });
     }
 
@@ -124,4 +126,9 @@ export class Instance {
         this.robot?.dispose();
         this.group.parent.remove(this.group);
     }
+}
+
+/** The place nearest to a point of those that a ball with these free axes asks for: [x, y, z]. */
+function nearest(ball, point, free) {
+    return ["x", "y", "z"].map((axis) => (free.includes(axis) ? point : ball)[axis]);
 }

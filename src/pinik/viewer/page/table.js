@@ -12,7 +12,7 @@ export class Table {
     setState(state) {
         while (this._rows.length > state.instances.length) this._rows.pop().row.remove();
         while (this._rows.length < state.instances.length) this._rows.push(this._make(this._rows.length));
-        state.instances.forEach((instance, i) => this._show(this._rows[i], instance, state.tolerance));
+        state.instances.forEach((instance, i) => this._show(this._rows[i], instance, state));
     }
 
     _make(i) {
@@ -33,12 +33,12 @@ export class Table {
         return { row, title, ...cells };
     }
 
-    _show(row, instance, tolerance) {
+    _show(row, instance, state) {
         const { statistics: mean, status, position_error, orientation_error, message } = instance;
         const orNaN = (value) => value ?? NaN;
         say(row.title, instance.method);
         row.title.title = instance.title;
-        say(row.status, verdict(status, orNaN(position_error), orNaN(orientation_error), tolerance));
+        say(row.status, verdict(status, orNaN(position_error), orNaN(orientation_error), state));
         row.status.title = message;
         row.status.dataset.tone = status === "CONVERGED" ? "good" : status === "IDLE" ? "idle" : "missed";
         row.row.title = `Means over ${mean.steps} steps`;

@@ -11,6 +11,8 @@ const MODES = [
     ["off", "off"],
 ];
 const POSITION = ["target-x", "target-y", "target-z"];
+const AXES = ["x", "y", "z"];
+const FREE = AXES.map((axis) => `target-${axis}-free`);
 const TURN = ["roll", "pitch", "yaw"];
 
 export class Targets {
@@ -24,6 +26,7 @@ export class Targets {
         POSITION.forEach((id, axis) =>
             byId(id).addEventListener("change", ({ target }) => this._sendPosition(axis, typed(target))),
         );
+        FREE.forEach((id, axis) => byId(id).addEventListener("click", () => this._turnFree(AXES[axis])));
         TURN.forEach((id, axis) =>
             byId(id).addEventListener("change", ({ target }) => this._sendTurn(axis, typed(target))),
         );
@@ -101,14 +104,28 @@ export class Targets {
 
     _showNumbers() {
         const { ball } = this;
-        for (const id of [...POSITION, ...TURN, "orientation"]) byId(id).disabled = !ball;
+        for (const id of [...POSITION, ...FREE, ...TURN, "orientation"]) byId(id).disabled = !ball;
         if (!ball) return;
         this._showPosition(this.selected, ball.position);
+        this._showFree(ball);
         write(byId("orientation"), ball.oriented);
         TURN.forEach((id, axis) => {
             write(byId(id), plain(ball.rpy[axis] / DEGREE, 1));
         });
         byId("turns").hidden = !ball.oriented;
+    }
+
+    /** Show which axes are free. Something must stay asked for, so the last switch that would end that is disabled. */
+    _showFree({ free, oriented }) {
+        AXES.forEach((axis, k) => {
+            const button = byId(FREE[k]);
+            const isFree = free.includes(axis);
+            button.ariaPressed = String(isFree);
+            button.disabled = !isFree && !oriented && free.length === 2;
+            button.title = isFree ? `Any ${axis} will do; click to ask for this one` : `Leave ${axis} free`;
+            byId(POSITION[k]).classList.toggle("faint", isFree);
+        });
+        if (free.length === 3) byId("orientation").disabled = true;
     }
 
     select(k) {
@@ -133,6 +150,13 @@ export class Targets {
         const key = `position ${this.selected}`;
         const position = changed(this._asked.now(key, this.ball.position), axis, value);
         this._connection.send({ type: "ball", index: this.selected, position: this._asked.ask(key, position) });
+    }
+
+    _turnFree(axis) {
+        const key = `free ${this.selected}`;
+        const before = this._asked.now(key, this.ball.free);
+        const axes = AXES.filter((own) => before.includes(own) !== (own === axis)).join("");
+        this._connection.send({ type: "free", index: this.selected, axes: this._asked.ask(key, axes) });
     }
 
     _sendTurn(axis, value) {

@@ -50,12 +50,23 @@ export function spaced(name) {
     return name.replaceAll("_", " ");
 }
 
+/** The smallest tolerances that apply to a ball of a state: {position, orientation}. */
+function tightest({ balls, tolerance }) {
+    const asked = balls.filter(({ mode }) => mode !== "off");
+    const own = asked.map((ball) => ball.tolerance ?? [tolerance.position, tolerance.orientation]);
+    return {
+        position: Math.min(...own.flatMap(([position]) => position)),
+        orientation: Math.min(...own.map(([, orientation]) => orientation)),
+    };
+}
+
 /** An instance's result, such as "4.1 cm short"; errors in m and rad, not finite if not asked for. */
-export function verdict(status, positionError, orientationError, tolerance) {
+export function verdict(status, positionError, orientationError, state) {
     if (status === "FAILED") return "solver failed";
     if (status === "REFUSED") return "cannot do this";
     if (status === "IDLE") return "idle";
     if (status === "CONVERGED") return "reached";
+    const tolerance = tightest(state);
     const away = Number.isFinite(positionError) && positionError > tolerance.position;
     const turned = Number.isFinite(orientationError) && orientationError > tolerance.orientation;
     if (away) return `${length(positionError)} short`;

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import dataclasses
 import json
 from collections.abc import Callable, Iterable, Mapping
 from typing import Any
 
 from ...checks import as_finite_number, as_vector
 from ...errors import InputError, UnknownNameError
+from ...problem.tolerance import Tolerance
 from ..simulation.session import Session
 
 __all__ = ["FARTHEST", "RANGES", "any_text", "apply", "checked", "parse", "read_json", "text", "whole_number"]
@@ -148,6 +148,22 @@ def _angles(what: str, value: Any) -> Any:
     return angles
 
 
+_position_tolerance, _orientation_tolerance = _in_range("position_tolerance"), _in_range("orientation_tolerance")
+
+
+def _tolerance_or_none(what: str, value: Any) -> Tolerance | None:
+    """Check [metres, radians]; the metres may be a list of three, for a box."""
+    if value is None:
+        return None
+    if not isinstance(value, list) or len(value) != 2:
+        raise InputError(f"{what} must be null or [metres, radians]; got {str(value)[:60]!r}")
+    lengths = value[0] if isinstance(value[0], list) else [value[0]]
+    if len(lengths) not in (1, 3):
+        raise InputError(f"{what} must have one length, or three for a box; got {str(value)[:60]!r}")
+    position = [_position_tolerance(what, length) for length in lengths]
+    return Tolerance.of((position[0] if len(position) == 1 else position, _orientation_tolerance(what, value[1])))
+
+
 def _parameter_value(what: str, value: Any) -> Any:
     """Limit the size of the value; the solver itself checks its kind and range."""
     if isinstance(value, Mapping) and len(value) > 1000:
@@ -159,8 +175,8 @@ def _set_speed(session: Session, value: float) -> None:
     session.motion.speed = value
 
 
-def _set_iterations(session: Session, until_reached: bool, at_most: int) -> None:
-    session.apply_settings(dataclasses.replace(session.settings, until_reached=until_reached, at_most=at_most))
+def _set_tolerance(session: Session, position: float, orientation: float) -> None:
+    session.change_settings(tolerance=Tolerance(position, orientation))
 
 
 def _single_step(session: Session) -> None:
@@ -182,25 +198,33 @@ _MESSAGES: dict[str, tuple[dict[str, Check], Callable[..., None]]] = {
         {**_INSTANCE, "name": text, "value": _parameter_value},
         lambda s, instance, name, value: s.set_parameter(instance, name, value),
     ),
-    "limits": ({"on": _truth}, Session.set_limits),
-    "polish": ({"on": _truth}, Session.set_polish),
+    "limits": ({"on": _truth}, lambda s, on: s.change_settings(limits=on)),
+    "polish": ({"on": _truth}, lambda s, on: s.change_settings(polish=on)),
     "motion": ({"motion": text}, lambda s, motion: s.set_motion(motion)),
     "curve": ({"curve": text}, lambda s, curve: s.set_curve(curve)),
     "speed": ({"value": _in_range("speed")}, _set_speed),
     "iterations": (
         {"until_reached": _truth, "at_most": _in_range("iterations", whole=True)},
-        _set_iterations,
+        lambda s, until_reached, at_most: s.change_settings(until_reached=until_reached, at_most=at_most),
     ),
     "tolerance": (
-        {"position": _in_range("position_tolerance"), "orientation": _in_range("orientation_tolerance")},
-        Session.set_tolerance,
+        {"position": _position_tolerance, "orientation": _orientation_tolerance},
+        _set_tolerance,
     ),
     "run": ({"on": _truth}, _run),
     "step": ({}, _single_step),
     "reset": ({}, Session.reset),
     "ball": ({**_BALL, "position": _point}, Session.move_ball),
-    "orientation": ({**_BALL, "on": _truth, "rpy": _angles}, Session.orient_ball),
+    "free": ({**_BALL, "axes": text}, lambda s, index, axes: s.balls.number(index).release(axes)),
+    "orientation": (
+        {**_BALL, "on": _truth, "rpy": _angles},
+        lambda s, index, on, rpy: s.balls.number(index).orient(on, rpy),
+    ),
+    "ball_tolerance": (
+        {**_BALL, "tolerance": _tolerance_or_none},
+        lambda s, index, tolerance: s.balls.number(index).tolerate(tolerance),
+    ),
     "effector": ({**_BALL, "mode": text}, Session.set_mode),
     "add_effector": ({"frame": text}, Session.add_ball),
-    "remove_effector": (_BALL, Session.remove_ball),
+    "remove_effector": (_BALL, lambda s, index: s.balls.remove(index)),
 }

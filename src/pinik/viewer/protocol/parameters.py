@@ -1,4 +1,4 @@
-"""A solver's parameters in the form that the page's sliders and menus need."""
+"""A solver's parameters, and a ball's tolerance, in the form that the page and links need."""
 
 from __future__ import annotations
 
@@ -6,8 +6,9 @@ from typing import Any
 
 from ...solvers.base import Solver
 from ...solvers.parameter import Parameter, parameters_of
+from ..simulation.ball import Ball
 
-__all__ = ["changed_parameters", "describe_parameters"]
+__all__ = ["changed_parameters", "describe_parameters", "tolerance_of"]
 
 
 def describe_parameters(solver: Solver) -> list[dict[str, Any]]:
@@ -18,6 +19,12 @@ def describe_parameters(solver: Solver) -> list[dict[str, Any]]:
 def changed_parameters(solver: Solver) -> dict[str, Any]:
     """Name → value of the parameters that differ from their defaults, in their JSON form."""
     return {p["name"]: p["value"] for p in describe_parameters(solver) if p["value"] != p["default"]}
+
+
+def tolerance_of(ball: Ball) -> list[Any] | None:
+    """A ball's own tolerance as [metres, radians], the metres a list of three for a box; None if it has none."""
+    tolerance: list[Any] | None = ball.target.to_dict().get("tolerance")
+    return tolerance
 
 
 def _described(own: Parameter, value: Any) -> dict[str, Any]:

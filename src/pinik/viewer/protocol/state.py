@@ -12,7 +12,7 @@ from ..simulation.motion import MOTIONS
 from ..simulation.session import STEPS_PER_SECOND, VIEWS, Session
 from ..simulation.statistics import Summary
 from .messages import FARTHEST, RANGES
-from .parameters import describe_parameters
+from .parameters import describe_parameters, tolerance_of
 from .robots import ROOTS
 
 __all__ = ["hello_message", "session_state"]
@@ -67,6 +67,8 @@ def session_state(session: Session) -> dict[str, Any]:
                 "position": ball.position.tolist(),
                 "rpy": ball.rpy.tolist(),
                 "oriented": ball.oriented,
+                "free": ball.free,
+                "tolerance": tolerance_of(ball),
                 "curve": motion.path(ball).round(4).tolist(),
             }
             for ball in session.balls

@@ -9,9 +9,54 @@ from ...problem.problem import Problem
 from ...problem.targets import Target
 from ...robot import Robot
 from ...solvers.base import Solver
-from ...solvers.registry import CLOSED_FORMS, make_solver
+from ...solvers.registry import CLOSED_FORMS, Method, known_methods, make_solver
 
-__all__ = ["check_balls", "fitting", "offered"]
+__all__ = ["Methods", "check_balls", "chosen", "filled_up", "fitting", "offered"]
+
+Methods = Method | Iterable[Method]
+"""One method or several, as names (also "ccd,dls"), classes or instances."""
+
+
+def chosen(
+    methods: Methods, robot: Robot, frames: Sequence[str], at_most: int
+) -> tuple[list[Solver], dict[str, type[Solver]]]:
+    """The solvers that a session begins with.
+
+    Args:
+        methods: The methods.
+        robot: The robot.
+        frames: The frames of the balls.
+        at_most: The largest number of methods.
+
+    Returns:
+        The solvers, and short name → class for every available method.
+
+    Raises:
+        UnknownNameError: There is no such method.
+        InputError: There are no methods or too many, one of them cannot chase any ball, or two of them share a name.
+    """
+    if isinstance(methods, (str, type, Solver)):
+        methods = methods.split(",") if isinstance(methods, str) else [methods]
+    solvers = [make_solver(method.strip() if isinstance(method, str) else method) for method in methods]
+    if not 1 <= len(solvers) <= at_most:
+        raise InputError(f"a live view has one to four methods; got {len(solvers)}")
+    available = known_methods()
+    for made in solvers:
+        known = available.setdefault(made.name, type(made))
+        if known is not type(made) or "," in made.name:
+            raise InputError(f"a method's name must be unique and must not contain a comma; got {made.name!r}")
+    for made in solvers:
+        check_balls(made, robot, frames)
+    return solvers, available
+
+
+def filled_up(
+    solvers: Sequence[Solver], methods: Mapping[str, type[Solver]], robot: Robot, frames: Sequence[str], count: int
+) -> list[Solver]:
+    """Solvers, followed by those of the remaining methods that can chase a ball, up to a number of solvers."""
+    used = {solver.name for solver in solvers}
+    others = [make_solver(methods[name]) for name in offered(methods, robot, frames) if name not in used]
+    return [*solvers, *others][:count]
 
 
 def check_balls(solver: Solver, robot: Robot, frames: Sequence[str]) -> None:

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from ...model.home import home_configuration
 from ...motion.tracks import Track, lay_track, random_configuration
 from ...robot import Robot
-from .balls import Ball
+from .ball import Ball
 
 __all__ = ["MOTIONS", "Motion"]
 

@@ -25,7 +25,8 @@ from ... import errors
 from ...picture.camera import Camera
 from ...picture.picture import Picture
 from ...robot import Robot
-from ..simulation.session import STEPS_PER_SECOND, Methods, Session
+from ..simulation.method_menu import Methods
+from ..simulation.session import STEPS_PER_SECOND, Session
 from .later import later_in_threads
 from .notebook import as_html, draw_beside
 from .server import make_application
