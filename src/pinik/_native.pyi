@@ -2,14 +2,14 @@
 
 from collections.abc import Sequence
 import enum
-from typing import Annotated
+from typing import Annotated, Any
 
 import numpy
 from numpy.typing import NDArray
 
 pinocchio_version: str = "4.1.0"
 
-abi: str = "b8d720082fffdf9d"
+abi: str = "2ebb4d6f6266e631"
 
 class JointKind(enum.Enum):
     revolute = 0
@@ -55,6 +55,10 @@ class Constants:
     def reach_rounding(self) -> float: ...
     @reach_rounding.setter
     def reach_rounding(self, arg: float, /) -> None: ...
+    @property
+    def slack_share(self) -> float: ...
+    @slack_share.setter
+    def slack_share(self, arg: float, /) -> None: ...
     @property
     def smallest_damping_squared(self) -> float: ...
     @smallest_damping_squared.setter
@@ -104,6 +108,10 @@ class Constants:
     @restarts_when_unreachable.setter
     def restarts_when_unreachable(self, arg: int, /) -> None: ...
     @property
+    def exact_attempts(self) -> int: ...
+    @exact_attempts.setter
+    def exact_attempts(self, arg: int, /) -> None: ...
+    @property
     def same_answer(self) -> float: ...
     @same_answer.setter
     def same_answer(self, arg: float, /) -> None: ...
@@ -123,6 +131,35 @@ class Constants:
     def table_key(self) -> int: ...
     @table_key.setter
     def table_key(self, arg: int, /) -> None: ...
+    @property
+    def jump_floor(self) -> float: ...
+    @jump_floor.setter
+    def jump_floor(self, arg: float, /) -> None: ...
+    @property
+    def jump_factor(self) -> float: ...
+    @jump_factor.setter
+    def jump_factor(self, arg: float, /) -> None: ...
+    @property
+    def jump_damping(self) -> float: ...
+    @jump_damping.setter
+    def jump_damping(self, arg: float, /) -> None: ...
+    @property
+    def creep_halvings(self) -> int: ...
+    @creep_halvings.setter
+    def creep_halvings(self, arg: int, /) -> None: ...
+    @property
+    def tick_iterations(self) -> int: ...
+    @tick_iterations.setter
+    def tick_iterations(self, arg: int, /) -> None: ...
+
+class Tolerance:
+    def __init__(
+        self,
+        position: float,
+        orientation: float,
+        is_box: bool,
+        box: Annotated[NDArray[numpy.float64], dict(shape=(3), order="C")],
+    ) -> None: ...
 
 class Robot:
     def __init__(self) -> None: ...
@@ -162,6 +199,8 @@ class Problem:
         asks_rotation: bool,
         asks_axis: bool,
         asks_at: bool,
+        along: Annotated[NDArray[numpy.float64], dict(shape=(3), order="C")],
+        tolerance: Tolerance,
         axis: Annotated[NDArray[numpy.float64], dict(shape=(3), order="C")],
         weight: float,
         has_bounds: bool,
@@ -177,7 +216,7 @@ class Problem:
         movers: Sequence[tuple[int, float]],
         moved: Sequence[tuple[int, float]],
     ) -> None: ...
-    def finish(self, lightest: float, size_of_chain: float) -> None: ...
+    def finish(self, lightest: float, size_of_chain: float, is_wide: bool) -> None: ...
 
 class Method(enum.Enum):
     ccd = 0
@@ -260,6 +299,10 @@ class Solver:
     @relaxation.setter
     def relaxation(self, arg: float, /) -> None: ...
     @property
+    def loose_relaxation(self) -> float: ...
+    @loose_relaxation.setter
+    def loose_relaxation(self, arg: float, /) -> None: ...
+    @property
     def position_weight(self) -> float: ...
     @position_weight.setter
     def position_weight(self, arg: float, /) -> None: ...
@@ -267,9 +310,6 @@ class Solver:
     def printed_scaling(self) -> bool: ...
     @printed_scaling.setter
     def printed_scaling(self, arg: bool, /) -> None: ...
-
-class Tolerance:
-    def __init__(self, position: float, orientation: float) -> None: ...
 
 class Settings:
     def __init__(self) -> None: ...
@@ -281,10 +321,6 @@ class Settings:
     def patience(self) -> Patience: ...
     @patience.setter
     def patience(self, arg: Patience, /) -> None: ...
-    @property
-    def tolerance(self) -> Tolerance: ...
-    @tolerance.setter
-    def tolerance(self, arg: Tolerance, /) -> None: ...
     @property
     def limits(self) -> bool: ...
     @limits.setter
@@ -347,7 +383,7 @@ class Answer:
     @property
     def start(self) -> NDArray[numpy.float64]: ...
     @property
-    def errors(self) -> tuple[tuple[float | None, float | None], ...]: ...
+    def errors(self) -> tuple[tuple[float | None, float | None, tuple[float, float, float] | None], ...]: ...
     @property
     def iterations(self) -> int: ...
     @property
@@ -366,7 +402,16 @@ class Answer:
     def states(
         self,
     ) -> tuple[
-        tuple[NDArray[numpy.float64], int, int, tuple[tuple[float | None, float | None], ...], float, int, Status], ...
+        tuple[
+            NDArray[numpy.float64],
+            int,
+            int,
+            tuple[tuple[float | None, float | None, tuple[float, float, float] | None], ...],
+            float,
+            int,
+            Status,
+        ],
+        ...,
     ]: ...
 
 class Engine:
@@ -377,7 +422,6 @@ class Engine:
         goals: Annotated[NDArray[numpy.float64], dict(shape=(None, 18), order="C", writable=False)],
         nearest: bool,
     ) -> Answer: ...
-    def solve_at(self, place: object, start: object, nearest: bool) -> Answer | None: ...
     def solve_many(
         self, starts: NDArray[numpy.float64], goals: NDArray[numpy.float64], nearest: bool, threads: int
     ) -> tuple[
@@ -391,3 +435,64 @@ class Engine:
         NDArray[numpy.int64],
         NDArray[numpy.float64],
     ]: ...
+
+class Call:
+    def __init__(self, engine: Engine, neutral: object, placement: type, solution: type, question: object) -> None: ...
+    def solve(self, place: object, start: object) -> Any: ...
+
+def note(call: Call) -> None: ...
+def recalling(function: Any, place: int, methods: dict[str, Any]) -> Any: ...
+def read_places(
+    places: object, farthest: float, threads: int
+) -> tuple[NDArray[numpy.float64], NDArray[numpy.int64]] | None: ...
+
+class ReferenceFrame(enum.Enum):
+    WORLD = 0
+
+    LOCAL = 1
+
+    LOCAL_WORLD_ALIGNED = 2
+
+class FrameWalk:
+    def __init__(
+        self,
+        robot: Robot,
+        frame_joint: int,
+        frame_rotation: Annotated[NDArray[numpy.float64], dict(shape=(3, 3), order="F")],
+        frame_translation: Annotated[NDArray[numpy.float64], dict(shape=(3), order="C")],
+        reference_joint: int,
+        reference_rotation: Annotated[NDArray[numpy.float64], dict(shape=(3, 3), order="F")],
+        reference_translation: Annotated[NDArray[numpy.float64], dict(shape=(3), order="C")],
+        largest_unit_error: float,
+    ) -> None: ...
+    def placements(self, q: object, threads: int) -> NDArray[numpy.float64] | None: ...
+    def jacobians(self, q: object, axes: ReferenceFrame, threads: int) -> NDArray[numpy.float64] | None: ...
+
+class OnMiss(enum.Enum):
+    hold = 0
+
+    nearest = 1
+
+    stop = 2
+
+class Track:
+    def __init__(self, engine: Engine) -> None: ...
+    def follow(
+        self, start: NDArray[numpy.float64], goals: NDArray[numpy.float64], on_miss: OnMiss
+    ) -> tuple[
+        NDArray[numpy.float64],
+        NDArray[numpy.int32],
+        NDArray[numpy.float64],
+        NDArray[numpy.float64],
+        NDArray[numpy.int64],
+        NDArray[numpy.int64],
+        NDArray[numpy.int64],
+        NDArray[numpy.int64],
+        NDArray[numpy.float64],
+    ]: ...
+    def tick(
+        self, start: NDArray[numpy.float64], most: NDArray[numpy.float64], goals: NDArray[numpy.float64]
+    ) -> tuple[NDArray[numpy.float64], bool, bool, float, float]: ...
+    def tick_at(
+        self, start: NDArray[numpy.float64], most: NDArray[numpy.float64], place: object
+    ) -> tuple[NDArray[numpy.float64], bool, bool, float, float] | None: ...

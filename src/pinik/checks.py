@@ -110,9 +110,9 @@ def as_many(values: ArrayLike, shape: tuple[int, ...], what: str) -> Array:
     array = as_numbers(values, what)
     if array.shape[1:] != shape or array.ndim != len(shape) + 1:
         raise InputError(f"must be N times {size} finite numbers; got an array of shape {array.shape}", argument=what)
-    finite = np.isfinite(array).all(axis=tuple(range(1, array.ndim)))
+    finite = np.isfinite(array)
     if not finite.all():
-        k = int(np.argmin(finite))
+        k = int(np.argmin(finite.all(axis=tuple(range(1, array.ndim)))))
         raise InputError(f"must be {size} finite numbers; got {array[k].tolist()}", argument=f"{what}[{k}]")
     return array.astype(np.float64)
 

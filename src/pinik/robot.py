@@ -15,6 +15,7 @@ from .problem.tolerance import Tolerance
 from .solvers.registry import Method
 from .solving import batch
 from .solving.front import answer
+from .solving.native.recalling import recalling
 from .solving.solution import Solution
 from .solving.words import UNWEIGHTED
 
@@ -70,6 +71,7 @@ class Robot(RobotModel):
         """
         return batch.jacobians(self, frame, Q, axes, relative_to)
 
+    @recalling(place=2)
     def solve(
         self,
         targets: str | Target | Sequence[Target],

@@ -30,7 +30,7 @@ PLACEHOLDERS = {
 TARGETS = [
     {"frame": "tip", "position": [0.2, 0.1, 0.8], "rpy": [0, 0.3, 0], "tool": [0, 0, 0.1], "weight": 2},
     {"frame": "tip", "axis": "z", "direction": [1, 0, 0], "relative_to": "bone2_x"},
-    {"frame": "tip", "axis": "x", "at": [1, 0, 0]},
+    {"frame": "tip", "axis": "x", "at": [1, 0, 0], "tolerance": [1e-4, 0.1]},
 ]
 RUNS = {
     "solve": [

@@ -172,3 +172,41 @@ class TestAFollower:
             k = loaded.joint_names.index(f"{side}_gripper_l_finger_joint")
             assert (loaded.lower[k], loaded.upper[k]) == (0.0, 0.548)
             assert any(f"'{side}_gripper_r_parallel_root_joint'" in words for words in loaded.warnings)
+
+
+class TestVelocityLimits:
+    def test_are_those_of_the_file_and_infinite_where_it_gives_none_or_zero(self):
+        model = pinik.load(
+            robot(
+                *map(link, "abcd"),
+                joint("fast", "a", "b", limit='<limit lower="-1" upper="1" effort="1" velocity="2.5"/>'),
+                joint("zero", "b", "c", limit='<limit lower="-1" upper="1" effort="1" velocity="0"/>'),
+                joint("none", "c", "d", axis(0, 0, 1), kind="continuous", limit=""),
+            )
+        )
+        assert dict(zip(model.joint_names, model.velocity_limits, strict=True)) == {
+            "fast": 2.5,
+            "zero": math.inf,
+            "none": math.inf,
+        }
+
+    @pytest.mark.parametrize(("multiplier", "expected"), [(2.0, 1.5), (-4.0, 0.75), (0.5, 2.0), (0.0, 2.0)])
+    def test_keep_followers_within_theirs(self, multiplier, expected):
+        model = pinik.load(
+            robot(
+                *map(link, "abc"),
+                joint("lead", "a", "b", limit='<limit lower="-1" upper="1" effort="1" velocity="2"/>'),
+                joint(
+                    "tail",
+                    "b",
+                    "c",
+                    mimic("lead", multiplier),
+                    limit='<limit lower="-9" upper="9" effort="1" velocity="3"/>',
+                ),
+            )
+        )
+        assert model.velocity_limits == pytest.approx([expected])
+
+    def test_cannot_be_changed(self, panda):
+        with pytest.raises(ValueError, match="read-only"):
+            panda.velocity_limits[0] = 9.0

@@ -9,7 +9,9 @@ import pinocchio
 import pytest
 
 import pinik
+from engines import needs_native
 from pinik import Target
+from pinik.solving import many
 
 TIP = "panda_hand_tcp"
 
@@ -89,3 +91,45 @@ def test_bad_options_are_refused_in_words(options, words, panda):
 def test_a_robot_is_needed():
     with pytest.raises(pinik.InputError, match=r"robot must be what pinik\.load returns"):
         pinik.solve_many("panda", TIP, EYES)
+
+
+@needs_native
+def test_only_places_in_doubt_are_checked_in_python(panda, monkeypatch):
+    """The engine reads exact matrices by itself; rounded ones are projected, and the first faulty one is named."""
+    rng, seen = np.random.default_rng(0), []
+    places = np.array([panda.placement(TIP, panda.random(rng)).homogeneous for _ in range(600)])
+    exact = pinik.solve_many(panda, TIP, places)
+    read = many._read_places
+    monkeypatch.setattr(many, "_read_places", lambda places: seen.append(len(places)) or read(places))
+    np.testing.assert_array_equal(pinik.solve_many(panda, TIP, places).q, exact.q)
+    assert seen == []
+    rounded = places.copy()
+    rounded[[5, 400], :3, :3] = rounded[[5, 400], :3, :3].round(8)
+    found = pinik.solve_many(panda, TIP, rounded)
+    assert seen == [2]
+    for index in (5, 400):
+        R = found[index].targets[0].rotation
+        np.testing.assert_allclose(R @ R.T, np.eye(3), atol=1e-15)
+        np.testing.assert_allclose(R, places[index, :3, :3], atol=1e-7)
+    for row, column, value in ((0, 3, math.nan), (1, 3, 2e9), (0, 0, 3.0), (3, 3, 2.0)):
+        faulty = rounded.copy()
+        faulty[[301, 399], row, column] = value
+        with pytest.raises(pinik.InputError, match=r"^places\[301\] must be"):
+            pinik.solve_many(panda, TIP, faulty)
+
+
+@needs_native
+@pytest.mark.parametrize("threads", [1, 2, 5])
+def test_places_are_read_alike_by_any_number_of_threads(threads, panda):
+    rng = np.random.default_rng(1)
+    places = np.array([panda.placement(TIP, panda.random(rng)).homogeneous for _ in range(700)])
+    points = np.ascontiguousarray(places[:, :3, 3])
+    goals, turned = many._goals_at(places, threads)
+    assert turned
+    np.testing.assert_array_equal(goals[:, :3], points)
+    np.testing.assert_array_equal(goals[:, 3:12], places[:, :3, :3].reshape(-1, 9))
+    assert not goals[:, 12:].any()
+    goals, turned = many._goals_at(points, threads)
+    assert not turned
+    np.testing.assert_array_equal(goals[:, :3], points)
+    assert not goals[:, 3:].any()

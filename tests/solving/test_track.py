@@ -218,11 +218,24 @@ def test_joints_that_would_be_too_fast_are_named_by_index_and_factor():
     assert "times too fast at 10" in str(track)
 
 
-def test_velocity_limits_come_from_the_file_and_from_followers(panda):
-    limits = dict(zip(panda.joint_names, panda.velocity_limits, strict=True))
-    assert limits["panda_joint1"] == 2.175
-    assert limits["panda_finger_joint1"] == 0.2
-    assert np.isinf(load_quietly("two_link").velocity_limits).sum() in (0, 2)
+@pytest.mark.parametrize("limits", [True, False])
+def test_the_closed_form_follows_a_path_too(limits):
+    robot = load_quietly("two_link")
+    turn = np.linspace(0.2, 1.2, 20)
+    places = 0.6 * np.column_stack([np.cos(turn), np.sin(turn), np.zeros(20)])
+    track = pinik.track(robot, "tip", places, robot.configuration({"joint2": 1.0}), "two_bone", limits=limits)
+    assert track.success
+    assert track.engine == "python"
+    for place, q in zip(places, track.q, strict=True):
+        assert judge(robot, Target("tip", place), q).are_within()
+
+
+def test_without_limits_a_path_may_leave_them():
+    robot, places = two_link_behind_a_limit()
+    start = robot.configuration({"shoulder": -0.3, "elbow": 1.85})
+    track = pinik.track(robot, "tip", places, start, limits=False)
+    assert track.success
+    assert track.angles[:, 0].min() < -1.0
 
 
 @pytest.mark.parametrize("kind", ["matrices", "placements", "targets", "sequences", "pattern"])

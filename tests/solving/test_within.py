@@ -181,6 +181,16 @@ def test_a_wide_tolerance_does_not_change_what_an_exact_answer_is():
         assert solution.position_error < 1e-8
 
 
+def test_a_whole_position_after_a_partial_one_is_asked_for_as_a_whole():
+    robot = load_quietly("ur5")
+    p = robot.placement("tool0", robot.random(1)).translation
+    for _ in range(2):  # the second time, the calls are recalled
+        assert_good(robot.solve("tool0", [None, None, p[2]]), {"frame": "tool0", "position": [None, None, p[2]]})
+        assert_good(robot.solve("tool0", p), {"frame": "tool0", "position": p})
+    prepared = pinik.prepare(robot, "tool0", position=[None, p[1], None])
+    assert_good(prepared(p), {"frame": "tool0", "position": [None, p[1], None]})
+
+
 def within_20_degrees(robot: pinik.Robot, M: np.ndarray, q: np.ndarray) -> bool:
     at = plain_placement(robot, HAND, q)
     turned = np.linalg.norm(pinocchio.log3(M[:3, :3] @ at.rotation.T))

@@ -118,10 +118,13 @@ def test_tuned_every_method_reaches_99_percent_of_the_reachable_places(arm):
 
 
 def test_ccd_turns_its_joints_furthest_when_the_ball_jumps(arm):
-    """The thesis: "CCD jumps". From place to place, by the methods alone: restarts jump as well."""
+    """The thesis: "CCD jumps". From place to place, by the methods alone: restarts jump as well.
+
+    Whole turns are no part of a jump: every answer is at the turn nearest to its start.
+    """
     chosen = contest(arm, "tip", "tuned", "no-restarts")
     random = [comparison for comparison in COMPARISONS if comparison.name == "2"]
     jumps = {
         r.method: r.jump for r in compare(arm, "tip", METHODS, chosen.begin, chosen.rules, steps=60, comparisons=random)
     }
-    assert jumps["ccd"] > 2.0 * max(jumps[method] for method in ("pinv", "dls"))
+    assert jumps["ccd"] > 1.5 * max(jumps[method] for method in ("pinv", "dls"))

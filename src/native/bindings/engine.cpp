@@ -10,8 +10,10 @@
 #include <string>
 
 #include "columns.hpp"
+#include "call.hpp"
 #include "interface.hpp"
 #include "numbers.hpp"
+#include "places.hpp"
 #include "signals.hpp"
 
 namespace pinik {
@@ -38,6 +40,8 @@ Answer solve(Engine& engine, Vector start, std::vector<Goal> goals, bool nearest
   return answer;
 }
 
+}  // namespace
+
 std::optional<Answer> solve_at(Engine& engine, nb::handle place, nb::handle start, bool nearest) {
   const int nq = engine.mechanism().nq;
   const Problem& problem = engine.problem();
@@ -48,6 +52,8 @@ std::optional<Answer> solve_at(Engine& engine, nb::handle place, nb::handle star
   if (!goal || !engine.mechanism().normalize(q, problem.constants.largest_unit_error)) return std::nullopt;
   return solve(engine, std::move(q), {*goal}, nearest);
 }
+
+namespace {
 
 nb::tuple solve_many(Engine& engine, nb::ndarray<const double, nb::ndim<2>, nb::c_contig> starts,
                      nb::ndarray<const double, nb::ndim<3>, nb::c_contig> goals, bool nearest, int threads) {
@@ -91,8 +97,6 @@ void register_engine(nb::module_& m) {
            [](Engine& self, Vector start, nb::ndarray<const double, nb::shape<-1, numbers_of_a_goal>, nb::c_contig> goals,
               bool nearest) { return solve(self, std::move(start), goals_from(goals.data(), goals.shape(0)), nearest); },
            "start"_a, "goals"_a, "nearest"_a)
-      .def("solve_at", &solve_at, "place"_a.none(), "start"_a.none(), "nearest"_a,
-           nb::sig("def solve_at(self, place: object, start: object, nearest: bool) -> Answer | None"))
       .def("solve_many", &solve_many, "starts"_a, "goals"_a, "nearest"_a, "threads"_a,
            nb::sig("def solve_many(self, starts: NDArray[numpy.float64], goals: NDArray[numpy.float64], "
                    "nearest: bool, threads: int) -> tuple[NDArray[numpy.float64], NDArray[numpy.int32], "

@@ -11,7 +11,9 @@ void register_descriptions(nb::module_& m);  // Constants, Robot and Problem
 void register_settings(nb::module_& m);      // Solver and Settings
 void register_answers(nb::module_& m);       // Status and Answer
 void register_engine(nb::module_& m);        // Engine
-void register_kinematics(nb::module_& m);    // ReferenceFrame and FrameWalk
 void register_track(nb::module_& m);         // OnMiss and Track
+void register_calls(nb::module_& m);         // Call, recalling
+void register_places(nb::module_& m);        // read_places
+void register_kinematics(nb::module_& m);    // ReferenceFrame and FrameWalk
 
 }  // namespace pinik

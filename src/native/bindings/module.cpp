@@ -16,6 +16,8 @@ NB_MODULE(_native, m) {
   pinik::register_settings(m);
   pinik::register_answers(m);
   pinik::register_engine(m);
+  pinik::register_calls(m);
+  pinik::register_places(m);
   pinik::register_kinematics(m);
   pinik::register_track(m);
 }

@@ -11,9 +11,11 @@ namespace {
 
 using RowMajor = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
 
-// A rotation matrix up to the last bits. Python checks anything less exact, since it also reports what is wrong.
-bool is_rotation(const Mat3& R) {
-  return (R * R.transpose() - Mat3::Identity()).cwiseAbs().maxCoeff() < 1e-14 && R.determinant() > 0.0;
+// Whether an array is contiguous float64 with `more` dimensions of any length before those of `shape`.
+bool has_shape(PyArrayObject* array, std::initializer_list<std::ptrdiff_t> shape, int more) {
+  return PyArray_TYPE(array) == NPY_DOUBLE && PyArray_ISCARRAY_RO(array) &&
+         PyArray_NDIM(array) == static_cast<int>(shape.size()) + more &&
+         std::equal(shape.begin(), shape.end(), PyArray_DIMS(array) + more);
 }
 
 }  // namespace
@@ -47,35 +49,22 @@ nb::object as_array(const Goal& goal) {
 const double* numbers_of(nb::handle array, std::initializer_list<std::ptrdiff_t> shape) {
   if (!PyArray_Check(array.ptr())) return nullptr;
   auto* own = reinterpret_cast<PyArrayObject*>(array.ptr());
-  const bool fits = PyArray_TYPE(own) == NPY_DOUBLE && PyArray_ISCARRAY_RO(own) &&
-                    PyArray_NDIM(own) == static_cast<int>(shape.size()) &&
-                    std::equal(shape.begin(), shape.end(), PyArray_DIMS(own));
-  return fits ? static_cast<const double*>(PyArray_DATA(own)) : nullptr;
+  return has_shape(own, shape, 0) ? static_cast<const double*>(PyArray_DATA(own)) : nullptr;
 }
 
-const double* rows_of(nb::handle array, std::ptrdiff_t columns, std::size_t& count) {
+const double* blocks_of(nb::handle array, std::initializer_list<std::ptrdiff_t> shape, std::size_t& count) {
   if (!PyArray_Check(array.ptr())) return nullptr;
   auto* own = reinterpret_cast<PyArrayObject*>(array.ptr());
-  if (PyArray_NDIM(own) != 2) return nullptr;
+  if (!has_shape(own, shape, 1)) return nullptr;
   count = static_cast<std::size_t>(PyArray_DIM(own, 0));
-  return numbers_of(array, {PyArray_DIM(own, 0), columns});
+  return static_cast<const double*>(PyArray_DATA(own));
 }
 
-std::optional<Goal> goal_at(const Term& term, nb::handle place, double farthest) {
-  Goal goal;
-  if (term.asks_axis) return std::nullopt;
-  if (const double* matrix = numbers_of(place, {4, 4})) {
-    const Eigen::Map<const Eigen::Matrix<double, 4, 4, Eigen::RowMajor>> M(matrix);
-    goal.position = M.topRightCorner<3, 1>();
-    goal.rotation = M.topLeftCorner<3, 3>();
-    if (M.row(3) != Eigen::RowVector4d(0.0, 0.0, 0.0, 1.0) || !is_rotation(goal.rotation)) return std::nullopt;
-  } else if (const double* point = numbers_of(place, {3}); point && !term.asks_rotation) {
-    goal.position = Eigen::Map<const Vec3>(point);
-  } else {
-    return std::nullopt;
-  }
-  if (!goal.position.allFinite() || goal.position.cwiseAbs().maxCoeff() > farthest) return std::nullopt;
-  return goal;
+void write_goal(const Goal& goal, bool asks_rotation, double* row) {
+  std::fill_n(row, numbers_of_a_goal, 0.0);
+  std::copy_n(goal.position.data(), 3, row);
+  const RowMajor R = goal.rotation;
+  if (asks_rotation) std::copy_n(R.data(), 9, row + 3);
 }
 
 nb::object as_array(const Vector& numbers) {

@@ -7,11 +7,10 @@
 #include <cstddef>
 #include <initializer_list>
 #include <memory>
-#include <optional>
 #include <utility>
 #include <vector>
 
-#include "../problem/problem.hpp"
+#include "../problem/targets.hpp"
 
 namespace pinik {
 
@@ -27,14 +26,14 @@ Goal goal_from(const double* row);
 std::vector<Goal> goals_from(const double* rows, std::size_t count);
 nb::object as_array(const Goal& goal);
 
+// Write the row of a goal that has no direction; the rotation is zero if it is not asked for.
+void write_goal(const Goal& goal, bool asks_rotation, double* row);
+
 // The numbers of a contiguous float64 array of this shape; null for anything else.
 const double* numbers_of(nb::handle array, std::initializer_list<std::ptrdiff_t> shape);
 
-// The numbers of a contiguous float64 array (count, columns), whose `count` is set; null for anything else.
-const double* rows_of(nb::handle array, std::ptrdiff_t columns, std::size_t& count);
-// The goal of a target that asks for a position, a rotation or both, from a 4×4 matrix or from a position alone. Nothing
-// if there is any doubt about the numbers.
-std::optional<Goal> goal_at(const Term& term, nb::handle place, double farthest);
+// The numbers of a contiguous float64 array (count, *shape), whose `count` is set; null for anything else.
+const double* blocks_of(nb::handle array, std::initializer_list<std::ptrdiff_t> shape, std::size_t& count);
 
 nb::object as_array(const Vector& numbers);
 

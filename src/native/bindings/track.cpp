@@ -9,6 +9,7 @@
 #include "columns.hpp"
 #include "interface.hpp"
 #include "numbers.hpp"
+#include "places.hpp"
 #include "signals.hpp"
 
 namespace pinik {

@@ -97,7 +97,7 @@ template <int Dimension, int Nq, int Nv>
 void difference_on(const double* from, const double* to, double* step) {
   const Eigen::Matrix<double, Nq, 1> a = Eigen::Map<const Eigen::Matrix<double, Nq, 1>>(from);
   const Eigen::Matrix<double, Nq, 1> b = Eigen::Map<const Eigen::Matrix<double, Nq, 1>>(to);
-  Eigen::Matrix<double, Nv, 1> v;
+  Eigen::Matrix<double, Nv, 1> v = Eigen::Matrix<double, Nv, 1>::Zero();
   pinocchio::SpecialEuclideanOperationTpl<Dimension, double>().difference(a, b, v);
   Eigen::Map<Eigen::Matrix<double, Nv, 1>> entries(step);
   entries = v;

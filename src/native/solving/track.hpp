@@ -27,6 +27,9 @@ class Track {
       walk_.emplace<3>(problem_, settings_, interrupts_);
   }
 
+  Track(const Track&) = delete;  // walk_ refers to the other members
+  Track& operator=(const Track&) = delete;
+
   const Problem& problem() const { return problem_; }
 
   // Follow a path of `count` points from `q`. `take` sets the goals of a point, and `put` receives its answer. Returns the

@@ -43,8 +43,7 @@ class Walk {
     best_ = &plain_;
     run(from, pace, plain_);
     if (is_near(plain_, from) || plain_.status == Status::time_limit) return stride(*best_);
-    if (!is_beyond() && creep(from, {settings_.max_iterations, problem_.constants.to_the_end, false, true}))
-      return stride(*best_);
+    if (!is_beyond() && creep(from, pace)) return stride(*best_);
     if (plain_.status != Status::converged) {
       best_ = &last_;
       run(plain_.q, {settings_.iterations_to_the_end, problem_.constants.to_the_end, false, true}, last_);

@@ -10,6 +10,10 @@ from numpy.typing import NDArray
 from ..problem.targets import Target
 from ..solvers.damped_least_squares import DampedLeastSquares
 from .attempts import Attempts
+from .native.codec import goals_of
+from .native.compiling import make_engine
+from .native.module import why_not
+from .native.outcomes import NativeOutcome
 from .options import Options
 from .question import Question
 from .state import Status
@@ -39,12 +43,18 @@ def found_alone(question: Question, targets: Sequence[Target], q: Array) -> list
         restarts=_RESTARTS,
         seed=options.seed,
         tolerance=options.tolerance,
-        engine="python",
     )
     found = []
     for name in ("position", "orientation"):
         alone = [part for target in targets if (part := target.alone(name)) is not None]
-        attempts = Attempts(Question.of(question.robot, alone, asked))
-        if attempts(tuple(alone), q).status is Status.CONVERGED:
+        if _status(Question.of(question.robot, alone, asked), tuple(alone), q) is Status.CONVERGED:
             found.append(name)
     return found
+
+
+def _status(question: Question, targets: tuple[Target, ...], q: Array) -> Status:
+    """What a solve from `q` comes to, in the compiled engine if there is one."""
+    if why_not(question.solver):
+        return Attempts(question)(targets, q).status
+    answer = make_engine(question).solve(q, goals_of(targets), False)
+    return NativeOutcome(answer, targets).status

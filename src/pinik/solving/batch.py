@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from ..model.jacobians import as_reference_frame
 from ..model.robot_model import RobotModel
-from .native.frame_walks import make_frame_walk
+from .native.kinematics import make_walk
 from .native.module import load, why_not
 from .processors import processors
 
@@ -65,7 +65,7 @@ def _at_many(
     """
     frame_id = robot.frame_id(frame)
     reference = None if relative_to is None else robot.frame_id(relative_to)
-    walk = None if why_not() else make_frame_walk(robot, frame_id, reference)
+    walk = None if why_not() else make_walk(robot, frame_id, reference)
     found = None if walk is None else at_once(walk, Q)
     if found is not None:
         return found

@@ -18,6 +18,7 @@ from ..problem.tolerance import Tolerance
 from ..solvers.registry import Method
 from .kept import Kept, Key, kept_of
 from .keys import key_of
+from .native.recalling import recalling
 from .options import OPTION_NAMES, Options
 from .origin import Origin
 from .prepared import Prepared
@@ -32,6 +33,7 @@ __all__ = ["answer", "iterate", "prepare", "solve"]
 _OPTIONS_OF_ITERATE = ("q0", "limits", "locked", "max_iterations", "tolerance", "polish")
 
 
+@recalling()
 def solve(
     robot: RobotModel,
     targets: str | Target | Sequence[Target],
@@ -275,6 +277,7 @@ def answer(
         if prepared is not None:
             quick = prepared.at(wanted[5] if position is None else _as_point(position), q0)
             if quick is not None:
+                prepared.recall()
                 return quick
     asked = asked_targets(targets, wanted, method, parameters)
     if key is None or not all(asked[0].along):

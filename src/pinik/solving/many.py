@@ -103,7 +103,7 @@ def solve_many(
     )  # fmt: skip
     count = processors() if threads is None else min(as_count(threads, "threads"), _MOST_THREADS)
     began = time.perf_counter()
-    pattern, goals = read_questions(targets, places, tool, relative_to)
+    pattern, goals = read_questions(targets, places, tool, relative_to, count)
     starts, turned = _starts(robot, q0, len(goals))
     prepared = Prepared(robot, pattern, options) if pattern else None
     outcomes = _nothing(robot) if prepared is None else _outcomes(prepared, goals, starts, is_nearest(q0), count)

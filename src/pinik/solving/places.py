@@ -12,14 +12,16 @@ from numpy.typing import NDArray
 from ..checks import as_array, as_many, as_numbers, as_points, as_rotations, as_se3
 from ..errors import InputError
 from ..problem.targets import Target, as_targets
-from .native.codec import goals_of
+from .native.codec import goals_of, read_places
 
 __all__ = ["read_questions"]
 
 Array = NDArray[np.float64]
 
 
-def read_questions(targets: Any, places: Any, tool: Any, relative_to: str | None) -> tuple[tuple[Target, ...], Array]:
+def read_questions(
+    targets: Any, places: Any, tool: Any, relative_to: str | None, threads: int = 1
+) -> tuple[tuple[Target, ...], Array]:
     """Read N questions of the same kind, given as targets or as a frame and its places.
 
     Args:
@@ -27,6 +29,7 @@ def read_questions(targets: Any, places: Any, tool: Any, relative_to: str | None
             same kind; or N sequences with the same number of targets of the same kinds.
         places: (N, 4, 4) homogeneous matrices or N SE3, for positions and rotations; or positions (N, 3) [m].
         tool, relative_to: As for `Target`; only with the name of a frame.
+        threads: The number of threads that read the places.
 
     Returns:
         The pattern of the targets, empty if there are none, and their numbers (N, targets, 18).
@@ -40,8 +43,13 @@ def read_questions(targets: Any, places: Any, tool: Any, relative_to: str | None
         )
     if places is None:
         return _listed(targets)
-    rotations, points = _read_places(places)
-    return _placed(targets, rotations, points, tool, relative_to)
+    goals, turned = _goals_at(places, threads)
+    pattern = _pattern(targets, turned, tool, relative_to)
+    if pattern.position is None:
+        goals[:, :3] = 0.0
+    if pattern.rotation is None:
+        goals[:, 3:] = 0.0
+    return (pattern,), goals[:, np.newaxis]
 
 
 def _listed(targets: Any) -> tuple[tuple[Target, ...], Array]:
@@ -60,6 +68,30 @@ def _listed(targets: Any) -> tuple[tuple[Target, ...], Array]:
                 f"targets[{number}] must be of the same kind as targets[0]; solve each kind in a separate call"
             )
     return asked[0], np.array([goals_of(each) for each in asked])
+
+
+def _goals_at(places: Any, threads: int) -> tuple[Array, bool]:
+    """(the numbers of the targets at these places (N, 18), whether they have rotations).
+
+    The compiled engine reads what needs no conversion, and only the rest is checked here.
+    """
+    read = read_places(places, threads)
+    if read is None:
+        rotations, points = _read_places(places)
+        return _as_goals(rotations, points), rotations is not None
+    goals, doubtful = read
+    if len(doubtful):
+        rotations, points = _read_places(places)
+        goals[doubtful] = _as_goals(rotations, points)[doubtful]
+    return goals, places.ndim == 3
+
+
+def _as_goals(rotations: Array | None, points: Array) -> Array:
+    goals = np.zeros((len(points), 18))
+    goals[:, :3] = points
+    if rotations is not None:
+        goals[:, 3:12] = rotations.reshape(-1, 9)
+    return goals
 
 
 def _read_places(places: Any) -> tuple[Array | None, Array]:
@@ -82,23 +114,13 @@ def _matrix_of(place: Any, what: str) -> Array:
     return np.array(place.homogeneous) if isinstance(place, pinocchio.SE3) else as_array(place, (4, 4), what)
 
 
-def _placed(
-    targets: Any, rotations: Array | None, points: Array, tool: Any, relative_to: str | None
-) -> tuple[tuple[Target, ...], Array]:
-    """Problems given as a frame or a pattern, and places."""
+def _pattern(targets: Any, turned: bool, tool: Any, relative_to: str | None) -> Target:
+    """The pattern of targets that are given as a frame or a pattern, and places."""
     if isinstance(targets, str):
-        orientation = None if rotations is None else np.eye(3)
-        pattern = Target(targets, np.zeros(3), rotation=orientation, tool=tool, relative_to=relative_to)
-    elif isinstance(targets, Target):
-        pattern = targets
-    else:
+        rotation = np.eye(3) if turned else None
+        return Target(targets, np.zeros(3), rotation=rotation, tool=tool, relative_to=relative_to)
+    if not isinstance(targets, Target):
         raise InputError(f"with places, targets must be a frame's name or one Target; got {targets!r}")
-    if pattern.axis is not None or (pattern.rotation is not None and rotations is None):
-        raise InputError(f"places do not specify all that the target of {pattern.frame!r} needs; give N Target objects")
-    goals = np.zeros((len(points), 1, 18))
-    if pattern.position is not None:
-        goals[:, 0, :3] = points
-    if pattern.rotation is not None:
-        assert rotations is not None
-        goals[:, 0, 3:12] = rotations.reshape(-1, 9)
-    return (pattern,), goals
+    if targets.axis is not None or (targets.rotation is not None and not turned):
+        raise InputError(f"places do not specify all that the target of {targets.frame!r} needs; give N Target objects")
+    return targets

@@ -18,6 +18,7 @@ from .attempts import Attempts
 from .native.codec import goals_of
 from .native.compiling import make_engine
 from .native.module import why_not
+from .native.recalling import make_call, note
 from .options import Options
 from .origin import Origin
 from .question import Question
@@ -51,6 +52,7 @@ class Prepared:
         self.targets = self.question.problem.targets
         self._neutral = robot.neutral()
         self.native = make_engine(self.question) if self.engine == "native" else None
+        self._call = None if self.native is None else make_call(self.native, self._neutral, Solution, self.question)
         self._attempts: Attempts | None = None
 
     def __reduce__(self) -> tuple[Any, ...]:
@@ -85,10 +87,11 @@ class Prepared:
         Raises:
             InputError: The targets differ in kind from those it was prepared with, or the start has the wrong shape.
         """
+        if self._call is not None:
+            quick: Solution | None = self._call.solve(targets, q0)
+            if quick is not None:
+                return quick
         began = time.perf_counter()
-        quick = self.at(targets, q0)
-        if quick is not None:
-            return quick
         return self.answer(self.targets if targets is None else self.as_asked(targets), q0, began)
 
     def answer(
@@ -120,17 +123,12 @@ class Prepared:
         Returns:
             The solution; None if the engine does not accept the arguments. A normal call converts and checks them.
         """
-        if self.native is None:
-            return None
-        nearest = False
-        if q0 is None:
-            q0 = self._neutral
-        elif type(q0) is str and q0 == "nearest":
-            q0, nearest = self._neutral, True
-        if isinstance(place, pinocchio.SE3):
-            place = place.homogeneous
-        answer = self.native.solve_at(place, q0, nearest)
-        return None if answer is None else Solution(answer, self.question)
+        return None if self._call is None else self._call.solve(place, q0)
+
+    def recall(self) -> None:
+        """Let the function that is being called answer the next equal call directly; see `native.recalling`."""
+        if self._call is not None:
+            note(self._call)
 
     def as_asked(self, targets: Target | Sequence[Target] | pinocchio.SE3 | ArrayLike) -> tuple[Target, ...]:
         """The targets of a call, given as for a call, checked to be of the same kinds as the prepared ones.

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import dataclasses
 import time
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
@@ -16,24 +15,21 @@ from ..checks import as_numbers, as_vector
 from ..errors import InputError, UnknownNameError
 from ..model.robot_model import RobotModel
 from ..problem.targets import Target
-from ..problem.tolerance import Tolerance, largest_of
-from ..solvers.ccd import CCD
+from ..problem.tolerance import Tolerance
 from ..solvers.registry import Method
 from .attempts import Outcomes
 from .jumps import Excess, Jump, find_excesses, find_jumps
 from .kept import kept_of
-from .native.codec import targets_of
 from .native.outcomes import follow
 from .options import OPTION_NAMES, Options
 from .origin import Origin
+from .path import careful, follow_path
 from .places import read_questions
 from .prepared import Prepared
 from .state import Status
-from .verdict import judge, measure_errors
-from .walk import Walk
 from .words import check_words
 
-__all__ = ["ON_MISS", "Track", "careful", "check_times", "track"]
+__all__ = ["Track", "track"]
 
 Array = NDArray[np.float64]
 
@@ -49,9 +45,6 @@ _KEYWORDS = (
     "relative_to",
     *(name for name in OPTION_NAMES if name not in _MISSING),
 )
-
-CAREFUL_STEP = 0.05
-"""The largest change of a joint in one update of CCD along a path [rad or m]; larger ones lead to other branches."""
 
 
 def track(
@@ -120,12 +113,12 @@ def track(
     pattern, goals = read_questions(targets, places, tool, relative_to)
     if not len(goals):
         raise InputError("a path must have at least one point; got none")
-    when = None if times is None else check_times(times, len(goals))
+    when = None if times is None else _check_times(times, len(goals))
     origin = Origin.of(robot, q0)
     prepared = kept_of(robot).prepared(robot, pattern, careful(options))
     native = prepared.native
     if native is None:
-        outcomes = _follow(prepared, goals, origin.q, on_miss)
+        outcomes = follow_path(prepared, goals, origin.q, on_miss)
     else:
         outcomes = follow(native, goals, origin.q, on_miss)
     angles = _unwound(robot, origin, outcomes.q)
@@ -240,15 +233,7 @@ class Track(Outcomes):
         }
 
 
-def careful(options: Options) -> Options:
-    """The options with a CCD that moves no joint far in one update."""
-    solver = options.method
-    if not isinstance(solver, CCD) or solver.max_step <= CAREFUL_STEP:
-        return options
-    return dataclasses.replace(options, method=dataclasses.replace(solver, max_step=CAREFUL_STEP))
-
-
-def check_times(times: ArrayLike, count: int) -> Array:
+def _check_times(times: ArrayLike, count: int) -> Array:
     """Check the times of `count` points (count,) [s], which must increase."""
     if as_numbers(times, "times").shape != (count,):
         raise InputError(f"times must be one number for each of the {count} points; got shape {np.shape(times)}")
@@ -256,37 +241,6 @@ def check_times(times: ArrayLike, count: int) -> Array:
     for k in np.flatnonzero(np.diff(when) <= 0.0)[:1]:
         raise InputError(f"times must increase; got {when[k]:g} and then {when[k + 1]:g} at index {k + 1}")
     return when
-
-
-def _follow(prepared: Prepared, goals: Array, start: Array, on_miss: str) -> Outcomes:
-    """Follow a path in the Python engine."""
-    question, robot = prepared.question, prepared.robot
-    walk, limits = Walk(question), question.limits
-    q = limits.wrap(start)
-    rows, kept = [], []
-    for number, goal in enumerate(goals):
-        began = time.perf_counter()
-        targets = targets_of(question.problem.targets, goal)
-        stride = walk(targets, q, number)
-        verdict = judge(question, targets, stride.q, stride.ended)
-        reached = verdict.status is Status.CONVERGED
-        if reached or on_miss == "nearest":
-            q, errors = stride.q.copy(), verdict.errors
-        else:
-            errors = measure_errors(robot, targets, q, prepared.options.tolerance)
-        kept.append(q)
-        rows.append(
-            (verdict.status, *largest_of(errors), stride.iterations, stride.restarts, time.perf_counter() - began)
-        )
-        if on_miss == "stop" and not reached:
-            break
-    status, position, orientation, iterations, restarts, seconds = zip(*rows, strict=True)
-    counts = np.array(iterations, dtype=np.int64)
-    return Outcomes(
-        np.array(kept), np.array(status, dtype=object), np.array(position, dtype=np.float64),
-        np.array(orientation, dtype=np.float64), counts, np.zeros_like(counts), np.array(restarts, dtype=np.int64),
-        np.ones_like(counts), np.array(seconds),
-    )  # fmt: skip
 
 
 def _unwound(robot: RobotModel, origin: Origin, q: Array) -> Array:

@@ -21,8 +21,8 @@ from .native.codec import goals_of
 from .native.module import load
 from .options import OPTION_NAMES, Options
 from .origin import Origin
+from .path import careful
 from .prepared import Prepared
-from .track import careful
 from .verdict import all_within, measure_errors
 from .walk import Walk
 from .words import check_words

@@ -82,7 +82,7 @@ class Walk:
         if self._is_near(plain, q) or plain.status is Status.TIME_LIMIT or exact:
             return self._stride(plain)
         if shortfall(targets, self.question.bounds, options.tolerance) is None:
-            crept = self._creep(targets, q, pace._replace(patience=TO_THE_END))
+            crept = self._creep(targets, q, pace)
             if crept is not None:
                 return self._stride(crept)
         best = plain if plain.status is Status.CONVERGED else self._run(plain.q, self._last)

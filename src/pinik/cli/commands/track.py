@@ -75,13 +75,13 @@ def track(
 ) -> ExitStatus:
     """Follow a path with a frame, and write the joint angles of every point.
 
-    Each point is solved from the answer to the last one. If a point is missed or joints
-    have to jump, the exit status is 1, and stderr says where and why.
+    Each point is solved from the answer to the last one. If a point is missed or if
+    joints jump, the exit status is 1, and stderr says where and why.
 
     Examples:
 
+      echo '{"position":\\[0.2,0.2,0.9]}' | pinik track arm - --frame tip
       pinik track panda examples/circle.csv --frame panda_hand_tcp --pose default
-      pinik track panda examples/circle.csv --frame panda_hand_tcp --pose default --json
     """
     units = Units(degrees)
     form = check_output(to_file, form)

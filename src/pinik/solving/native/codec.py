@@ -7,9 +7,11 @@ from collections.abc import Iterable
 import numpy as np
 from numpy.typing import NDArray
 
+from ...checks import FARTHEST
 from ...problem.targets import Target
+from .module import load, why_not
 
-__all__ = ["goals_of", "targets_of"]
+__all__ = ["goals_of", "read_places", "targets_of"]
 
 Array = NDArray[np.float64]
 
@@ -30,6 +32,22 @@ def goals_of(targets: tuple[Target, ...]) -> Array:
         if target.at is not None:
             row[15:] = target.at
     return goals
+
+
+def read_places(places: object, threads: int) -> tuple[Array, NDArray[np.int64]] | None:
+    """Encode places as rows (N, 18) in threads, and find those that must still be checked.
+
+    Args:
+        places: Contiguous float64 arrays (N, 4, 4) or (N, 3) are read; of anything else there is no result.
+        threads: The number of threads.
+
+    Returns:
+        (the rows, the indices of places that are not exact rotations or may be faulty); None without the engine.
+    """
+    read: tuple[Array, NDArray[np.int64]] | None = None
+    if not why_not():
+        read = load().read_places(places, FARTHEST, threads)
+    return read
 
 
 def targets_of(pattern: tuple[Target, ...], goals: Iterable[Array]) -> tuple[Target, ...]:

@@ -11,7 +11,7 @@ from ...model.robot_model import RobotModel
 from .compiling import native_robot
 from .module import load
 
-__all__ = ["make_frame_walk"]
+__all__ = ["make_walk"]
 
 if TYPE_CHECKING:
     from ..._native import FrameWalk
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 _WORLD = (0, pinocchio.SE3.Identity())
 
 
-def make_frame_walk(robot: RobotModel, frame: int, reference: int | None) -> FrameWalk:
+def make_walk(robot: RobotModel, frame: int, reference: int | None) -> FrameWalk:
     """Compile the walk to a frame.
 
     Args:
