@@ -139,6 +139,13 @@ def test_while_it_cannot_do_what_is_asked_it_waits_and_says_why(two_link):
     shown.step()
     assert one.status == "CONVERGED"
 
+    shown.balls[0].release("y")
+    shown.step()
+    assert "only a whole position; target 'tip' leaves an axis free" in one.verdict().message
+    shown.balls[0].release("")
+    shown.step()
+    assert one.status == "CONVERGED"
+
     shown.set_mode(0, "off")
     shown.set_mode(1, "on")
     shown.step()
