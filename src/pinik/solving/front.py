@@ -207,8 +207,8 @@ def iterate(
     The run ends with a state whose `status` is set: converged, stalled or out of iterations. There are three ways to
     use it: iterate until it ends; run it with `max_iterations=1` per simulation step, each time from the last q; or
     take a few iterations per step. `states.send(targets)` moves the targets during the run, resets the iteration limit,
-    takes the next step and returns its state; it also works after the last state. If a tolerance is wide and the targets
-    move before they are reached, the run looks for answers inside the tolerances at once.
+    takes the next step and returns its state; it also works after the last state. If a tolerance is wide and the
+    targets move before they are reached, the run looks for answers inside the tolerances at once.
 
     Args:
         robot: The robot.

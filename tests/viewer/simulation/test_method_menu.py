@@ -173,7 +173,7 @@ def test_its_parameters_go_through_a_set_up(two_link):
     shown = session(two_link)
     shown.set_parameter(1, "elbow", "up")
     link = write_setup(shown)
-    other = Session(two_link, ["ccd", "ccd"])
+    other = Session(two_link, ["ccd", "ccd"], clock=Clock())
     apply_setup(other, read_setup(link))
     assert (other.instances[1].solver, write_setup(other)) == (pinik.TwoBoneSolver(elbow="up"), link)
     for elbow, sign in (("up", -1.0), ("down", 1.0)):
