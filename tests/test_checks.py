@@ -114,7 +114,7 @@ class TestManyMatrices:
             as_rotations(many, "R")
         (warning,) = given
         words = str(warning.message)
-        assert words.startswith("R: 2 of 10 are replaced by the nearest rotation matrix, first R[4]; ")
+        assert words.startswith("R: 2 are replaced by the nearest rotation matrix, first R[4]; ")
         changes = np.abs(many - np.array([polar(M) for M in many])).max(axis=(1, 2))
         assert words.endswith(f"the largest change of an entry is {changes[7]:.1g}")
 

@@ -11,7 +11,7 @@ import pytest
 import pinik
 from engines import needs_native
 from pinik import Target
-from pinik.solving import many
+from pinik.solving import places as reading
 
 TIP = "panda_hand_tcp"
 
@@ -99,8 +99,8 @@ def test_only_places_in_doubt_are_checked_in_python(panda, monkeypatch):
     rng, seen = np.random.default_rng(0), []
     places = np.array([panda.placement(TIP, panda.random(rng)).homogeneous for _ in range(600)])
     exact = pinik.solve_many(panda, TIP, places)
-    read = many._read_places
-    monkeypatch.setattr(many, "_read_places", lambda places: seen.append(len(places)) or read(places))
+    read = reading._read_places
+    monkeypatch.setattr(reading, "_read_places", lambda places, *more: seen.append(len(places)) or read(places, *more))
     np.testing.assert_array_equal(pinik.solve_many(panda, TIP, places).q, exact.q)
     assert seen == []
     rounded = places.copy()
@@ -124,12 +124,12 @@ def test_places_are_read_alike_by_any_number_of_threads(threads, panda):
     rng = np.random.default_rng(1)
     places = np.array([panda.placement(TIP, panda.random(rng)).homogeneous for _ in range(700)])
     points = np.ascontiguousarray(places[:, :3, 3])
-    goals, turned = many._goals_at(places, threads)
+    goals, turned = reading._goals_at(places, threads)
     assert turned
     np.testing.assert_array_equal(goals[:, :3], points)
     np.testing.assert_array_equal(goals[:, 3:12], places[:, :3, :3].reshape(-1, 9))
     assert not goals[:, 12:].any()
-    goals, turned = many._goals_at(points, threads)
+    goals, turned = reading._goals_at(points, threads)
     assert not turned
     np.testing.assert_array_equal(goals[:, :3], points)
     assert not goals[:, 3:].any()

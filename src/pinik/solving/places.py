@@ -81,8 +81,12 @@ def _goals_at(places: Any, threads: int) -> tuple[Array, bool]:
         return _as_goals(rotations, points), rotations is not None
     goals, doubtful = read
     if len(doubtful):
-        rotations, points = _read_places(places)
-        goals[doubtful] = _as_goals(rotations, points)[doubtful]
+        try:
+            rotations, points = _read_places(places[doubtful], doubtful)
+        except InputError:
+            _read_places(places)  # raises the error with the index of the place
+            raise
+        goals[doubtful] = _as_goals(rotations, points)
     return goals, places.ndim == 3
 
 
@@ -94,8 +98,8 @@ def _as_goals(rotations: Array | None, points: Array) -> Array:
     return goals
 
 
-def _read_places(places: Any) -> tuple[Array | None, Array]:
-    """(rotations (N, 3, 3) or None, points (N, 3) [m])."""
+def _read_places(places: Any, numbers: NDArray[np.int64] | None = None) -> tuple[Array | None, Array]:
+    """(rotations (N, 3, 3) or None, points (N, 3) [m]); `numbers` are those of the places in warnings."""
     if isinstance(places, Sequence) and any(isinstance(place, pinocchio.SE3) for place in places):
         places = np.array([_matrix_of(place, f"places[{k}]") for k, place in enumerate(places)])
     numbers = as_numbers(places, "places")
@@ -106,7 +110,7 @@ def _read_places(places: Any) -> tuple[Array | None, Array]:
     matrices = as_many(places, (4, 4), "places")
     for k in np.flatnonzero((np.abs(matrices[:, 3] - (0.0, 0.0, 0.0, 1.0)) > 1e-9).any(axis=1))[:1]:
         as_se3(matrices[k], f"places[{k}]")
-    return as_rotations(matrices[:, :3, :3], "places"), as_points(matrices[:, :3, 3], "places")
+    return as_rotations(matrices[:, :3, :3], "places", numbers), as_points(matrices[:, :3, 3], "places")
 
 
 def _matrix_of(place: Any, what: str) -> Array:

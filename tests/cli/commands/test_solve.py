@@ -249,7 +249,7 @@ WRONG = {
     ),
     "NaN": ((*ARM, "--position", "nan", 0, 1), "finite"),
     "infinity": ((*ARM, "--position", "inf", 0, 1), "error: --position must be 3 finite numbers"),
-    "a word": ((*ARM, "--position", "a", 0, 1), "'a' is not a number; see 'pinik solve --help'"),
+    "a word": ((*ARM, "--position", "a", 0, 1), "with - for an axis that is free; got a 0 1; see 'pinik solve --help'"),
     "two numbers": ((*ARM, "--position", 0, 1), "'--position' requires 3 arguments; see 'pinik solve --help'"),
     "a zero direction": ((*ARM, "--axis", "x", "--direction", 0, 0, 0), "direction"),
     "an unknown axis": ((*ARM, "--axis", "w", "--direction", 0, 0, 1), "axis"),

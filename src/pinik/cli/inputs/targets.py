@@ -75,7 +75,8 @@ def read_position(words: Sequence[str] | None) -> list[float | None] | None:
         return [None if word == "-" else float(word) for word in words]
     except ValueError:
         raise CommandError(
-            f"--position must be three numbers, with - for an axis that is free; got {' '.join(words)}"
+            f"--position must be three numbers, with - for an axis that is free; got {' '.join(words)}; "
+            "see 'pinik solve --help'"
         ) from None
 
 
