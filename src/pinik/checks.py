@@ -194,13 +194,13 @@ def as_points(values: ArrayLike, what: str) -> Array:
     return points
 
 
-def as_rotations(values: ArrayLike, what: str, numbers: NDArray[np.int64] | None = None) -> Array:
+def as_rotations(values: ArrayLike, what: str, indices: NDArray[np.int64] | None = None) -> Array:
     """`values` as rotation matrices (n, 3, 3), each checked and replaced as by `as_rotation`; one warning for all.
 
     Args:
         values: The matrices.
         what: What messages call them.
-        numbers: Their numbers in messages (n,), if they are some of many; 0, 1, … when None.
+        indices: Their indices in messages (n,), if they are some of many; 0, 1, … when None.
     """
     matrices = as_many(values, (3, 3), what)
     a, b, c = np.ascontiguousarray(
@@ -221,7 +221,7 @@ def as_rotations(values: ArrayLike, what: str, numbers: NDArray[np.int64] | None
     matrices[inexact] = rotations
     changed = inexact[changes > _UNSAID_CHANGE]
     if len(changed) > 0:
-        first = changed[0] if numbers is None else numbers[changed[0]]
+        first = changed[0] if indices is None else indices[changed[0]]
         ones = f"{len(changed)} are replaced by the nearest rotation matrix, first {what}[{first}]"
         _warn(f"{what}: {ones}; the largest change of an entry is {changes.max():.1g}")
     return matrices

@@ -96,3 +96,19 @@ def test_faulty_starts_are_refused(arm2):
         arm2.solve("tip", [1, 0, 0], q0={"shoulder": math.inf})
     with pytest.raises(pinik.InputError, match="only solve starts 'nearest'"):
         pinik.iterate(arm2, Target("tip", [1, 0, 0]), q0="nearest")
+
+
+def test_the_angles_of_many_solutions_are_those_of_each():
+    robot = load_quietly("kinova")
+    frame, first = "j2s6s200_end_effector", "j2s6s200_joint_1"
+    start = {first: 9.6, "j2s6s200_joint_2": 2.5, "j2s6s200_joint_3": 2.0}
+    places = np.array([robot.placement(frame, robot.random(seed)).homogeneous for seed in range(8)])
+    many = pinik.solve_many(robot, frame, places, q0=start)
+    assert many.angles.shape == (8, len(robot.joint_names))
+    column = robot.joint_names.index(first)
+    for row, solution, q in zip(many.angles, many, many.q, strict=True):
+        assert abs(row[column] - 9.6) <= math.pi + 1e-9
+        plain = robot.angles(q)
+        for angle, name in zip(row, robot.joint_names, strict=True):
+            assert math.isclose(math.cos(angle), math.cos(plain[name]), abs_tol=1e-9)
+            assert math.isclose(angle, solution.angles[name], abs_tol=1e-9)

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import copy
 import gc
 import inspect
 import math
+import pickle
 import pydoc
 import threading
 import weakref
@@ -247,3 +249,9 @@ def test_it_looks_like_the_function_that_it_is():
         assert (inspect.getdoc(function) or "").startswith("Find joint values")
         assert "q0" in pydoc.render_doc(function)
     assert "self" not in inspect.signature(load_quietly("arm").solve).parameters
+
+
+def test_the_functions_that_recall_are_pickled_and_copied_by_name():
+    for function in (pinik.solve, pinik.Robot.solve):
+        assert pickle.loads(pickle.dumps(function)) is function
+        assert copy.deepcopy(function) is function

@@ -19,9 +19,9 @@ HAND = "gripper_frame_joint"
 DEGREES = math.pi / 180.0
 
 
-def turned_poses(count: int) -> list[np.ndarray]:
+def turned_poses(count: int, seed: int = 0) -> list[np.ndarray]:
     """Poses that so101's five joints reach, turned by 15 degrees about random axes."""
-    robot, rng, poses = load_quietly("so101"), np.random.default_rng(0), []
+    robot, rng, poses = load_quietly("so101"), np.random.default_rng(seed), []
     for _ in range(count):
         M = robot.placement(HAND, robot.random(rng))
         axis = rng.normal(size=3)
@@ -30,11 +30,13 @@ def turned_poses(count: int) -> list[np.ndarray]:
     return poses
 
 
+@needs_native
+@pytest.mark.parametrize("seed", range(3))
 @pytest.mark.parametrize("method", ["dls", "pinv", "ccd"])
-def test_an_arm_of_five_joints_reaches_turned_poses_within_20_degrees(method):
+def test_an_arm_of_five_joints_reaches_turned_poses_within_20_degrees(method, seed):
     robot = load_quietly("so101")
     tolerance = (1e-4, 20.0 * DEGREES)
-    poses = turned_poses(100)
+    poses = turned_poses(100, seed)
     solutions = [robot.solve(HAND, placement=M, method=method, tolerance=tolerance) for M in poses]
     for solution in solutions:
         assert_honest(solution, tolerance=tolerance)

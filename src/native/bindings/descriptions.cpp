@@ -99,6 +99,7 @@ void register_constants(nb::module_& m) {
       .def_rw("ccd_suspect", &Constants::ccd_suspect)
       .def_rw("ccd_no_column", &Constants::ccd_no_column)
       .def_rw("ccd_halvings", &Constants::ccd_halvings)
+      .def_rw("ccd_loose_position", &Constants::ccd_loose_position)
       .def_rw("bold_part_of_distance", &Constants::bold_part_of_distance)
       .def_rw("part_of_chain", &Constants::part_of_chain)
       .def_rw("polishing_gain", &Constants::polishing_gain)

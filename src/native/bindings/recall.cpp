@@ -186,8 +186,16 @@ PyObject* bind(PyObject* self, PyObject* instance, PyObject*) {
 PyObject* attribute(PyObject* self, PyObject* name) {
   PyObject* function = reinterpret_cast<Recalling*>(self)->function;
   if (PyUnicode_CompareWithASCIIString(name, "__wrapped__") == 0) return Py_NewRef(function);
-  if (PyUnicode_CompareWithASCIIString(name, "__class__") == 0) return PyObject_GenericGetAttr(self, name);
+  if (PyUnicode_CompareWithASCIIString(name, "__class__") == 0 ||
+      PyUnicode_CompareWithASCIIString(name, "__reduce__") == 0 ||
+      PyUnicode_CompareWithASCIIString(name, "__reduce_ex__") == 0)
+    return PyObject_GenericGetAttr(self, name);
   return PyObject_GetAttr(function, name);
+}
+
+// Pickled and copied by name, as functions are.
+PyObject* reduce(PyObject* self, PyObject*) {
+  return PyObject_GetAttrString(reinterpret_cast<Recalling*>(self)->function, "__qualname__");
 }
 
 PyObject* text(PyObject* self) { return PyObject_Repr(reinterpret_cast<Recalling*>(self)->function); }
@@ -216,8 +224,10 @@ void destroy(PyObject* self) {
 PyObject* make_type() {
   static PyMemberDef members[] = {
       {"__vectorcalloffset__", T_PYSSIZET, offsetof(Recalling, call), READONLY, nullptr}, {}};
+  static PyMethodDef methods[] = {{"__reduce__", reduce, METH_NOARGS, nullptr}, {}};
   static PyType_Slot slots[] = {{Py_tp_call, reinterpret_cast<void*>(PyVectorcall_Call)},
                                 {Py_tp_members, members},
+                                {Py_tp_methods, methods},
                                 {Py_tp_descr_get, reinterpret_cast<void*>(bind)},
                                 {Py_tp_getattro, reinterpret_cast<void*>(attribute)},
                                 {Py_tp_repr, reinterpret_cast<void*>(text)},

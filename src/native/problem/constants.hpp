@@ -33,6 +33,7 @@ struct Constants {
   double ccd_suspect = not_given;
   double ccd_no_column = not_given;
   int ccd_halvings = 0;
+  double ccd_loose_position = not_given;
   // pinik.solving
   double bold_part_of_distance = not_given;
   double part_of_chain = not_given;

@@ -52,7 +52,8 @@ class Sweep {
   void look(const Vector& q) {
     kinematics_.forward(q);
     const double size = kinematics_.problem.size_of_chain;
-    const double alpha = solver_.position_weight / (solver_.printed_scaling ? size : size * size);
+    double alpha = solver_.position_weight / (solver_.printed_scaling ? size : size * size);
+    if (kinematics_.loose) alpha *= constants_.ccd_loose_position;
     chasers_.clear();
     for (std::size_t t = 0; t < kinematics_.problem.terms.size(); ++t)
       chasers_.emplace_back(kinematics_, t, alpha, solver_.max_residual);

@@ -51,7 +51,7 @@ class Tolerance(NamedTuple):
             angle = float(as_array(value[1], (), f"{what} orientation", "radians"))
             if min(x, y, z, angle) > 0.0:
                 return cls((x, y, z), angle)
-            raise InputError(f"must be positive numbers (metres, radians); got {value!r}", argument=what)
+            raise InputError(f"must be three positive lengths and a positive angle; got {value!r}", argument=what)
         pair = as_vector(value, 2, what, "metres, radians")
         if (pair <= 0.0).any():
             raise InputError(f"must be two positive numbers (metres, radians); got {pair.tolist()}", argument=what)

@@ -47,12 +47,17 @@ def _as_names(locked: Any) -> tuple[Any, ...] | None:
     return tuple(locked) if type(locked) in (tuple, list) else None
 
 
-def _as_pair(tolerance: Any) -> tuple[float, ...] | None:
-    """The tolerance as a tuple of floats; None if it has another type."""
+def _as_pair(tolerance: Any) -> tuple[Any, ...] | None:
+    """The tolerance as a tuple of numbers, or of a box and a number; None if it has another type."""
     tolerance = tolerance.tolist() if type(tolerance) is np.ndarray else tolerance
-    if type(tolerance) not in _PAIRS or any([type(number) is not float for number in tolerance]):
+    if type(tolerance) not in _PAIRS or len(tolerance) != 2:
         return None
-    return tuple(tolerance)
+    metres, radians = tolerance
+    metres = metres.tolist() if type(metres) is np.ndarray else metres
+    box = tuple(metres) if type(metres) in (tuple, list) else None
+    if any([type(number) not in (float, int) for number in (*(box or (metres,)), radians)]):
+        return None
+    return metres if box is None else box, radians
 
 
 def _as_key(value: object) -> object:

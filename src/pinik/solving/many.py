@@ -23,7 +23,7 @@ from .attempts import Outcome, Outcomes
 from .native.codec import targets_of
 from .native.outcomes import attempt_many
 from .options import OPTION_NAMES, Options
-from .origin import Origin, is_nearest
+from .origin import Origin, is_nearest, unwound_rows
 from .places import read_questions
 from .prepared import Prepared
 from .processors import processors
@@ -155,6 +155,16 @@ class Solutions(Outcomes):
     def success(self) -> NDArray[np.bool_]:
         """Whether every target is within tolerance (N,)."""
         return np.array(self.status == Status.CONVERGED, dtype=bool)
+
+    @property
+    def angles(self) -> Array:
+        """The angles (N, n_joints) at `q`, in the order of `robot.joint_names` [rad or m].
+
+        Continuous joints are at the whole turn nearest to their start.
+        """
+        if self.prepared is None:
+            return np.zeros((0, 0))
+        return unwound_rows(self.prepared.robot, self.q, self._starts, self._turned)
 
     @property
     def engine(self) -> str:

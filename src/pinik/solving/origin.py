@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from ..model.robot_model import RobotModel
 
-__all__ = ["Origin", "is_nearest", "unwound"]
+__all__ = ["Origin", "is_nearest", "unwound", "unwound_rows"]
 
 Array = NDArray[np.float64]
 
@@ -74,4 +74,26 @@ def unwound(robot: RobotModel, q: Array, start: Array, turned: Mapping[str, floa
         if joint.nq == 2 and joint.has_one_axis:
             near = turned.get(joint.name, joint.angle(start))
             angles[joint.name] += _TURN * round((near - angles[joint.name]) / _TURN)
+    return angles
+
+
+def unwound_rows(robot: RobotModel, q: Array, starts: Array, turned: Mapping[str, float] = _NONE) -> Array:
+    """The angles (N, n_joints) at many configurations, in the order of `robot.joint_names`, unwound likewise.
+
+    Args:
+        robot: The robot.
+        q: The configurations (N, nq).
+        starts: Their starts (N, nq), or one for all (1, nq).
+        turned: As for `unwound`.
+    """
+    angles = np.empty((len(q), len(robot.joint_names)))
+    for column, name in zip(angles.T, robot.joint_names, strict=True):
+        joint = robot.joint(name)
+        if joint.nq == 1:
+            column[:] = q[:, joint.idx_q]
+            continue
+        cosine, sine = joint.idx_q, joint.idx_q + 1
+        near = turned.get(name, np.arctan2(starts[:, sine], starts[:, cosine]))
+        column[:] = np.arctan2(q[:, sine], q[:, cosine])
+        column += _TURN * np.round((near - column) / _TURN)
     return angles

@@ -54,10 +54,10 @@ def read_questions(
 
 def _listed(targets: Any) -> tuple[tuple[Target, ...], Array]:
     """Problems given as Target objects."""
-    if not isinstance(targets, Iterable):
-        raise InputError(f"targets must be a frame's name, a Target, or a sequence of them; got {targets!r}")
     if isinstance(targets, (str, Target)):
         raise InputError("places must say where the frame should be: (N, 4, 4) matrices, N SE3, or positions (N, 3)")
+    if not isinstance(targets, Iterable):
+        raise InputError(f"targets must be a frame's name, a Target, or a sequence of them; got {targets!r}")
     asked = [as_targets(each) for each in targets]
     if not asked:
         return (), np.zeros((0, 0, 18))
@@ -98,8 +98,8 @@ def _as_goals(rotations: Array | None, points: Array) -> Array:
     return goals
 
 
-def _read_places(places: Any, numbers: NDArray[np.int64] | None = None) -> tuple[Array | None, Array]:
-    """(rotations (N, 3, 3) or None, points (N, 3) [m]); `numbers` are those of the places in warnings."""
+def _read_places(places: Any, indices: NDArray[np.int64] | None = None) -> tuple[Array | None, Array]:
+    """(rotations (N, 3, 3) or None, points (N, 3) [m]); `indices` are those of the places, for warnings."""
     if isinstance(places, Sequence) and any(isinstance(place, pinocchio.SE3) for place in places):
         places = np.array([_matrix_of(place, f"places[{k}]") for k, place in enumerate(places)])
     numbers = as_numbers(places, "places")
@@ -110,7 +110,7 @@ def _read_places(places: Any, numbers: NDArray[np.int64] | None = None) -> tuple
     matrices = as_many(places, (4, 4), "places")
     for k in np.flatnonzero((np.abs(matrices[:, 3] - (0.0, 0.0, 0.0, 1.0)) > 1e-9).any(axis=1))[:1]:
         as_se3(matrices[k], f"places[{k}]")
-    return as_rotations(matrices[:, :3, :3], "places", numbers), as_points(matrices[:, :3, 3], "places")
+    return as_rotations(matrices[:, :3, :3], "places", indices), as_points(matrices[:, :3, 3], "places")
 
 
 def _matrix_of(place: Any, what: str) -> Array:

@@ -28,6 +28,7 @@ CONSTANTS = {
     "ccd_suspect": ccd.SUSPECT,
     "ccd_no_column": ccd.NO_COLUMN,
     "ccd_halvings": ccd.HALVINGS,
+    "ccd_loose_position": ccd.LOOSE_POSITION,
     "bold_part_of_distance": run.BOLD_SHARE,
     "part_of_chain": run.SHARE_OF_CHAIN,
     "polishing_gain": run.POLISHING_GAIN,
