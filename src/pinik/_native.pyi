@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 pinocchio_version: str = "4.1.0"
 
-abi: str = "2ebb4d6f6266e631"
+abi: str = "4b14ddb4a9ba605b"
 
 class JointKind(enum.Enum):
     revolute = 0
@@ -83,6 +83,10 @@ class Constants:
     def ccd_halvings(self) -> int: ...
     @ccd_halvings.setter
     def ccd_halvings(self, arg: int, /) -> None: ...
+    @property
+    def ccd_loose_position(self) -> float: ...
+    @ccd_loose_position.setter
+    def ccd_loose_position(self, arg: float, /) -> None: ...
     @property
     def bold_part_of_distance(self) -> float: ...
     @bold_part_of_distance.setter

@@ -5,6 +5,6 @@ namespace pinik {
 
 // Identifies the signatures of the module: the digest of its stub, as tests/solving/test_native.py computes it. It must
 // equal ABI in pinik/solving/native/module.py, which refuses a module from another build.
-constexpr const char* abi = "2ebb4d6f6266e631";
+constexpr const char* abi = "4b14ddb4a9ba605b";
 
 }  // namespace pinik
