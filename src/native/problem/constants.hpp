@@ -26,6 +26,7 @@ struct Constants {
   double no_direction = not_given;
   double reach_rounding = not_given;
   double slack_share = not_given;
+  double wide_angle = not_given;
   // pinik.solvers
   double smallest_damping_squared = not_given;
   double smallest_cutoff = not_given;
@@ -33,7 +34,7 @@ struct Constants {
   double ccd_suspect = not_given;
   double ccd_no_column = not_given;
   int ccd_halvings = 0;
-  double ccd_loose_position = not_given;
+  double ccd_wide_position = not_given;
   // pinik.solving
   double bold_part_of_distance = not_given;
   double part_of_chain = not_given;

@@ -22,6 +22,8 @@ struct Chaser {
       : term(&kinematics.problem.terms[index]), weight(term->weight * term->weight), alpha(alpha),
         max_residual(max_residual), no_direction(kinematics.problem.constants.no_direction),
         share(kinematics.problem.constants.slack_share), loose(kinematics.loose) {
+    const Constants& constants = kinematics.problem.constants;
+    if (term->tolerance.orientation > constants.wide_angle) this->alpha *= constants.ccd_wide_position;
     const Placement frame = kinematics.frame(*term);
     const Goal wanted = kinematics.wanted(index);
     p = frame.p;

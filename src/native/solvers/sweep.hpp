@@ -52,8 +52,7 @@ class Sweep {
   void look(const Vector& q) {
     kinematics_.forward(q);
     const double size = kinematics_.problem.size_of_chain;
-    double alpha = solver_.position_weight / (solver_.printed_scaling ? size : size * size);
-    if (kinematics_.loose) alpha *= constants_.ccd_loose_position;
+    const double alpha = solver_.position_weight / (solver_.printed_scaling ? size : size * size);
     chasers_.clear();
     for (std::size_t t = 0; t < kinematics_.problem.terms.size(); ++t)
       chasers_.emplace_back(kinematics_, t, alpha, solver_.max_residual);

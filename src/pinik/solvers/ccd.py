@@ -28,7 +28,6 @@ ROUNDING = 1e-14  # relative rounding error of points and unit axes at the end o
 SUSPECT = 1e-6  # below this ratio, the component across a joint's axis relative to that along it may be mere rounding
 NO_COLUMN = 1e-12  # relative to the chain's length: a shorter Jacobian column counts as zero
 HALVINGS = 12
-LOOSE_POSITION = 10.0  # factor on the weight of positions once orientations stop pulling inside their tolerance
 _NOTHING = np.zeros((3, 3))
 _RELAXATION_OF_POSES = 1.7
 
@@ -112,8 +111,6 @@ class CCD(SweepingSolver):
         kinematics.evaluations += 1
         size = kinematics.problem.size_of_chain
         alpha = self.position_weight / (size if self.scaling == "printed" else size * size)
-        if kinematics.loose:
-            alpha *= LOOSE_POSITION
         return [Chaser(rows, alpha, self.max_residual, kinematics.loose) for rows in kinematics.rows]
 
     @property

@@ -11,6 +11,7 @@ import pinocchio
 from ..problem.rows import shortest_rotation
 from ..problem.slack import SHARE, outside_ball, outside_box
 from ..problem.targets import NO_DIRECTION
+from ..problem.tolerance import WIDE_ANGLE
 from .base import Array
 
 if TYPE_CHECKING:
@@ -18,7 +19,10 @@ if TYPE_CHECKING:
     from ..problem.rows import Rows
     from ..problem.tolerance import Tolerance
 
-__all__ = ["Chaser"]
+__all__ = ["WIDE_POSITION", "Chaser"]
+
+WIDE_POSITION = 10.0
+"""The factor on the weight of a position whose target has a wide tolerance for its orientation."""
 
 
 class Chaser:
@@ -47,7 +51,7 @@ class Chaser:
         self._free = ~np.array(target.along) if rows.term.has_free_axes else None
         self._axes = rows.reference_axes()  # in which axes are free
         self._box = rows.box_axes(rotation)
-        self.alpha = alpha
+        self.alpha = alpha * WIDE_POSITION if self._tolerance.orientation > WIDE_ANGLE else alpha
         self._max_residual = max_residual
 
     def moved_by(self, mover: Joint) -> bool:

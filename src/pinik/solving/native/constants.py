@@ -6,8 +6,8 @@ from typing import Any
 
 from ... import checks
 from ...model import configurations, joint, limits
-from ...problem import problem, reach, slack, targets
-from ...solvers import ccd, damped_least_squares, pseudo_inverse
+from ...problem import problem, reach, slack, targets, tolerance
+from ...solvers import ccd, chaser, damped_least_squares, pseudo_inverse
 from .. import attempts, changes, choice, run, starts, walk
 from .module import load
 
@@ -22,13 +22,14 @@ CONSTANTS = {
     "no_direction": targets.NO_DIRECTION,
     "reach_rounding": reach.ROUNDING,
     "slack_share": slack.SHARE,
+    "wide_angle": tolerance.WIDE_ANGLE,
     "smallest_damping_squared": damped_least_squares.SMALLEST_DAMPING_SQUARED,
     "smallest_cutoff": pseudo_inverse.SMALLEST_CUTOFF,
     "ccd_rounding": ccd.ROUNDING,
     "ccd_suspect": ccd.SUSPECT,
     "ccd_no_column": ccd.NO_COLUMN,
     "ccd_halvings": ccd.HALVINGS,
-    "ccd_loose_position": ccd.LOOSE_POSITION,
+    "ccd_wide_position": chaser.WIDE_POSITION,
     "bold_part_of_distance": run.BOLD_SHARE,
     "part_of_chain": run.SHARE_OF_CHAIN,
     "polishing_gain": run.POLISHING_GAIN,
