@@ -5,6 +5,6 @@ namespace pinik {
 
 // Identifies the signatures of the module: the digest of its stub, as tests/solving/test_native.py computes it. It must
 // equal ABI in pinik/solving/native/module.py, which refuses a module from another build.
-constexpr const char* abi = "4b14ddb4a9ba605b";
+constexpr const char* abi = "f70131c835fc67c7";
 
 }  // namespace pinik
