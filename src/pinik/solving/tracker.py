@@ -41,10 +41,16 @@ _TOLERANCE = Tolerance(1e-6, 1e-5)
 
 
 class TrackerStatus(Enum):
-    """How a tick went; `str()` describes it."""
+    """How a tick went; `str()` describes it.
+
+    OK: the target is within tolerance. LIMITED: it is not yet, and further ticks will bring the frame nearer; the
+    joints are at their speeds, or the iterations of one tick did not suffice, as is usual for `jt` and `ccd`. HELD:
+    further ticks will not bring the frame nearer, as a limit, the arm's length or a singular place is in the way; the
+    frame stays at the nearest point that it found. If the target moves, the next tick decides anew.
+    """
 
     OK = "the target is reached"
-    LIMITED = "on the way: the joints' speeds do not allow more"
+    LIMITED = "on the way: the speeds of the joints or the iterations of one tick do not allow more"
     HELD = "the target is out of reach from here: as near to it as this branch allows"
 
     def __str__(self) -> str:
@@ -165,8 +171,8 @@ class Tracker:
         came_to = self._track.tick_at(self._q, self._most, place)
         if came_to is None:  # the engine does not accept the target without conversion
             came_to = self._track.tick(self._q, self._most, goals_of(self._prepared.as_asked(target)))
-        self._q, reached, slowed, position, orientation = came_to
-        self._judge(reached, slowed)
+        self._q, reached, approaches, position, orientation = came_to
+        self._judge(reached, approaches)
         self.position_error = None if math.isnan(position) else position
         self.orientation_error = None if math.isnan(orientation) else orientation
         return self._q.copy()
@@ -177,14 +183,14 @@ class Tracker:
         stride = self._walk.tick(asked, self._q, self._most)
         self._q = stride.q.copy()
         errors = measure_errors(self.robot, asked, self._q, self._prepared.options.tolerance)
-        self._judge(all_within(errors, self._prepared.question), stride.slowed)
+        self._judge(all_within(errors, self._prepared.question), stride.approaches)
         self.position_error, self.orientation_error = largest_of(errors)
 
-    def _judge(self, reached: bool, slowed: bool) -> None:
+    def _judge(self, reached: bool, approaches: bool) -> None:
         if reached:
             self.status = TrackerStatus.OK
         else:
-            self.status = TrackerStatus.LIMITED if slowed else TrackerStatus.HELD
+            self.status = TrackerStatus.LIMITED if approaches else TrackerStatus.HELD
 
 
 def _velocities(robot: RobotModel, velocity: float | Mapping[str, float] | None) -> Array:
