@@ -265,3 +265,52 @@ def test_a_method_that_needs_more_iterations_is_behind_and_not_held(method, engi
     assert tracker.status is TrackerStatus.OK
     drive(tracker, moved(place, 3.0, 0.0, 0.0), 500)
     assert tracker.status is TrackerStatus.HELD
+
+
+def test_a_reset_forgets_the_last_tick_and_takes_angles_by_joint_name(panda):
+    tracker = pinik.Tracker(panda, TIP, home(panda), rate=RATE)
+    tracker(moved(panda.placement(TIP, home(panda)), 0.0, 0.4, 0.0))
+    assert tracker.status is TrackerStatus.LIMITED
+    tracker.reset({"panda_joint4": -2.0})
+    assert tracker.status is TrackerStatus.OK
+    assert tracker.position_error is None
+    assert tracker.orientation_error is None
+    assert tracker.angles == pytest.approx(panda.angles(panda.configuration({"panda_joint4": -2.0})))
+
+
+@pytest.mark.parametrize("engine", ENGINES)
+def test_angles_of_continuous_joints_are_unwound(engine):
+    robot = load_quietly("kinova")
+    wheel, frame = "j2s6s200_joint_1", "j2s6s200_end_effector"
+    others = {"j2s6s200_joint_2": 3.0, "j2s6s200_joint_3": 1.5, "j2s6s200_joint_5": 1.0}
+    tracker = pinik.Tracker(robot, frame, {wheel: 9.3} | others, rate=RATE, engine=engine)
+    assert tracker.angles[wheel] == pytest.approx(9.3)
+    for turn in np.arange(9.3, 9.6, 0.005):
+        tracker(robot.placement(frame, robot.configuration({wheel: turn} | others)))
+    assert tracker.status is TrackerStatus.OK
+    assert tracker.angles[wheel] == pytest.approx(turn, abs=1e-3)
+
+
+def test_infinite_speeds_are_no_limit(panda):
+    for velocity in (np.inf, dict.fromkeys(panda.joint_names, np.inf)):
+        tracker = pinik.Tracker(panda, TIP, home(panda), velocity=velocity)
+        assert np.isinf(tracker.velocity).all()
+        tracker(moved(panda.placement(TIP, home(panda)), 0.0, 0.1, 0.0))
+        assert tracker.status is TrackerStatus.OK
+
+
+def test_a_start_near_the_target_is_refused_in_words(panda):
+    with pytest.raises(pinik.InputError, match="q0 must be a configuration, or angles by joint name"):
+        pinik.Tracker(panda, TIP, "nearest")
+
+
+@pytest.mark.parametrize("engine", ENGINES)
+def test_a_position_with_free_axes_moves_as_a_list(engine):
+    robot = load_quietly("ur5")
+    start = np.array([0.3, -1.2, 1.4, -0.5, 1.0, 0.2])
+    tracker = pinik.Tracker(robot, Target("tool0", [None, None, 0.3]), start, engine=engine)
+    way = drive(tracker, [None, None, 0.2], 100)
+    assert tracker.status is TrackerStatus.OK
+    assert robot.placement("tool0", way[-1]).translation[2] == pytest.approx(0.2, abs=1e-6)
+    with pytest.raises(pinik.InputError, match="must have numbers where the target asks for them"):
+        tracker([0.1, None, None])
