@@ -178,7 +178,9 @@ class Walk {
 
   Pace pace_of_a_tick() const {
     const std::int64_t iterations = std::min(settings_.max_iterations, problem_.constants.tick_iterations);
-    return {iterations, {std::max(iterations / 2, std::int64_t{1}), settings_.patience.progress}, false, true};
+    const std::int64_t half = std::max(iterations / 2, std::int64_t{1});
+    const double share = std::min(static_cast<double>(half) / static_cast<double>(settings_.patience.iterations), 1.0);
+    return {iterations, {half, share * settings_.patience.progress}, false, true};
   }
 
   // The residual at q, whose targets pull inside wide tolerances too.

@@ -127,10 +127,12 @@ class Walk:
 
     @property
     def _pace_of_a_tick(self) -> Pace:
-        """The pace of a run in a tick, which has stalled after half the iterations without progress."""
-        options = self.question.options
+        """The pace of a run in a tick: it stalls if half the iterations progress more slowly than the method should."""
+        options, patience = self.question.options, self.question.options.method.patience
         iterations = min(options.iterations_at_most, TICK_ITERATIONS)
-        return Pace(iterations, Patience(max(iterations // 2, 1), options.method.patience.progress), downhill=True)
+        half = max(iterations // 2, 1)
+        progress = min(half / max(patience.iterations, 1), 1.0) * patience.progress
+        return Pace(iterations, Patience(half, progress), downhill=True)
 
     def _residual(self, q: Array) -> float:
         """The residual at `q`, where the targets pull inside wide tolerances too."""
