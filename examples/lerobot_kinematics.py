@@ -57,15 +57,18 @@ class RobotKinematics:
         Args:
             current_joint_pos: The current joint positions [deg], as many as `joint_names` or more.
             desired_ee_pose: The pose of the frame (4, 4).
-            position_weight: The weight of the position.
-            orientation_weight: The weight of the orientation; 0 leaves it free.
+            position_weight: The weight of the position: 0 leaves it free, otherwise from 0.001 to 1000.
+            orientation_weight: The weight of the orientation, likewise. One of the two must not be 0.
+
+        Raises:
+            ValueError: There are too few joint positions, or a weight is outside its range.
         """
         pose = np.asarray(desired_ee_pose, dtype=np.float64)
-        targets = [pinik.Target(self.target_frame_name, pose[:3, 3], weight=position_weight)]
-        if orientation_weight > 0.0:
-            targets.append(
-                pinik.Target(self.target_frame_name, rotation=pose[:3, :3], weight=orientation_weight),
-            )
+        targets = []
+        if position_weight != 0.0:
+            targets.append(pinik.Target(self.target_frame_name, pose[:3, 3], weight=position_weight))
+        if orientation_weight != 0.0:
+            targets.append(pinik.Target(self.target_frame_name, rotation=pose[:3, :3], weight=orientation_weight))
         solution = self.robot.solve(targets, q0=self._configuration(current_joint_pos), restarts=0)
         values = np.array(current_joint_pos, dtype=np.float64)
         values[: len(self.joint_names)] = [np.degrees(solution.angles[name]) for name in self.joint_names]
@@ -73,6 +76,10 @@ class RobotKinematics:
 
     def _configuration(self, degrees: ArrayLike) -> Array:
         values = np.radians(np.asarray(degrees, dtype=np.float64)[: len(self.joint_names)])
+        if len(values) < len(self.joint_names):
+            raise ValueError(
+                f"there must be a value for each of {', '.join(self.joint_names)}; got {len(values)} values"
+            )
         return self.robot.configuration(dict(zip(self.joint_names, values.tolist(), strict=True)))
 
 

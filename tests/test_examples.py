@@ -10,6 +10,7 @@ from pathlib import Path
 
 import numpy as np
 import pinocchio
+import pytest
 
 import pinik
 from judge import assert_honest
@@ -99,3 +100,22 @@ def test_lerobots_kinematics_prefers_the_position_of_a_pose_that_five_joints_can
     assert np.linalg.norm(reached[:3, 3] - pose[:3, 3]) < 1e-3
     free = pose_by_pinocchio(kinematics.inverse_kinematics(there, pose, orientation_weight=0.0))
     assert np.linalg.norm(free[:3, 3] - pose[:3, 3]) < 1e-3
+
+
+def test_lerobots_kinematics_leaves_a_part_of_the_pose_free_where_its_weight_is_0():
+    kinematics = lerobot_kinematics(joint_names=ARM)
+    there = np.array([10.0, -20.0, 40.0, 30.0, 0.0])
+    pose = pose_by_pinocchio(there)
+    far = pose.copy()
+    far[:3, 3] += 5.0
+    turned = pose_by_pinocchio(kinematics.inverse_kinematics(there + 4.0, far, 0.0, 1.0))
+    assert np.linalg.norm(pinocchio.log3(pose[:3, :3] @ turned[:3, :3].T)) < 0.01
+
+
+def test_lerobots_kinematics_says_which_weights_and_how_many_values_it_takes():
+    kinematics = lerobot_kinematics(joint_names=ARM)
+    pose = pose_by_pinocchio(np.zeros(5))
+    with pytest.raises(ValueError, match=r"weight must be a number from 0\.001 to 1000; got 1e-05"):
+        kinematics.inverse_kinematics(np.zeros(5), pose, orientation_weight=1e-5)
+    with pytest.raises(ValueError, match="there must be a value for each of shoulder_pan"):
+        kinematics.forward_kinematics(np.zeros(3))

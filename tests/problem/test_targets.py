@@ -341,3 +341,16 @@ class TestTolerance:
     def test_is_nothing_else(self, bad):
         with pytest.raises(InputError, match=r"tolerance must be (2 finite|two positive) numbers"):
             Tolerance.of(bad)
+
+
+def test_free_axes_come_in_arrays_of_objects_and_as_places():
+    target = Target("tip", np.array([None, None, 0.3], dtype=object))
+    assert target == Target("tip", [None, None, 0.3])
+    assert target.moved_to([None, None, 0.2]) == Target("tip", [None, None, 0.2])
+    with pytest.raises(InputError, match="must have numbers where the target asks for them"):
+        target.moved_to([0.1, None, None])
+
+
+def test_an_error_about_a_position_with_free_axes_names_the_coordinate_that_was_given():
+    with pytest.raises(InputError, match=r"position\[2\] must be a finite number; got True"):
+        Target("tip", [None, None, True])

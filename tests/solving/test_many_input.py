@@ -12,6 +12,7 @@ import pinik
 from engines import needs_native
 from pinik import Target
 from pinik.solving import places as reading
+from robots import load_quietly
 
 TIP = "panda_hand_tcp"
 
@@ -133,3 +134,28 @@ def test_places_are_read_alike_by_any_number_of_threads(threads, panda):
     assert not turned
     np.testing.assert_array_equal(goals[:, :3], points)
     assert not goals[:, 3:].any()
+
+
+@pytest.mark.parametrize(
+    ("what", "places", "message"),
+    [
+        ("tool0", [[None, None, 0.3], [0.1, 0.2, 0.3]], r"places\[1\] must leave the same axes free as places\[0\]"),
+        ("tool0", [[None, None, 0.3], [None, None, "a"]], r"places\[1\]\[2\] must be a finite number; got 'a'"),
+        (
+            pinik.Target("tool0", [None, 0.1, 0.2]),
+            [[None, None, 0.3]],
+            "must have numbers along the axes where the target",
+        ),
+    ],
+)
+def test_free_axes_that_do_not_fit_are_refused_in_words(what, places, message):
+    with pytest.raises(pinik.InputError, match=message):
+        pinik.solve_many(load_quietly("ur5"), what, places)
+
+
+@pytest.mark.parametrize("form", [list, lambda places: np.array(places, dtype=object)])
+def test_places_may_leave_axes_free(form):
+    robot = load_quietly("ur5")
+    batch = pinik.solve_many(robot, "tool0", form([[None, None, 0.3], [None, None, 0.4]]))
+    found = [robot.placement("tool0", q).translation[2] for q in batch.q]
+    np.testing.assert_allclose(found, [0.3, 0.4], atol=1e-6)

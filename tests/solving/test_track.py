@@ -303,6 +303,25 @@ def test_the_json_form_is_plain_and_complete(panda):
     assert document["success"] is True
 
 
+def test_the_json_form_has_no_infinity(panda):
+    _, frame, q, places = circle("panda", 3)
+    track = pinik.track(panda, frame, places, q, times=[0.0, 1e-320, 1.0])
+    infinite = [np.isinf(excess.speed) for excess in track.too_fast]
+    assert any(infinite)
+    excesses = json.loads(json.dumps(track.to_dict(), allow_nan=False))["too_fast"]
+    assert [excess["speed"] is None for excess in excesses] == infinite
+
+
+@pytest.mark.parametrize("what", ["tool0", Target("tool0", [None, None, 0.0])])
+def test_places_leave_axes_free(what):
+    robot = load_quietly("ur5")
+    heights = np.linspace(0.4, 0.2, 10)
+    track = pinik.track(robot, what, [[None, None, z] for z in heights], [0.3, -1.2, 1.4, -0.5, 1.0, 0.2])
+    assert track.success
+    found = [robot.placement("tool0", q).translation[2] for q in track.q]
+    np.testing.assert_allclose(found, heights, atol=1e-6)
+
+
 @pytest.mark.parametrize(
     ("change", "error", "message"),
     [
@@ -311,6 +330,7 @@ def test_the_json_form_is_plain_and_complete(panda):
         ({"times": [0.0, 1.0, 1.0, 2.0, 3.0]}, pinik.InputError, "times must increase"),
         ({"places": np.zeros((0, 3))}, pinik.InputError, "at least one point"),
         ({"trace": True}, pinik.InputError, "keeps no trace"),
+        ({"q0": "nearest"}, pinik.InputError, "q0 must be a configuration, or angles by joint name"),
         ({"dampng": 1.0}, pinik.UnknownNameError, "no keyword 'dampng'"),
     ],
 )

@@ -15,6 +15,7 @@ from hypothesis import given, settings
 
 import pinik
 from engines import needs_native
+from pinik.solving.aims import present
 from pinik.solving.walk import Walk
 from problems import Problem, problems
 
@@ -36,7 +37,7 @@ def motion(problem: Problem):
     points, q = [], start
     for _ in range(POINTS):
         q = limits.clip(pinocchio.integrate(problem.robot.model, q, step))
-        points.append(walk._present(question.problem.targets, q))
+        points.append(present(walk.kinematics, question.problem.targets, q))
     return start, points
 
 

@@ -34,6 +34,9 @@ def drive(tracker, target, ticks):
 
 def assert_within_speeds_and_limits(robot, way, velocity, rate=RATE):
     angles = np.array([[robot.angles(q)[name] for name in robot.joint_names] for q in way])
+    for column, name in enumerate(robot.joint_names):
+        if robot.joint(name).kind == "continuous":
+            angles[:, column] = np.unwrap(angles[:, column])
     turned = np.abs(np.diff(angles, axis=0))
     assert (turned <= np.asarray(velocity) / rate * (1.0 + 1e-9)).all()
     assert (way >= robot.lower_q - 1e-12).all()
@@ -198,3 +201,116 @@ def test_the_returned_configuration_belongs_to_the_caller(panda):
     q[:] = 9.0
     assert tracker.q == pytest.approx(home(panda), abs=1e-5)
     assert pinocchio.isNormalized(panda.model, tracker.q)
+
+
+def shifted(robot, frame, q, seed, far):
+    """A placement (4, 4) at a distance [m] from that of the frame, in a random direction."""
+    place = robot.placement(frame, q).homogeneous
+    way = np.random.default_rng(seed).normal(size=3)
+    place[:3, 3] += far * way / np.linalg.norm(way)
+    return place
+
+
+@pytest.mark.parametrize("engine", ENGINES)
+def test_a_target_that_moved_30_cm_at_once_is_reached_where_a_straight_line_comes_to_a_limit(engine):
+    """The tracker stayed at its start, LIMITED, for ever."""
+    robot = load_quietly("z1")
+    q = robot.random(6)
+    target = shifted(robot, "gripperMover", q, 6, 0.3)
+    tracker = pinik.Tracker(robot, "gripperMover", q, rate=RATE, engine=engine)
+    way = drive(tracker, target, 80)
+    assert tracker.status is TrackerStatus.OK
+    assert judge(robot, Target("gripperMover", placement=target), way[-1]).are_within((1e-6, 1e-5))
+    assert_within_speeds_and_limits(robot, way, robot.velocity_limits)
+
+
+@needs_native
+@pytest.mark.parametrize(
+    ("name", "frame"),
+    [
+        ("ur5", "tool0"),
+        ("panda", TIP),
+        ("xarm7", "link_eef"),
+        ("z1", "gripperMover"),
+        ("kinova", "j2s6s200_end_effector"),
+    ],
+)
+def test_no_target_leaves_it_limited_without_motion(name, frame):
+    """After 600 ticks at a target 30 cm away, it is there, or at rest and HELD; a third was frozen and LIMITED."""
+    robot = load_quietly(name)
+    for seed in range(12):
+        q = robot.random(seed)
+        target = shifted(robot, frame, q, seed, 0.3)
+        tracker = pinik.Tracker(robot, frame, q, rate=RATE)
+        way = drive(tracker, target, 600)
+        assert tracker.status in (TrackerStatus.OK, TrackerStatus.HELD), seed
+        assert np.abs(np.diff(way[-20:], axis=0)).max() < 1e-4, seed
+        assert_within_speeds_and_limits(robot, way, robot.velocity_limits)
+
+
+@pytest.mark.parametrize("engine", ENGINES)
+@pytest.mark.parametrize("method", ["jt", "ccd"])
+def test_a_method_that_needs_more_iterations_is_behind_and_not_held(method, engine):
+    """The target moves by 2 mm in every tick; these methods called it out of reach."""
+    robot = load_quietly("ur5")
+    start = np.array([0.3, -1.2, 1.4, -0.5, 1.0, 0.2])
+    place = robot.placement("tool0", start)
+    tracker = pinik.Tracker(robot, "tool0", start, rate=RATE, method=method, engine=engine)
+    for k in range(1, 31):
+        q = tracker(moved(place, 0.0, 0.002 * k, 0.0))
+        error = judge(robot, Target("tool0", placement=moved(place, 0.0, 0.002 * k, 0.0)), q).position
+        assert tracker.status is (TrackerStatus.OK if error <= 1e-6 else TrackerStatus.LIMITED)
+        assert error < 0.005
+    drive(tracker, moved(place, 0.0, 0.06, 0.0), 100)
+    assert tracker.status is TrackerStatus.OK
+    drive(tracker, moved(place, 3.0, 0.0, 0.0), 500)
+    assert tracker.status is TrackerStatus.HELD
+
+
+def test_a_reset_forgets_the_last_tick_and_takes_angles_by_joint_name(panda):
+    tracker = pinik.Tracker(panda, TIP, home(panda), rate=RATE)
+    tracker(moved(panda.placement(TIP, home(panda)), 0.0, 0.4, 0.0))
+    assert tracker.status is TrackerStatus.LIMITED
+    tracker.reset({"panda_joint4": -2.0})
+    assert tracker.status is TrackerStatus.OK
+    assert tracker.position_error is None
+    assert tracker.orientation_error is None
+    assert tracker.angles == pytest.approx(panda.angles(panda.configuration({"panda_joint4": -2.0})))
+
+
+@pytest.mark.parametrize("engine", ENGINES)
+def test_angles_of_continuous_joints_are_unwound(engine):
+    robot = load_quietly("kinova")
+    wheel, frame = "j2s6s200_joint_1", "j2s6s200_end_effector"
+    others = {"j2s6s200_joint_2": 3.0, "j2s6s200_joint_3": 1.5, "j2s6s200_joint_5": 1.0}
+    tracker = pinik.Tracker(robot, frame, {wheel: 9.3} | others, rate=RATE, engine=engine)
+    assert tracker.angles[wheel] == pytest.approx(9.3)
+    for turn in np.arange(9.3, 9.6, 0.005):
+        tracker(robot.placement(frame, robot.configuration({wheel: turn} | others)))
+    assert tracker.status is TrackerStatus.OK
+    assert tracker.angles[wheel] == pytest.approx(turn, abs=1e-3)
+
+
+def test_infinite_speeds_are_no_limit(panda):
+    for velocity in (np.inf, dict.fromkeys(panda.joint_names, np.inf)):
+        tracker = pinik.Tracker(panda, TIP, home(panda), velocity=velocity)
+        assert np.isinf(tracker.velocity).all()
+        tracker(moved(panda.placement(TIP, home(panda)), 0.0, 0.1, 0.0))
+        assert tracker.status is TrackerStatus.OK
+
+
+def test_a_start_near_the_target_is_refused_in_words(panda):
+    with pytest.raises(pinik.InputError, match="q0 must be a configuration, or angles by joint name"):
+        pinik.Tracker(panda, TIP, "nearest")
+
+
+@pytest.mark.parametrize("engine", ENGINES)
+def test_a_position_with_free_axes_moves_as_a_list(engine):
+    robot = load_quietly("ur5")
+    start = np.array([0.3, -1.2, 1.4, -0.5, 1.0, 0.2])
+    tracker = pinik.Tracker(robot, Target("tool0", [None, None, 0.3]), start, engine=engine)
+    way = drive(tracker, [None, None, 0.2], 100)
+    assert tracker.status is TrackerStatus.OK
+    assert robot.placement("tool0", way[-1]).translation[2] == pytest.approx(0.2, abs=1e-6)
+    with pytest.raises(pinik.InputError, match="must have numbers where the target asks for them"):
+        tracker([0.1, None, None])

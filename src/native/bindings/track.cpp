@@ -49,7 +49,7 @@ nb::tuple follow(Track& track, const Numbers& start, const Goals& goals, OnMiss 
   return std::move(columns).arrays(answered, nq);
 }
 
-// What a tick came to: q, whether the targets are reached, whether the joints were slowed down, and the largest errors.
+// What a tick came to: q, whether the targets are reached, whether further ticks will bring them nearer, and the largest errors.
 nb::tuple ticked(Track& track, const Numbers& start, const Numbers& most, const std::vector<Goal>& goals) {
   const Problem& problem = track.problem();
   Eigen::Index nv = 0;
@@ -58,14 +58,14 @@ nb::tuple ticked(Track& track, const Numbers& start, const Numbers& most, const 
   if (most.shape(0) != static_cast<std::size_t>(nv))
     throw std::invalid_argument("there must be " + std::to_string(nv) + " largest changes; got " +
                                 std::to_string(most.shape(0)));
-  const auto [answer, slowed] = track.tick(Eigen::Map<const Vector>(start.data(), problem.mechanism->nq),
+  const auto [answer, approaches] = track.tick(Eigen::Map<const Vector>(start.data(), problem.mechanism->nq),
                                            Eigen::Map<const Vector>(most.data(), nv), goals);
   TargetError largest;
   for (const TargetError& error : answer.errors) {
     largest.position = std::fmax(largest.position, error.position);
     largest.orientation = std::fmax(largest.orientation, error.orientation);
   }
-  return nb::make_tuple(as_array(answer.q), answer.status == Status::converged, slowed, largest.position,
+  return nb::make_tuple(as_array(answer.q), answer.status == Status::converged, approaches, largest.position,
                         largest.orientation);
 }
 

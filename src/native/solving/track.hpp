@@ -60,21 +60,21 @@ class Track {
     return count;
   }
 
-  // One tick from `q` towards the goals, in which the joints change by at most `most`. Returns the answer, and whether the
-  // joints were slowed down.
+  // One tick from `q` towards the goals, in which the joints change by at most `most`. Returns the answer, and whether
+  // further ticks will bring the targets nearer.
   std::pair<Answer, bool> tick(Vector q, const Vector& most, const std::vector<Goal>& goals) {
     interrupts_.pause = nullptr;
     place(q);
     problem_.goals = goals;
     Answer answer;
-    bool slowed = false;
+    bool approaches = false;
     with_walk([&](auto& walk) {
       const Stride& stride = walk.tick(q, most);
-      slowed = stride.slowed;
+      approaches = stride.approaches;
       keep(stride, answer);
     });
     certify(answer);
-    return {std::move(answer), slowed};
+    return {std::move(answer), approaches};
   }
 
  private:

@@ -18,7 +18,7 @@ struct Stride {
   Status ended = Status::running;
   Vector q;
   std::int64_t iterations = 0, restarts = 0;
-  bool slowed = false;  // by the largest changes of the joints, in a tick
+  bool approaches = false;  // whether the targets, missed in a tick, will be nearer after further ticks
 };
 
 // Goes along paths with the working memory of one thread. `problem.goals` are those of the present point.
@@ -43,7 +43,7 @@ class Walk {
     best_ = &plain_;
     run(from, pace, plain_);
     if (is_near(plain_, from) || plain_.status == Status::time_limit) return stride(*best_);
-    if (!is_beyond() && creep(from, pace)) return stride(*best_);
+    if (!is_beyond() && creep(from, pace)) return stride(crept_);
     if (plain_.status != Status::converged) {
       best_ = &last_;
       run(plain_.q, {settings_.iterations_to_the_end, problem_.constants.to_the_end, false, true}, last_);
@@ -58,32 +58,28 @@ class Walk {
   const Stride& tick(const Vector& from, const Vector& most) {
     watch_.start();
     stride_.iterations = stride_.restarts = 0;
-    const Pace pace{std::min(settings_.max_iterations, problem_.constants.tick_iterations), settings_.patience, false,
-                    true};
-    at_.q = from;
-    kinematics_.linearize(at_);
-    stepping_.damp_by(1.0, false);
-    stepping_.advance(at_, limits_, 1.0, stride_.q);
-    const double excess = largest_excess(from, stride_.q, most);
-    targets_ = problem_.goals;
-    if (excess > 1.0) {
-      see_present(from);
-      aim_between(1.0 / excess);
-    }
-    best_ = &plain_;
+    const Pace pace = pace_of_a_tick();
+    const double least = problem_.constants.to_the_end.progress;
     run(from, pace, plain_);
-    bool found = !is_jump(from, plain_.q);
-    if (!found) {
-      const std::vector<Goal> all = targets_;
-      found = creep(from, pace);
-      targets_ = all;
+    const bool near = !is_jump(from, plain_.q);
+    const double ticks = largest_excess(from, plain_.q, most);
+    stride(plain_);
+    if (near && ticks <= 1.0) {
+      stride_.approaches = plain_.status == Status::max_iterations || plain_.status == Status::time_limit;
+      return stride_;
     }
-    problem_.goals = targets_;
-    stride(*best_);
-    if (!found) stride_.q = from;
-    const double beyond = largest_excess(from, stride_.q, most);
-    if (beyond > 1.0) shorten(from, 1.0 / beyond);
-    stride_.slowed = excess > 1.0 || beyond > 1.0;
+    const bool leads = near && plain_.status == Status::converged;
+    const double before = residual_at(from);
+    go_straight(from, most, pace, near);
+    if (leads) {
+      if (largest_excess(stride_.q, plain_.q, most) > ticks - 0.5) {
+        stride_.q = plain_.q;
+        shorten(from, most);
+      }
+    } else if (residual_at(stride_.q) >= before) {
+      go_down(from, most, before);
+    }
+    stride_.approaches = largest_excess(from, stride_.q, most) >= least || residual_at(stride_.q) <= (1.0 - least) * before;
     return stride_;
   }
 
@@ -109,12 +105,12 @@ class Walk {
   const Limits limits_, loose_;
   Starts<Rows> starts_;
   Stride stride_;
-  Ran plain_, last_, crept_, tried_, elsewhere_;
+  Ran plain_, last_, crept_, tried_, elsewhere_, straight_;
   const Ran* best_ = nullptr;
   std::vector<Goal> origins_, targets_;
   Linearization<Rows> at_;
   Eigen::Matrix<double, Rows, Rows> square_;
-  Vector step_, drawn_;
+  Vector step_, drawn_, first_;
 
   const Stride& stride(const Ran& ran) {
     stride_.ended = ran.status;
@@ -155,8 +151,8 @@ class Walk {
     return change > largest_asked(problem_, at_, square_, step_);
   }
 
-  // Approach the goals in smaller steps, each half of the last if it fails. Returns whether that succeeds; best_ is then
-  // its answer.
+  // Approach the goals in smaller steps, each half of the last if it fails. Returns whether that reaches them; crept_ is
+  // how far it came.
   bool creep(const Vector& from, const Pace& pace) {
     targets_ = problem_.goals;
     see_present(from);
@@ -177,9 +173,59 @@ class Walk {
       }
     }
     problem_.goals = targets_;
-    if (done < 1.0) return false;
-    best_ = &crept_;
-    return true;
+    return done >= 1.0;
+  }
+
+  Pace pace_of_a_tick() const {
+    const std::int64_t iterations = std::min(settings_.max_iterations, problem_.constants.tick_iterations);
+    const std::int64_t half = std::max(iterations / 2, std::int64_t{1});
+    const double share = std::min(static_cast<double>(half) / static_cast<double>(settings_.patience.iterations), 1.0);
+    return {iterations, {half, share * settings_.patience.progress}, false, true};
+  }
+
+  // The residual at q, whose targets pull inside wide tolerances too.
+  double residual_at(const Vector& q) {
+    kinematics_.loose = false;
+    at_.q = q;
+    kinematics_.linearize(at_);
+    return at_.residual;
+  }
+
+  // Set stride_.q to a place on the straight way of the frames to the goals, within the largest changes. The first step of
+  // the method says how much of the way that is.
+  void go_straight(const Vector& from, const Vector& most, const Pace& pace, bool near) {
+    residual_at(from);
+    stepping_.damp_by(1.0, false);
+    stepping_.advance(at_, limits_, 1.0, first_);
+    const double excess = largest_excess(from, first_, most);
+    const Ran* ran = &plain_;
+    const std::vector<Goal> all = problem_.goals;
+    if (excess > 1.0) {
+      targets_ = all;
+      see_present(from);
+      aim_between(1.0 / excess);
+      run(from, pace, straight_);
+      ran = &straight_;
+      near = !is_jump(from, straight_.q);
+    }
+    if (!near) {
+      creep(from, pace);
+      ran = &crept_;
+    }
+    problem_.goals = all;
+    stride_.q = ran->q;
+    shorten(from, most);
+  }
+
+  // Set stride_.q to a part of the method's first step after which the residual is below `before`, or to `from`.
+  void go_down(const Vector& from, const Vector& most, double before) {
+    stride_.q = first_;
+    shorten(from, most);
+    for (int k = 0; k < problem_.constants.creep_halvings; ++k) {
+      if (residual_at(stride_.q) < before) return;
+      shorten(from, 0.5);
+    }
+    stride_.q = from;
   }
 
   // Set best_ to the answer nearest to `from`, of the one that it has and those of the restarts, if there is one.
@@ -249,6 +295,12 @@ class Walk {
         largest = std::max(largest, std::abs(joint_change(joint, before, after, 1.0)) / most[joint.idx_v]);
     }
     return largest;
+  }
+
+  // Move stride_.q back towards `from`, until no change is larger than `most`.
+  void shorten(const Vector& from, const Vector& most) {
+    const double excess = largest_excess(from, stride_.q, most);
+    if (excess > 1.0) shorten(from, 1.0 / excess);
   }
 
   // Move stride_.q back towards `from`, so that this part of the way is left.

@@ -11,7 +11,7 @@ import numpy as np
 import pinocchio
 from numpy.typing import ArrayLike, NDArray
 
-from ..checks import as_finite_number, as_point, as_rotation, as_se3, as_unit_vector, as_vector
+from ..checks import as_finite_number, as_length, as_point, as_rotation, as_se3, as_unit_vector, as_vector
 from ..errors import InputError, UnknownNameError
 from .tolerance import Tolerance
 
@@ -178,10 +178,10 @@ class Target:
 
         Args:
             place: An SE3 or 4×4 matrix where position and rotation are asked for, the parts that are asked for taken
-                from it; or a position (3,) [m] where only that is.
+                from it; or a position (3,) [m] where only that is, which may have None along free axes.
 
         Raises:
-            InputError: It is neither, or the target asks for an axis, or for more than a position alone says.
+            InputError: It is neither, or the target asks for an axis, or for more than the position says.
         """
         what = f"target {self.frame!r}"
         if self.axis is not None:
@@ -189,7 +189,10 @@ class Target:
         if not isinstance(place, pinocchio.SE3) and np.shape(place) == (3,):
             if self.rotation is not None:
                 raise InputError(f"{what} asks for an orientation too; give an SE3 or a 4×4 matrix")
-            place = pinocchio.SE3(np.eye(3), as_point(place, f"{what}: position"))
+            position = as_position(place, f"{what}: position")
+            if np.isnan(position[list(self.along)]).any():
+                raise InputError(f"{what}: position must have numbers where the target asks for them; got {place!r}")
+            place = pinocchio.SE3(np.eye(3), np.nan_to_num(position))
         pose = as_se3(place, f"{what}: placement")
         return self.with_numbers(pose.translation, pose.rotation)
 
@@ -361,14 +364,12 @@ def _rotation(
 
 def as_position(position: Position, what: str) -> Array:
     """A point (3,) [m], with NaN for coordinates of None."""
-    if not isinstance(position, (list, tuple)) or len(position) != 3 or not any(x is None for x in position):
+    parts = position.tolist() if isinstance(position, np.ndarray) and position.dtype == object else position
+    if not isinstance(parts, (list, tuple)) or len(parts) != 3 or not any(part is None for part in parts):
         return as_point(position, what)  # type: ignore[arg-type]
-    if all(coordinate is None for coordinate in position):
+    if all(part is None for part in parts):
         raise InputError("must have a coordinate that is not None; leave it out to leave all axes free", argument=what)
-    free = [coordinate is None for coordinate in position]
-    numbers: list[Any] = [0.0 if coordinate is None else coordinate for coordinate in position]
-    point = as_point(numbers, what)
-    return np.where(free, np.nan, point)
+    return np.array([np.nan if part is None else as_length(part, f"{what}[{k}]") for k, part in enumerate(parts)])
 
 
 def _known(numbers: Array) -> list[float | None]:

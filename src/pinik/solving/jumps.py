@@ -87,7 +87,8 @@ class Excess:
 
     def to_dict(self) -> dict[str, Any]:
         """The JSON form; docs/json.md explains the fields."""
-        return asdict(self) | {"factor": self.factor}
+        numbers = {"speed": self.speed, "limit": self.limit, "factor": self.factor}
+        return asdict(self) | {name: number if math.isfinite(number) else None for name, number in numbers.items()}
 
 
 def find_jumps(question: Question, goals: Array, q: Array, angles: Array, restarts: NDArray[np.int64]) -> list[Jump]:
@@ -124,7 +125,8 @@ def find_excesses(names: tuple[str, ...], angles: Array, times: Array, limits: A
         times: The times of the points (N,) [s], N at least M.
         limits: Their largest velocities (n_joints,) [rad/s or m/s].
     """
-    speeds = np.abs(np.diff(angles, axis=0)) / np.diff(times[: len(angles)])[:, np.newaxis]
+    with np.errstate(over="ignore"):
+        speeds = np.abs(np.diff(angles, axis=0)) / np.diff(times[: len(angles)])[:, np.newaxis]
     return [
         Excess(int(k) + 1, names[j], float(speeds[k, j]), float(limits[j]))
         for k, j in np.argwhere(speeds > limits * (1.0 + 1e-9))

@@ -73,7 +73,8 @@ def solve_many(
         robot: The robot.
         targets: The name of a frame, or one Target as a pattern, with the N targets in `places`; or N targets of the
             same kind; or N sequences with the same number of targets of the same kinds.
-        places: (N, 4, 4) homogeneous matrices or N SE3, for positions and rotations; or positions (N, 3) [m].
+        places: (N, 4, 4) homogeneous matrices or N SE3, for positions and rotations; or positions (N, 3) [m],
+            with None along axes that are free, the same ones in all places.
         method: As for `pinik.solve`.
         tool, relative_to: As for `Target`; only with the name of a frame.
         q0: One start (nq,) or N starts (N, nq); angles by joint name, with all other joints neutral; neutral when None;

@@ -9,6 +9,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from ..errors import InputError
 from ..model.robot_model import RobotModel
 
 __all__ = ["Origin", "is_nearest", "unwound", "unwound_rows"]
@@ -33,18 +34,25 @@ class Origin(NamedTuple):
     turned: Mapping[str, float] = _NONE
 
     @classmethod
-    def of(cls, robot: RobotModel, q0: Any) -> Origin:
+    def of(cls, robot: RobotModel, q0: Any, *, searches: bool = True) -> Origin:
         """The start that `q0` stands for.
 
         Args:
             robot: The robot.
             q0: A configuration (nq,); angles by joint name [rad, or m for prismatic joints], with all other joints
                 neutral; "nearest"; an Origin; or None for the neutral configuration.
+            searches: Whether "nearest" is possible.
 
         Raises:
             UnknownNameError: There is no such joint.
             InputError: A wrong shape, or a value that cannot be used.
         """
+        if is_nearest(q0) and not searches:
+            raise InputError(
+                "must be a configuration, or angles by joint name, from which the joints move on; got 'nearest', which "
+                "solve, solve_many and prepared problems accept",
+                argument="q0",
+            )
         if isinstance(q0, Origin):
             return q0
         if q0 is None or is_nearest(q0):

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from ..checks import as_array, as_many, as_numbers, as_points, as_rotations, as_se3
 from ..errors import InputError
-from ..problem.targets import Target, as_targets
+from ..problem.targets import Target, as_position, as_targets
 from .native.codec import goals_of, read_places
 
 __all__ = ["read_questions"]
@@ -27,7 +27,8 @@ def read_questions(
     Args:
         targets: The name of a frame, or one Target as a pattern, with the N targets in `places`; or N targets of the
             same kind; or N sequences with the same number of targets of the same kinds.
-        places: (N, 4, 4) homogeneous matrices or N SE3, for positions and rotations; or positions (N, 3) [m].
+        places: (N, 4, 4) homogeneous matrices or N SE3, for positions and rotations; or positions (N, 3) [m], with None
+            along axes that are free, the same ones in all places.
         tool, relative_to: As for `Target`; only with the name of a frame.
         threads: The number of threads that read the places.
 
@@ -43,8 +44,9 @@ def read_questions(
         )
     if places is None:
         return _listed(targets)
+    places, along = _with_free_axes(places)
     goals, turned = _goals_at(places, threads)
-    pattern = _pattern(targets, turned, tool, relative_to)
+    pattern = _pattern(targets, turned, along, tool, relative_to)
     if pattern.position is None:
         goals[:, :3] = 0.0
     if pattern.rotation is None:
@@ -68,6 +70,24 @@ def _listed(targets: Any) -> tuple[tuple[Target, ...], Array]:
                 f"targets[{number}] must be of the same kind as targets[0]; solve each kind in a separate call"
             )
     return asked[0], np.array([goals_of(each) for each in asked])
+
+
+def _with_free_axes(places: Any) -> tuple[Any, tuple[bool, bool, bool]]:
+    """(the places, with 0 for coordinates of None; along which axes the places have numbers)."""
+    rows = places.tolist() if isinstance(places, np.ndarray) and places.dtype == object else places
+    everywhere = True, True, True
+    if not (isinstance(rows, (list, tuple)) and any(map(_has_none, rows))):
+        return places, everywhere
+    points = [as_position(row, f"places[{k}]") for k, row in enumerate(rows)]
+    free = np.isnan(points)
+    for k in np.flatnonzero((free != free[0]).any(axis=1))[:1]:
+        raise InputError(f"places[{k}] must leave the same axes free as places[0]; got {rows[k]!r} and {rows[0]!r}")
+    x, y, z = (~free[0]).tolist()
+    return np.nan_to_num(np.array(points)), (x, y, z)
+
+
+def _has_none(place: Any) -> bool:
+    return isinstance(place, (list, tuple, np.ndarray)) and any(part is None for part in place)
 
 
 def _goals_at(places: Any, threads: int) -> tuple[Array, bool]:
@@ -118,13 +138,19 @@ def _matrix_of(place: Any, what: str) -> Array:
     return np.array(place.homogeneous) if isinstance(place, pinocchio.SE3) else as_array(place, (4, 4), what)
 
 
-def _pattern(targets: Any, turned: bool, tool: Any, relative_to: str | None) -> Target:
+def _pattern(targets: Any, turned: bool, along: tuple[bool, bool, bool], tool: Any, relative_to: str | None) -> Target:
     """The pattern of targets that are given as a frame or a pattern, and places."""
     if isinstance(targets, str):
         rotation = np.eye(3) if turned else None
-        return Target(targets, np.zeros(3), rotation=rotation, tool=tool, relative_to=relative_to)
+        position = [0.0 if known else None for known in along]
+        return Target(targets, position, rotation=rotation, tool=tool, relative_to=relative_to)
     if not isinstance(targets, Target):
         raise InputError(f"with places, targets must be a frame's name or one Target; got {targets!r}")
+    if any(asked and not known for asked, known in zip(targets.along, along, strict=True)):
+        raise InputError(
+            f"places must have numbers along the axes where the target of {targets.frame!r} asks for them; leave the "
+            "same axes free in the target, as in position=[None, None, 0.0]"
+        )
     if targets.axis is not None or (targets.rotation is not None and not turned):
         raise InputError(f"places do not specify all that the target of {targets.frame!r} needs; give N Target objects")
     return targets

@@ -80,7 +80,8 @@ def track(
         robot: The robot.
         targets: The name of a frame, or one Target as a pattern, with the N targets in `places`; or N targets of the
             same kind; or N sequences with the same number of targets of the same kinds.
-        places: (N, 4, 4) homogeneous matrices or N SE3, for positions and rotations; or positions (N, 3) [m].
+        places: (N, 4, 4) homogeneous matrices or N SE3, for positions and rotations; or positions (N, 3) [m],
+            with None along axes that are free, the same ones in all places.
         q0: The start, from which the first point is solved: a configuration (nq,), or angles by joint name; neutral
             when None. The way to the first point is not part of the path, and is never reported as a jump.
         method: As for `pinik.solve`.
@@ -114,7 +115,7 @@ def track(
     if not len(goals):
         raise InputError("a path must have at least one point; got none")
     when = None if times is None else _check_times(times, len(goals))
-    origin = Origin.of(robot, q0)
+    origin = Origin.of(robot, q0, searches=False)
     prepared = kept_of(robot).prepared(robot, pattern, careful(options))
     native = prepared.native
     if native is None:
@@ -259,4 +260,4 @@ def _unwound(robot: RobotModel, origin: Origin, q: Array) -> Array:
 
 
 def _number_or_none(number: float) -> float | None:
-    return None if np.isnan(number) else number
+    return number if np.isfinite(number) else None

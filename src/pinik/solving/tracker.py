@@ -38,13 +38,20 @@ _MISSING = ("trace", "restarts", "seed", "polish", "choose", "choose_weights")
 _KEYWORDS = ("q0", "rate", "velocity", *(name for name in OPTION_NAMES if name not in _MISSING))
 
 _TOLERANCE = Tolerance(1e-6, 1e-5)
+_TURN = 2.0 * math.pi
 
 
 class TrackerStatus(Enum):
-    """How a tick went; `str()` describes it."""
+    """How a tick went; `str()` describes it.
+
+    OK: the target is within tolerance. LIMITED: it is not yet, and further ticks will bring the frame nearer; the
+    joints are at their speeds, or the iterations of one tick did not suffice, as is usual for `jt` and `ccd`. HELD:
+    further ticks will not bring the frame nearer, as a limit, the arm's length or a singular place is in the way; the
+    frame stays at the nearest point that it found. If the target moves, the next tick decides anew.
+    """
 
     OK = "the target is reached"
-    LIMITED = "on the way: the joints' speeds do not allow more"
+    LIMITED = "on the way: the speeds of the joints or the iterations of one tick do not allow more"
     HELD = "the target is out of reach from here: as near to it as this branch allows"
 
     def __str__(self) -> str:
@@ -95,7 +102,7 @@ class Tracker:
             q0: The start, moved inside the limits: a configuration (nq,), or angles by joint name; neutral when None.
             rate: The number of calls per second [Hz].
             velocity: The largest joint velocity [rad/s or m/s]: one number for all joints, or one for each joint by
-                name, where the others keep that of the file; `robot.velocity_limits` when None.
+                name, where the others keep that of the file; infinite for no limit; `robot.velocity_limits` when None.
             method: As for `pinik.solve`.
             limits, locked, max_iterations, engine: As for `pinik.solve`.
             tolerance: The errors that count as reached (metres, radians); 1e-6 m and 1e-5 rad when None, so that slow
@@ -126,24 +133,45 @@ class Tracker:
         native = self._prepared.native
         self._track: _native.Track | None = None if native is None else load().Track(native)
         self._walk = Walk(self._prepared.question) if native is None else None
-        self.status = TrackerStatus.OK
-        self.position_error: float | None = None
-        self.orientation_error: float | None = None
-        self.reset(Origin.of(robot, q0).q)
+        self._continuous = [joint for joint in robot.joints if joint.nq == 2 and joint.has_one_axis]
+        self.reset(q0)
 
     @property
     def q(self) -> Array:
         """The present configuration (nq,), as the last call or `reset` left it; a copy."""
         return self._q.copy()
 
-    def reset(self, q: ArrayLike) -> None:
-        """Go on from a configuration (nq,), such as a measured one; it is moved inside the limits.
+    @property
+    def angles(self) -> dict[str, float]:
+        """The present angles by joint name [rad or m]; continuous joints are unwound, from the angles of the start."""
+        return self.robot.angles(self._q) | self._turned
+
+    def reset(self, q: ArrayLike | Mapping[str, float] | None) -> None:
+        """Go on from another configuration, such as a measured one; it is moved inside the limits.
+
+        The status is OK afterwards, and there are no errors until the next tick.
+
+        Args:
+            q: The configuration (nq,); or angles by joint name, with all other joints neutral; neutral when None.
 
         Raises:
+            UnknownNameError: There is no such joint.
             InputError: `q` is not a configuration of the robot.
         """
-        limits = self._prepared.question.limits
-        self._q = limits.wrap(self.robot.check_configuration(q))
+        origin = Origin.of(self.robot, q, searches=False)
+        self._turned = dict(origin.turned)
+        self._keep(self._prepared.question.limits.wrap(origin.q))
+        self.status = TrackerStatus.OK
+        self.position_error: float | None = None
+        self.orientation_error: float | None = None
+
+    def _keep(self, q: Array) -> None:
+        """Set the present configuration, and unwind the continuous joints."""
+        self._q = q
+        for joint in self._continuous:
+            angle = joint.angle(q)
+            near = self._turned.get(joint.name, angle)
+            self._turned[joint.name] = angle + _TURN * round((near - angle) / _TURN)
 
     def __call__(self, target: Target | Sequence[Target] | pinocchio.SE3 | ArrayLike) -> Array:
         """Move towards the target within one tick.
@@ -165,8 +193,9 @@ class Tracker:
         came_to = self._track.tick_at(self._q, self._most, place)
         if came_to is None:  # the engine does not accept the target without conversion
             came_to = self._track.tick(self._q, self._most, goals_of(self._prepared.as_asked(target)))
-        self._q, reached, slowed, position, orientation = came_to
-        self._judge(reached, slowed)
+        q, reached, approaches, position, orientation = came_to
+        self._keep(q)
+        self._judge(reached, approaches)
         self.position_error = None if math.isnan(position) else position
         self.orientation_error = None if math.isnan(orientation) else orientation
         return self._q.copy()
@@ -175,16 +204,16 @@ class Tracker:
         """One tick of the Python engine."""
         assert self._walk is not None
         stride = self._walk.tick(asked, self._q, self._most)
-        self._q = stride.q.copy()
+        self._keep(stride.q.copy())
         errors = measure_errors(self.robot, asked, self._q, self._prepared.options.tolerance)
-        self._judge(all_within(errors, self._prepared.question), stride.slowed)
+        self._judge(all_within(errors, self._prepared.question), stride.approaches)
         self.position_error, self.orientation_error = largest_of(errors)
 
-    def _judge(self, reached: bool, slowed: bool) -> None:
+    def _judge(self, reached: bool, approaches: bool) -> None:
         if reached:
             self.status = TrackerStatus.OK
         else:
-            self.status = TrackerStatus.LIMITED if slowed else TrackerStatus.HELD
+            self.status = TrackerStatus.LIMITED if approaches else TrackerStatus.HELD
 
 
 def _velocities(robot: RobotModel, velocity: float | Mapping[str, float] | None) -> Array:
@@ -192,11 +221,16 @@ def _velocities(robot: RobotModel, velocity: float | Mapping[str, float] | None)
     if velocity is None:
         return np.array(robot.velocity_limits)
     if not isinstance(velocity, Mapping):
-        return np.full(len(robot.joint_names), as_positive_number(velocity, "velocity", "rad/s or m/s"))
+        return np.full(len(robot.joint_names), _speed(velocity, "velocity"))
     speeds = np.array(robot.velocity_limits)
     for name, speed in velocity.items():
         joint = robot.settable_joint(name)
         if not joint.has_one_axis:
             raise InputError(f"velocity: joint {name!r} must have one axis; it is {joint.kind}")
-        speeds[robot.joint_names.index(name)] = as_positive_number(speed, f"velocity of {name!r}", "rad/s or m/s")
+        speeds[robot.joint_names.index(name)] = _speed(speed, f"velocity of {name!r}")
     return speeds
+
+
+def _speed(value: object, what: str) -> float:
+    unlimited = isinstance(value, (float, np.floating)) and value == math.inf
+    return math.inf if unlimited else as_positive_number(value, what, "rad/s or m/s")

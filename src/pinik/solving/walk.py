@@ -12,7 +12,9 @@ from numpy.typing import NDArray
 
 from ..problem.kinematics import Kinematics
 from ..problem.reach import shortfall
-from ..problem.targets import NO_DIRECTION, Target
+from ..problem.targets import Target
+from ..solvers.base import Patience
+from .aims import between, present
 from .changes import JUMP_FLOOR, joint_change, largest_asked, largest_change
 from .question import Question
 from .run import TO_THE_END, Pace, run
@@ -39,14 +41,14 @@ class Stride(NamedTuple):
         q: The configuration that reaches the targets, or the nearest one found on this branch (nq,).
         iterations: Of all runs.
         restarts: The number of restarts.
-        slowed: Whether the largest changes of the joints in one tick were too small.
+        approaches: Whether the targets, missed in a tick, will be nearer after further ticks.
     """
 
     ended: Status
     q: Array
     iterations: int
     restarts: int
-    slowed: bool = False
+    approaches: bool = False
 
 
 class Walk:
@@ -82,8 +84,8 @@ class Walk:
         if self._is_near(plain, q) or plain.status is Status.TIME_LIMIT or exact:
             return self._stride(plain)
         if shortfall(targets, self.question.bounds, options.tolerance) is None:
-            crept = self._creep(targets, q, pace)
-            if crept is not None:
+            done, crept = self._creep(targets, q, pace)
+            if crept is not None and done >= 1.0:
                 return self._stride(crept)
         best = plain if plain.status is Status.CONVERGED else self._run(plain.q, self._last)
         if self._is_near(best, q) or best.status is Status.TIME_LIMIT:
@@ -93,8 +95,9 @@ class Walk:
     def tick(self, targets: tuple[Target, ...], q: Array, most: Array) -> Stride:
         """Move from `q` towards the targets within one tick, and never to another branch.
 
-        The first step of the method tells how fast the joints would have to be. If that is too fast, the frames go only
-        a part of the way. What is still too fast after the run is shortened, all joints by the same factor.
+        If a run reaches the targets without a jump, but needs more than one tick, the frames go straight towards them
+        as far as the joints' speeds allow, or the joints go towards that answer where the straight way does not lead
+        there. If a run does not reach them, the residual decreases in every tick. So the frames come to rest.
 
         Args:
             targets: The targets, of the question's kinds.
@@ -102,33 +105,79 @@ class Walk:
             most: The largest change of each joint within the tick, by tangent coordinate (nv,) [rad or m]; infinite
                 where there is none.
         """
-        question, options = self.question, self.question.options
         self._iterations, self._restarts = 0, 0
-        self._deadline = time.perf_counter() + options.time_limit
+        self._deadline = time.perf_counter() + self.question.options.time_limit
         self.kinematics.retarget(targets)
-        pace = Pace(min(options.iterations_at_most, TICK_ITERATIONS), options.method.patience, downhill=True)
+        plain = self._run(q, self._pace_of_a_tick)
+        assert plain.status is not None
+        near, ticks = not self.is_jump(q, plain.q), self._largest_excess(q, plain.q, most)
+        if near and ticks <= 1.0:
+            approaches = plain.status in (Status.MAX_ITERATIONS, Status.TIME_LIMIT)
+            return Stride(plain.status, plain.q, self._iterations, 0, approaches)
+        leads, before = near and plain.status is Status.CONVERGED, self._residual(q)
+        there, first = self._straight(targets, q, most, plain if near else None)
+        if leads:
+            if self._largest_excess(there, plain.q, most) > ticks - 0.5:
+                there = self._within(q, plain.q, most)
+        elif self._residual(there) >= before:
+            there = self._down(q, first, most, before)
+        least = TO_THE_END.progress
+        approaches = self._largest_excess(q, there, most) >= least or self._residual(there) <= (1.0 - least) * before
+        return Stride(plain.status, there, self._iterations, 0, approaches)
+
+    @property
+    def _pace_of_a_tick(self) -> Pace:
+        """The pace of a run in a tick: it stalls if half the iterations progress more slowly than the method should."""
+        options, patience = self.question.options, self.question.options.method.patience
+        iterations = min(options.iterations_at_most, TICK_ITERATIONS)
+        half = max(iterations // 2, 1)
+        progress = min(half / max(patience.iterations, 1), 1.0) * patience.progress
+        return Pace(iterations, Patience(half, progress), downhill=True)
+
+    def _residual(self, q: Array) -> float:
+        """The residual at `q`, where the targets pull inside wide tolerances too."""
+        self.kinematics.loose = False
+        return float(self.kinematics.linearize(q).residual)
+
+    def _straight(self, targets: tuple[Target, ...], q: Array, most: Array, plain: State | None) -> tuple[Array, Array]:
+        """(a place on the straight way of the frames, within the largest changes; the method's first step).
+
+        The first step says how much of the way to go. `plain` is the result of a run to the targets, if it is no jump.
+        """
+        question, aim, state = self.question, targets, plain
+        self.kinematics.loose = False
         at = self.kinematics.linearize(q)
-        first, _ = advance(question.solver, self.kinematics, question.limits, at, options.tolerance)
-        excess, aim = self._largest_excess(q, first, most), targets
+        first, _ = advance(question.solver, self.kinematics, question.limits, at, question.options.tolerance)
+        excess, pace = self._largest_excess(q, first, most), self._pace_of_a_tick
         if excess > 1.0:
-            aim = _between(self._present(targets, q), targets, 1.0 / excess)
+            aim = between(present(self.kinematics, targets, q), targets, 1.0 / excess)
             self.kinematics.retarget(aim)
-        state: State | None = self._run(q, pace)
-        assert state is not None
-        if self.is_jump(q, state.q):
-            state = self._creep(aim, q, pace)
-        there = q if state is None else state.q
-        beyond = self._largest_excess(q, there, most)
-        if beyond > 1.0:
-            there = self._shortened(q, there, 1.0 / beyond)
-        ended = Status.STALLED if state is None or state.status is None else state.status
-        return Stride(ended, there, self._iterations, 0, excess > 1.0 or beyond > 1.0)
+            state = self._run(q, pace)
+            state = None if self.is_jump(q, state.q) else state
+        if state is None:
+            _, state = self._creep(aim, q, pace)
+        self.kinematics.retarget(targets)
+        return (q if state is None else self._within(q, state.q, most)), first
+
+    def _down(self, q: Array, first: Array, most: Array, before: float) -> Array:
+        """A part of the first step after which the residual is below `before`; `q` if there is none."""
+        there = self._within(q, first, most)
+        for _ in range(CREEP_HALVINGS):
+            if self._residual(there) < before:
+                return there
+            there = self._shortened(q, there, 0.5)
+        return q
 
     def _largest_excess(self, before: Array, after: Array, most: Array) -> float:
         """The largest change of a joint with one axis, relative to the largest that is allowed."""
         joints = {coordinate.joint for coordinate in self.question.problem.coordinates}
         changes = [abs(joint_change(j, before, after)) / float(most[j.idx_v]) for j in joints if j.has_one_axis]
         return max(changes, default=0.0)
+
+    def _within(self, before: Array, after: Array, most: Array) -> Array:
+        """The configuration on the way from one to another where no change is larger than allowed."""
+        excess = self._largest_excess(before, after, most)
+        return self._shortened(before, after, 1.0 / excess) if excess > 1.0 else after
 
     def _shortened(self, before: Array, after: Array, part: float) -> Array:
         """The configuration at a part of the way between two, inside the limits."""
@@ -172,13 +221,17 @@ class Walk:
         change = largest_change(self.question.problem, before, after)
         return change > JUMP_FLOOR and change > largest_asked(self.kinematics, before)
 
-    def _creep(self, targets: tuple[Target, ...], q: Array, pace: Pace) -> State | None:
-        """Approach the targets in smaller steps, each half of the last if it fails; None if the smallest one fails."""
-        origins = self._present(targets, q)
+    def _creep(self, targets: tuple[Target, ...], q: Array, pace: Pace) -> tuple[float, State | None]:
+        """Approach the targets in smaller steps, each half of the last if it fails.
+
+        Returns:
+            The part of the way that was gone, and the state there; None if no step succeeded.
+        """
+        origins = present(self.kinematics, targets, q)
         done, step, state = 0.0, 0.5, None
         while done < 1.0 and step >= 0.5**CREEP_HALVINGS:
             part = min(done + step, 1.0)
-            self.kinematics.retarget(_between(origins, targets, part))
+            self.kinematics.retarget(between(origins, targets, part))
             tried = self._run(q if state is None else state.q, pace)
             if tried.status is Status.TIME_LIMIT:
                 break
@@ -187,7 +240,7 @@ class Walk:
             else:
                 step /= 2.0
         self.kinematics.retarget(targets)
-        return state if done >= 1.0 else None
+        return done, state
 
     def _elsewhere(self, q: Array, best: State, number: int) -> State | None:
         """The answer nearest to `q`, of the best one so far and those of the restarts; None if there is none."""
@@ -205,38 +258,3 @@ class Walk:
             elif state.status is Status.TIME_LIMIT:
                 break
         return min(answers, key=lambda state: largest_change(problem, q, state.q), default=None)
-
-    def _present(self, targets: tuple[Target, ...], q: Array) -> tuple[Target, ...]:
-        """Targets of the same kinds that the frames meet at `q`."""
-        kinematics = self.kinematics
-        pinocchio.forwardKinematics(kinematics.model, kinematics.data, q)
-        present = []
-        for rows, target in zip(kinematics.rows, targets, strict=True):
-            rows.update_placements()
-            p, R = rows.seen_from_reference()
-            axis = R[:, 0] if target.axis is None else R @ target.axis
-            at = p if target.at is None else p + axis * np.linalg.norm(target.at - p)
-            present.append(target.with_numbers(p.copy(), R.copy(), axis, at))
-        return tuple(present)
-
-
-def _between(origins: tuple[Target, ...], targets: tuple[Target, ...], part: float) -> tuple[Target, ...]:
-    """The targets at a part of the way: positions on a line, rotations about one axis, directions in a plane."""
-    return tuple(_one_between(origin, target, part) for origin, target in zip(origins, targets, strict=True))
-
-
-def _one_between(origin: Target, target: Target, part: float) -> Target:
-    def line(start: Array | None, end: Array | None) -> Array:
-        return np.zeros(3) if start is None or end is None else start + part * (end - start)
-
-    rotation = np.eye(3)
-    if origin.rotation is not None and target.rotation is not None:
-        whole = pinocchio.log3(target.rotation @ origin.rotation.T)
-        rotation = pinocchio.exp3(part * whole) @ origin.rotation
-    direction = line(origin.direction, target.direction)
-    length = float(np.linalg.norm(direction))
-    if target.direction is not None and length < NO_DIRECTION:  # the two directions are opposite
-        direction, length = target.direction, 1.0
-    return target.with_numbers(
-        line(origin.position, target.position), rotation, direction / (length or 1.0), line(origin.at, target.at)
-    )

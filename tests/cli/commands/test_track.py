@@ -147,7 +147,7 @@ def test_a_free_root_needs_json_lines(run):
         ("x,y,z,qx\n1,2,3,4\n", "stdin: line 1: the header must be x,y,z"),
         ("x,y,z,r,p,y\n1,2,3,4,5,6\n", "stdin: line 1: the header must be x,y,z"),
         ("x,y,z\n0.5,0.2,0\n\n0.5,0.2\n", "stdin: line 4: there must be 3 numbers, as in the header; got 2"),
-        ("x,y,z\n0.5,a,0\n", "stdin: line 2: 'a' is not a number"),
+        ("x,y,z\n0.5,a,0\n", "stdin: line 2: y must be a number; got 'a'"),
         ("x,y,z\n0.5,nan,0\n", "stdin: line 2: target 'tip': position"),
         ("x,y,z,t\n0.5,0.2,0,1\n0.5,0.2,0,1\n", "stdin: line 3: the times must increase; got 1 and then 1"),
         ("x,y,z,qx,qy,qz,qw\n0.5,0.2,0,0,0,0,0\n", "stdin: line 2: target 'tip': a quaternion must not be zero"),
@@ -155,7 +155,20 @@ def test_a_free_root_needs_json_lines(run):
         ('{"position": [0.5, 0.2, 0]}\n{"pos": 3}\n', "stdin: line 2: no target keyword 'pos'"),
         ('{"position": [0.5, 0.2, 0]}\n{nonsense\n', "stdin: line 2: not JSON"),
         ('{"position": [0.5, 0.2, 0]}\n{"frame": "base"}\n', "stdin: line 2"),
-        ('{"position": [0.5, 0.2, 0], "t": "now"}\n', "stdin: line 1: t must be a number of seconds"),
+        ('{"position": [0.5, 0.2, 0], "t": "now"}\n', 'stdin: line 1: t must be a finite number of seconds; got "now"'),
+        ('{"position": [0.5, 0.2, 0], "t": 1e400}\n', "stdin: line 1: t must be a finite number of seconds; got inf"),
+        ('{"position": [0.5, 0.2, 0], "t": NaN}\n', "stdin: line 1: t must be a finite number of seconds; got nan"),
+        (
+            '{"position": [0.5, 0.2, 0], "t": 1' + "0" * 400 + "}\n",
+            "stdin: line 1: t must be a finite number of seconds",
+        ),
+        ("x,y,z,t\n0.5,0.2,0,inf\n", "stdin: line 2: t must be a finite number of seconds; got inf"),
+        ("x,y,z,t\n0.5,0.2,0,\n", "stdin: line 2: t must be a number; only x, y and z may be empty"),
+        ("x,y,z\n,,\n", "stdin: line 2: target 'tip': position must have a coordinate that is not None"),
+        (
+            "x,y,z\n,,0\n0.1,,0\n",
+            "stdin: line 3: every line must ask for the same frames and the same kinds of targets",
+        ),
         ('{"position": [0.5, 0.2, 0], "t": 1}\n{"position": [0.5, 0.2, 0]}\n', "line 2: give the time t in every line"),
         ('{"position": [0.5, 0.2, 0], "frame": "tpi"}\n', "stdin: line 1: no frame 'tpi'"),
     ],
@@ -179,6 +192,9 @@ def test_places_need_a_frame(run):
         (("--format", "xml"), "--format must be csv or jsonl; got 'xml'"),
         (("--output", "/nowhere/angles.csv"), "no such folder"),
         (("--on-miss", "skip"), "no on_miss 'skip'"),
+        (("--output", "angles.json"), "--output angles.json must end in .csv, .jsonl or .ndjson; or give --format"),
+        (("--time-limit", "-1"), "--time-limit must be"),
+        (("--tolerance-box", "-1", "1", "1"), "--tolerance"),
     ],
 )
 def test_options_that_cannot_be_are_refused(run, words, message):
@@ -192,3 +208,55 @@ def test_the_same_path_in_python_gives_the_same_angles(run):
     track = pinik.track(robot, targets_in(CIRCLE), q0=robot.poses["default"])
     _, numbers = table(run(*PANDA).out)
     assert numbers[:, 1:] == pytest.approx(track.angles, abs=1e-12)
+
+
+def test_the_turns_of_a_start_are_kept(run):
+    robot = load_quietly("kinova")
+    wheel, frame = "j2s6s200_joint_1", "j2s6s200_end_effector"
+    others = {"j2s6s200_joint_2": 3.0, "j2s6s200_joint_3": 1.5, "j2s6s200_joint_5": 1.0}
+    x, y, z = robot.placement(frame, robot.configuration({wheel: 9.7} | others)).translation
+    words = [f"{name}={angle}" for name, angle in ({wheel: 9.6} | others).items()]
+    starts = [word for text in words for word in ("--start", text)]
+    result = run("track", "kinova", "-", "--frame", frame, *starts, stdin=f"x,y,z\n{x},{y},{z}\n")
+    titles, numbers = table(result.out)
+    assert numbers[0, titles.index(wheel)] == pytest.approx(9.65, abs=0.1)
+
+
+def test_an_empty_cell_leaves_an_axis_free(run):
+    robot = load_quietly("two_link")
+    result = run("track", "two_link", "-", "--frame", "tip", "--start", "joint2=1", stdin="x,y,z\n0.5,,\n0.51,,\n")
+    assert result.status == 0
+    titles, numbers = table(result.out)
+    found = [robot.placement("tip", robot.configuration(dict(zip(titles, row, strict=True)))) for row in numbers]
+    assert [place.translation[0] for place in found] == pytest.approx([0.5, 0.51], abs=1e-4)
+
+
+@pytest.mark.parametrize(("option", "value"), [("--tool", ("0", "0", "0.1")), ("--relative-to", ("upper",))])
+def test_a_target_that_names_its_frame_is_not_changed_by_options(run, option, value):
+    line = '{"frame": "tip", "position": [0.5, 0.2, 0]}\n'
+    result = run("track", "two_link", "-", "--frame", "tip", option, *value, stdin=line)
+    assert result.status == 2
+    assert f"stdin: line 1: the target names its frame; put {option} into it" in result.err
+
+
+def test_a_rounded_rotation_is_told_with_its_line(run):
+    turned = pinocchio.exp3(np.array([0.0, 0.0, 0.3])).round(4).tolist()
+    line = json.dumps({"position": [0.5, 0.2, 0.0], "rotation": turned})
+    result = run("track", "two_link", "-", "--frame", "tip", stdin=line + "\n")
+    assert "warning: stdin: line 1: target 'tip': rotation is replaced by the nearest rotation matrix" in result.err
+    assert ".py" not in result.err
+
+
+def test_the_tolerance_may_be_a_box_and_polish_may_be_left_out(run):
+    robot = load_quietly("panda")
+    exact = run(*PANDA)
+    rough = run(*PANDA, "--no-polish", "--tolerance-box", "0.002", "0.002", "0.002", "--time-limit", "10")
+    assert rough.status == 0
+
+    def errors(result):
+        titles, numbers = table(result.out)
+        ways = [robot.configuration(dict(zip(titles[1:], row[1:], strict=True))) for row in numbers]
+        return [judge(robot, target, q).position for target, q in zip(targets_in(CIRCLE), ways, strict=True)]
+
+    assert max(errors(exact)) < 1e-7
+    assert 1e-5 < max(errors(rough)) < 0.0035

@@ -7,7 +7,6 @@ from typing import Any
 
 from ...errors import InputError, PinikError
 from ...problem.targets import Target
-from ...problem.tolerance import Tolerance
 from ...robot import Robot
 from ...solvers.base import Solver
 from ...solving.front import solve as solve_targets
@@ -86,7 +85,7 @@ def solve(
         check_frames(machine, asked, targets)
     options: dict[str, Any] = {"restarts": restarts, "max_iterations": max_iterations, "time_limit": time_limit}
     options |= {
-        "tolerance": _tolerance(tolerance, tolerance_box),
+        "tolerance": given.tolerance_of(tolerance, tolerance_box),
         "seed": seed,
         "engine": engine,
         "limits": not no_limits,
@@ -99,11 +98,6 @@ def solve(
     solution = _solved(machine, asked, solver, method, options)
     _emit(solution, units, as_json)
     return ExitStatus.ANSWERED if solution.success else ExitStatus.MISSED
-
-
-def _tolerance(pair: tuple[float, float] | None, box: tuple[float, float, float] | None) -> Any:
-    """The tolerance, with the sides of a box in place of its metres."""
-    return pair if box is None else (box, pair[1] if pair else Tolerance().orientation)
 
 
 def _asked(frame: str | None, wanted: Mapping[str, Any], file: str | None) -> list[Target]:

@@ -10,7 +10,7 @@ import typer
 from ...errors import InputError
 from ...solving.track import track as follow
 from ..inputs import solve_options as given
-from ..inputs.assignments import configuration, solver_with
+from ..inputs.assignments import origin, solver_with
 from ..inputs.loading import load_robot
 from ..inputs.options import AsJson, Degrees, PackageDirs, RobotSource, Root
 from ..inputs.paths import read_path
@@ -26,10 +26,14 @@ PathFile = Annotated[
     str,
     typer.Argument(
         metavar="PATH",
-        help="A CSV file with the header x,y,z[,qx,qy,qz,qw | ,roll,pitch,yaw][,t], or JSON Lines with one target per "
-        "line (see docs/tracks.md); - is stdin.",
+        help="A CSV file with the header x,y,z[,qx,qy,qz,qw | ,roll,pitch,yaw][,t], where an empty x, y or z leaves "
+        "that axis free, or JSON Lines with one target per line (see docs/tracks.md); - is stdin.",
         show_default=False,
     ),
+]
+TimeLimit = Annotated[
+    float | None,
+    typer.Option("--time-limit", metavar="S", help="The most seconds for each point.", rich_help_panel="The solver"),
 ]
 OnMiss = Annotated[
     str,
@@ -61,10 +65,13 @@ def track(
     method: given.Method = "dls",
     param: given.MethodParameter = None,
     tolerance: given.Tolerances = None,
+    tolerance_box: given.ToleranceBox = None,
     max_iterations: given.MaxIterations = None,
+    time_limit: TimeLimit = None,
     restarts: given.Restarts = None,
     seed: given.Seed = 0,
     engine: given.Engine = "auto",
+    no_polish: given.NoPolish = False,
     start: given.Start = None,
     pose: given.StartPose = None,
     lock: given.Lock = None,
@@ -88,9 +95,17 @@ def track(
     solver = solver_with(method, param)
     machine = load_robot(robot, root=root, package_dirs=package_dir)
     points = read_path(path, frame, {"tool": tool, "relative_to": relative_to}, units, machine)
-    options: dict[str, Any] = {"restarts": restarts, "max_iterations": max_iterations, "tolerance": tolerance}
-    options |= {"seed": seed, "engine": engine, "limits": not no_limits, "locked": lock or (), "on_miss": on_miss}
-    options["q0"] = configuration(machine, pose, start, "--start", units, None if no_limits else "moved to the limit")
+    options: dict[str, Any] = {"restarts": restarts, "max_iterations": max_iterations, "time_limit": time_limit}
+    options |= {
+        "tolerance": given.tolerance_of(tolerance, tolerance_box),
+        "seed": seed,
+        "engine": engine,
+        "limits": not no_limits,
+        "locked": lock or (),
+        "polish": not no_polish,
+        "on_miss": on_miss,
+        "q0": origin(machine, pose, start, "--start", units, None if no_limits else "moved inside"),
+    }
     try:
         answer = follow(machine, points.targets, method=solver, times=points.times or None, **options)
     except InputError as error:

@@ -15,6 +15,7 @@ from ...problem.targets import Target
 from ...robot import Robot
 from ..terminal.exits import CommandError
 from ..terminal.units import Units
+from .targets import option_of, read_target
 
 __all__ = ["PathPoints", "read_path"]
 
@@ -75,10 +76,12 @@ def read_path(path: str, frame: str | None, common: Mapping[str, Any], units: Un
             raise CommandError(f"{where}: every line must ask for the same frames and the same kinds of targets")
         if points.targets and (time is None) == bool(points.times):
             raise CommandError(f"{where}: give the time t in every line or in none")
+        if time is not None and not abs(time) <= sys.float_info.max:
+            raise CommandError(f"{where}: t must be a finite number of seconds; got {str(time)[:60]}")
         if time is not None and points.times and not time > points.times[-1]:
             raise CommandError(f"{where}: the times must increase; got {points.times[-1]:g} and then {time:g}")
         points.targets.append(targets)
-        points.times += [] if time is None else [time]
+        points.times += [] if time is None else [float(time)]
         if len(points.targets) == 1:
             _check_frames(robot, targets, where)
     if not points.targets:
@@ -124,17 +127,18 @@ def _csv_points(lines: list[tuple[int, str]], given: _Given, label: str) -> Iter
         cells = next(csv.reader([line]))
         if len(cells) != len(names):
             raise CommandError(f"{where}: there must be {len(names)} numbers, as in the header; got {len(cells)}")
-        try:
-            values = {name: float(cell) for name, cell in zip(names, cells, strict=True)}
-        except ValueError:
-            wrong = next(cell for cell in cells if not _is_number(cell))
-            raise CommandError(f"{where}: {wrong.strip()!r} is not a number") from None
-        fields: dict[str, Any] = {"position": [values[name] for name in _POSITION]}
+        values = {name: _number(name, cell, where) for name, cell in zip(names, cells, strict=True) if cell.strip()}
+        for name in names:
+            if name not in values and name not in _POSITION:
+                raise CommandError(f"{where}: {name} must be a number; only x, y and z may be empty, to be free")
+        position = [values.get(name) for name in _POSITION]
+        free = all(coordinate is None for coordinate in position) and len(values) > ("t" in values)
+        fields: dict[str, Any] = {} if free else {"position": position}
         if "qx" in values:
             fields["quat_xyzw"] = [values[name] for name in _QUATERNION]
         elif "roll" in values:
             fields["rpy"] = [given.units.radians(values[name]) for name in _RPY]
-        yield number, (_target({"frame": given.frame, **given.common, **fields}, where),), values.get("t")
+        yield number, (read_target({"frame": given.frame, **given.common, **fields}, where),), values.get("t")
 
 
 def _check_header(names: list[str], where: str) -> None:
@@ -150,12 +154,11 @@ def _check_header(names: list[str], where: str) -> None:
         raise CommandError(f"{where}: {_HEADERS}; got {','.join(names)}")
 
 
-def _is_number(text: str) -> bool:
+def _number(name: str, cell: str, where: str) -> float:
     try:
-        float(text)
+        return float(cell)
     except ValueError:
-        return False
-    return True
+        raise CommandError(f"{where}: {name} must be a number; got {cell.strip()!r}") from None
 
 
 def _json_points(lines: list[tuple[int, str]], given: _Given, label: str) -> Iterator[_Point]:
@@ -166,27 +169,24 @@ def _json_points(lines: list[tuple[int, str]], given: _Given, label: str) -> Ite
         except (ValueError, RecursionError) as error:
             raise CommandError(f"{where}: not JSON: {error}") from None
         time = item.pop("t", None) if isinstance(item, dict) else None
-        if time is not None and not (isinstance(time, (int, float)) and not isinstance(time, bool)):
-            raise CommandError(f"{where}: t must be a number of seconds; got {time!r}")
+        if time is not None and (isinstance(time, bool) or not isinstance(time, (int, float))):
+            raise CommandError(f"{where}: t must be a finite number of seconds; got {json.dumps(time)[:60]}")
         items = item["targets"] if isinstance(item, dict) and set(item) == {"targets"} else item
         if not (isinstance(items, list) and items and all(isinstance(one, dict) for one in items)):
             items = [items]
-        yield number, tuple(_target(_with_frame(one, given, where), where) for one in items), time
+        yield number, tuple(read_target(_with_frame(one, given, where), where) for one in items), time
 
 
 def _with_frame(item: Any, given: _Given, where: str) -> Any:
     """A target's fields, from an object or from a bare position or placement."""
     if isinstance(item, list):
         item = {"placement" if item and isinstance(item[0], list) else "position": item}
-    if not isinstance(item, dict) or "frame" in item:
+    if not isinstance(item, dict):
+        return item
+    if "frame" in item:
+        for name in given.common:
+            raise CommandError(f"{where}: the target names its frame; put {option_of(name)} into it")
         return item
     if given.frame is None:
         raise CommandError(f"{where}: the target must name its frame, or --frame must be given")
     return {"frame": given.frame, **given.common, **item}
-
-
-def _target(fields: Any, where: str) -> Target:
-    try:
-        return Target.from_dict(fields)
-    except PinikError as error:
-        raise CommandError(f"{where}: {error}") from None

@@ -1,10 +1,12 @@
-"""The options of `pinik solve` alone, in the panels of its help."""
+"""The options of `pinik solve` and `pinik track`, in the panels of their help."""
 
 from __future__ import annotations
 
 from typing import Annotated, Any
 
 import typer
+
+from ...problem.tolerance import Tolerance
 
 __all__ = [
     "At",
@@ -33,6 +35,7 @@ __all__ = [
     "ToleranceBox",
     "Tolerances",
     "Tool",
+    "tolerance_of",
 ]
 
 Vector = tuple[float, float, float]
@@ -128,3 +131,8 @@ NoPolish = Annotated[
 NoLimits = Annotated[
     bool, typer.Option("--no-limits", help="Ignore the joint limits.", rich_help_panel="Start and limits")
 ]
+
+
+def tolerance_of(pair: tuple[float, float] | None, box: Vector | None) -> Any:
+    """The tolerance of `--tolerance`, with the sides of `--tolerance-box` in place of its metres."""
+    return pair if box is None else (box, pair[1] if pair else Tolerance().orientation)

@@ -1,4 +1,4 @@
-"""The targets of `pinik solve`: one from options, or several from a JSON file."""
+"""Targets from options, from a JSON file, or from the JSON form of one."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from ...robot import Robot
 from ..terminal import output
 from ..terminal.exits import CommandError
 
-__all__ = ["check_frames", "option_of", "read_position", "target_from_options", "targets_from_file"]
+__all__ = ["check_frames", "option_of", "read_position", "read_target", "target_from_options", "targets_from_file"]
 
 _MOST_BYTES = 16 * 1024 * 1024
 _MOST_TARGETS = 100
@@ -107,7 +107,7 @@ def targets_from_file(path: str) -> list[Target]:
     except (ValueError, RecursionError) as error:
         raise CommandError(f"{label}: not JSON: {error}") from None
     items = _items(document, label)
-    return [_target(item, f"{label}: target {index}") for index, item in enumerate(items)]
+    return [read_target(item, f"{label}: target {index}") for index, item in enumerate(items)]
 
 
 def check_frames(robot: Robot, targets: list[Target], path: str) -> None:
@@ -157,7 +157,12 @@ def _without_duplicates(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
     return fields
 
 
-def _target(item: Any, where: str) -> Target:
+def read_target(item: Any, where: str) -> Target:
+    """A target from its JSON form; warnings go to stderr and begin with `where`.
+
+    Raises:
+        CommandError: `Target.from_dict` refuses it.
+    """
     with warnings.catch_warnings(record=True) as given:
         warnings.simplefilter("always", InputWarning)
         try:

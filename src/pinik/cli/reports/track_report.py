@@ -18,16 +18,19 @@ from ..terminal.units import Units
 __all__ = ["FORMATS", "check_output", "emit_track"]
 
 FORMATS = ("csv", "jsonl")
+_FORMAT_OF = {"": "csv", ".csv": "csv", ".jsonl": "jsonl", ".ndjson": "jsonl"}
 
 
 def check_output(path: Path | None, form: str | None) -> str:
     """Return the format of the output, "csv" or "jsonl", and check that its file can be written.
 
     Raises:
-        CommandError: There is no such format, or no such folder.
+        CommandError: There is no such format or folder, or the ending of the file says no format.
     """
-    if form is None:
-        form = "jsonl" if path is not None and path.suffix.lower() in (".jsonl", ".ndjson") else "csv"
+    ending = "" if path is None else path.suffix.lower()
+    if form is None and ending not in _FORMAT_OF:
+        raise CommandError(f"--output {path} must end in .csv, .jsonl or .ndjson; or give --format csv or jsonl")
+    form = _FORMAT_OF[ending] if form is None else form
     if form not in FORMATS:
         raise CommandError(f"--format must be csv or jsonl; got {form!r}")
     if path is not None and (not path.parent.is_dir() or path.is_dir()):
