@@ -10,7 +10,8 @@ import pinocchio
 from numpy.typing import ArrayLike, NDArray
 
 from .model.robot_model import RobotModel
-from .problem.targets import Position, Target
+from .problem.target_values import Position
+from .problem.targets import Target
 from .problem.tolerance import Tolerance
 from .solvers.registry import Method
 from .solving import batch

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
@@ -11,22 +11,18 @@ import numpy as np
 import pinocchio
 from numpy.typing import ArrayLike, NDArray
 
-from ..checks import as_finite_number, as_length, as_point, as_rotation, as_se3, as_unit_vector, as_vector
+from ..checks import as_finite_number, as_point, as_se3, as_unit_vector
 from ..errors import InputError, UnknownNameError
+from .target_values import Position, as_axis, as_position, as_tool, check_combination, named, rotation_of
 from .tolerance import Tolerance
 
-__all__ = ["NO_DIRECTION", "TARGET_KEYWORDS", "Position", "Target", "as_position", "as_targets"]
+__all__ = ["NO_DIRECTION", "TARGET_KEYWORDS", "Target", "as_targets"]
 
 Array = NDArray[np.float64]
-
-Position = ArrayLike | Sequence[float | None]
-"""A position (3,), with None for axes that are free."""
 
 NO_DIRECTION = 1e-9
 """[m] A frame nearer than this to the point that it should look at counts as looking at it."""
 _LIGHTEST, _HEAVIEST = 1e-3, 1e3
-_NAMED_AXES = {"x": (1.0, 0.0, 0.0), "y": (0.0, 1.0, 0.0), "z": (0.0, 0.0, 1.0)}
-_NAMED_AXES |= {f"-{name}": (-x, -y, -z) for name, (x, y, z) in list(_NAMED_AXES.items())}
 
 
 @dataclass(frozen=True, eq=False, init=False)
@@ -106,8 +102,8 @@ class Target:
         Warns:
             InputWarning: An entry of a rotation matrix was changed by more than 1e-6.
         """
-        what = _named(frame, relative_to)
-        _check_combination(what, position, rotation, rpy, quat_xyzw, quat_wxyz, placement, axis, direction, at)
+        what = named(frame, relative_to)
+        check_combination(what, position, rotation, rpy, quat_xyzw, quat_wxyz, placement, axis, direction, at)
         if not _LIGHTEST <= as_finite_number(weight, f"{what}weight") <= _HEAVIEST:
             raise InputError(
                 f"{what}weight must be a number from {_LIGHTEST:g} to {_HEAVIEST:g}; got {weight!r}; "
@@ -119,14 +115,14 @@ class Target:
         self._keep(
             frame=frame,
             position=None if position is None else as_position(position, f"{what}position"),
-            rotation=_rotation(what, rotation, rpy, quat_xyzw, quat_wxyz),
-            axis=None if axis is None else _axis(axis, f"{what}axis"),
+            rotation=rotation_of(what, rotation, rpy, quat_xyzw, quat_wxyz),
+            axis=None if axis is None else as_axis(axis, f"{what}axis"),
             direction=None if direction is None else as_unit_vector(direction, f"{what}direction"),
             at=None if at is None else as_point(at, f"{what}at"),
             relative_to=relative_to,
             weight=float(weight),
             tolerance=None if tolerance is None else Tolerance.of(tolerance, f"{what}tolerance"),
-            _tool=None if tool is None else _tool(tool, f"{what}tool"),
+            _tool=None if tool is None else as_tool(tool, f"{what}tool"),
         )
 
     def _keep(self, **fields: Any) -> None:
@@ -305,73 +301,6 @@ def _restored(fields: dict[str, Any]) -> Target:
     return target
 
 
-def _named(frame: object, relative_to: object) -> str:
-    """How errors begin that are about a target, once its frames are names."""
-    if not isinstance(frame, str):
-        raise InputError(f"a target's frame must be a name; got {frame!r}")
-    if not isinstance(relative_to, (str, type(None))):
-        raise InputError(f"target {frame!r}: relative_to must be the name of a frame; got {relative_to!r}")
-    return f"target {frame!r}: "
-
-
-def _check_combination(
-    what: str, position: object, rotation: object, rpy: object, quat_xyzw: object, quat_wxyz: object,
-    placement: object, axis: object, direction: object, at: object,
-) -> None:  # fmt: skip
-    """See that the keywords ask for something, and nothing twice."""
-    orientations = {
-        "rotation": rotation, "rpy": rpy, "quat_xyzw": quat_xyzw, "quat_wxyz": quat_wxyz,
-        "placement": placement, "axis": axis,
-    }  # fmt: skip
-    given = [name for name, value in orientations.items() if value is not None]
-    if len(given) > 1:
-        raise InputError(f"{what}give the orientation once; got {' and '.join(given)}")
-    if (axis is None) != (direction is None and at is None):
-        raise InputError(f"{what}axis= needs direction= or at=, and these need axis=")
-    if direction is not None and at is not None:
-        raise InputError(f"{what}give direction= or at=, not both")
-    if placement is not None and position is not None:
-        raise InputError(f"{what}placement gives the position already; leave out position=")
-    if position is None and not given:
-        raise InputError(f"{what}nothing is asked for; give position=, an orientation, or placement=")
-
-
-def _rotation(
-    what: str,
-    rotation: ArrayLike | None,
-    rpy: ArrayLike | None,
-    quat_xyzw: ArrayLike | None,
-    quat_wxyz: ArrayLike | None,
-) -> Array | None:
-    if rotation is not None:
-        return as_rotation(rotation, f"{what}rotation")
-    if rpy is not None:
-        return np.array(pinocchio.rpy.rpyToMatrix(as_vector(rpy, 3, f"{what}rpy", "roll, pitch, yaw in radians")))
-    if quat_xyzw is None and quat_wxyz is None:
-        return None
-    if quat_xyzw is not None:
-        x, y, z, w = as_vector(quat_xyzw, 4, f"{what}quat_xyzw")
-    else:
-        assert quat_wxyz is not None
-        w, x, y, z = as_vector(quat_wxyz, 4, f"{what}quat_wxyz")
-    quaternion = np.array([x, y, z, w])
-    largest = np.abs(quaternion).max()
-    if largest < 1e-9:
-        raise InputError(f"{what}a quaternion must not be zero; got {quaternion.tolist()} (x, y, z, w)")
-    quaternion = quaternion / largest  # first, so that no square overflows
-    return np.array(pinocchio.Quaternion(quaternion / np.linalg.norm(quaternion)).toRotationMatrix())
-
-
-def as_position(position: Position, what: str) -> Array:
-    """A point (3,) [m], with NaN for coordinates of None."""
-    parts = position.tolist() if isinstance(position, np.ndarray) and position.dtype == object else position
-    if not isinstance(parts, (list, tuple)) or len(parts) != 3 or not any(part is None for part in parts):
-        return as_point(position, what)  # type: ignore[arg-type]
-    if all(part is None for part in parts):
-        raise InputError("must have a coordinate that is not None; leave it out to leave all axes free", argument=what)
-    return np.array([np.nan if part is None else as_length(part, f"{what}[{k}]") for k, part in enumerate(parts)])
-
-
 def _known(numbers: Array) -> list[float | None]:
     """The numbers one by one, with None for NaN and 0 for −0, so that they can be compared."""
     return [x + 0.0 if x == x else None for x in numbers.ravel().tolist()]
@@ -380,17 +309,3 @@ def _known(numbers: Array) -> list[float | None]:
 def _jsonable(numbers: Array) -> list[Any]:
     """Nested lists of the numbers; None for NaN."""
     return _known(numbers) if numbers.ndim == 1 else numbers.tolist()
-
-
-def _axis(axis: str | ArrayLike, what: str) -> Array:
-    if isinstance(axis, str):
-        if axis not in _NAMED_AXES:
-            raise InputError(f"{what} must be one of {', '.join(_NAMED_AXES)} or three numbers; got {axis!r}")
-        return np.array(_NAMED_AXES[axis])
-    return as_unit_vector(axis, what)
-
-
-def _tool(tool: pinocchio.SE3 | ArrayLike, what: str) -> pinocchio.SE3:
-    if isinstance(tool, (list, tuple, np.ndarray)) and len(tool) == 3:
-        return pinocchio.SE3(np.eye(3), as_point(tool, what))
-    return as_se3(tool, what)

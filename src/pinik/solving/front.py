@@ -13,7 +13,8 @@ from numpy.typing import ArrayLike
 from ..errors import InputError
 from ..model.robot_model import RobotModel
 from ..problem.kinematics import Kinematics
-from ..problem.targets import Position, Target
+from ..problem.target_values import Position
+from ..problem.targets import Target
 from ..problem.tolerance import Tolerance
 from ..solvers.registry import Method
 from .kept import Kept, Key, kept_of

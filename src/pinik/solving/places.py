@@ -11,7 +11,8 @@ from numpy.typing import NDArray
 
 from ..checks import as_array, as_many, as_numbers, as_points, as_rotations, as_se3
 from ..errors import InputError
-from ..problem.targets import Target, as_position, as_targets
+from ..problem.target_values import as_position
+from ..problem.targets import Target, as_targets
 from .native.codec import goals_of, read_places
 
 __all__ = ["read_questions"]

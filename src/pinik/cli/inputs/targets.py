@@ -11,7 +11,8 @@ from typing import Any
 
 from ...checks import as_point, as_unit_vector, as_vector
 from ...errors import InputWarning, PinikError
-from ...problem.targets import Target, as_position
+from ...problem.target_values import as_position
+from ...problem.targets import Target
 from ...robot import Robot
 from ..terminal import output
 from ..terminal.exits import CommandError
