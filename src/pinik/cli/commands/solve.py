@@ -70,7 +70,7 @@ def solve(
     """
     units = Units(degrees)
     rpy = rpy and tuple(map(units.radians, rpy))  # type: ignore[assignment]
-    wanted = {"position": read_position(position), "rpy": rpy, "quat_xyzw": quat_xyzw}
+    wanted: dict[str, Any] = {"position": read_position(position), "rpy": rpy, "quat_xyzw": quat_xyzw}
     wanted |= {"axis": axis, "direction": direction, "at": at, "tool": tool, "relative_to": relative_to}
     asked = _asked(frame, wanted, targets)
     solver = solver_with(method, param)
