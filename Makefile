@@ -40,7 +40,9 @@ sanitize: $(VENV)/installed-dev $(sanitized)/built
 	@LD_PRELOAD="$$($(CXX) -print-file-name=libasan.so) $$($(CXX) -print-file-name=libstdc++.so)" \
 		ASAN_OPTIONS=detect_leaks=0 UBSAN_OPTIONS=print_stacktrace=1 \
 		PINIK_REQUIRE_NATIVE=1 PINIK_SANITIZED_ENGINE="$$(echo $(sanitized)/pinik/_native*.so)" \
-		$(python) -m pytest tests/solving/test_native.py tests/solving/test_native_equivalence.py --capture=sys --timeout=3600
+		PYTHONPATH=tests $(python) -m pytest -p sanitized_engine --capture=sys --timeout=3600 \
+		tests/solving/test_native.py tests/solving/test_native_equivalence.py tests/solving/test_recalling.py \
+		tests/solving/test_track.py tests/solving/test_tracker.py tests/solving/test_batch.py
 
 bench: $(VENV)/installed-dev
 	@$(python) -m pytest benchmarks --benchmark-enable --benchmark-only

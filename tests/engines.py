@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-import importlib.util
 import itertools
 import os
-import sys
 from collections.abc import Callable, Sequence
 
 import numpy as np
@@ -21,20 +19,8 @@ Array = NDArray[np.float64]
 Step = Callable[..., Array]
 
 
-def use_module(path: str) -> None:
-    """Use the compiled engine at this path instead of the installed one."""
-    spec = importlib.util.spec_from_file_location("pinik._native", path)
-    assert spec is not None
-    assert spec.loader is not None
-    module = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(module)
-    sys.modules["pinik._native"] = module
-
-
 SANITIZED = os.environ.get("PINIK_SANITIZED_ENGINE")
-"""The path of an engine that was built with sanitizers; `make sanitize` sets it."""
-if SANITIZED:
-    use_module(SANITIZED)
+"""The path of an engine that was built with sanitizers; `make sanitize` sets it, and `sanitized_engine` loads it."""
 WHY_NOT = why_not()
 REQUIRED = bool(os.environ.get("PINIK_REQUIRE_NATIVE"))
 needs_native = pytest.mark.skipif(WHY_NOT is not None and not REQUIRED, reason=f"no compiled engine: {WHY_NOT}")
