@@ -11,7 +11,7 @@ from ..model.joint import Joint
 from ..problem.kinematics import Kinematics, Linearization
 from ..problem.problem import Problem
 
-__all__ = ["asked_step", "joint_change", "largest_asked", "largest_change"]
+__all__ = ["asked_step", "is_jump", "joint_change", "largest_change"]
 
 Array = NDArray[np.float64]
 
@@ -75,6 +75,12 @@ def largest_asked(kinematics: Kinematics, q: Array) -> float:
         part = abs(float(step[coordinate.joint.idx_v + coordinate.index]))
         largest = max(largest, part / problem.size_of_chain if coordinate.slides else part)
     return JUMP_FLOOR + JUMP_FACTOR * largest
+
+
+def is_jump(kinematics: Kinematics, before: Array, after: Array) -> bool:
+    """Whether joints change far more than the motion of the present targets asks for (see `largest_asked`)."""
+    change = largest_change(kinematics.problem, before, after)
+    return change > JUMP_FLOOR and change > largest_asked(kinematics, before)
 
 
 def _turn(before: Array, after: Array) -> float:

@@ -12,7 +12,7 @@ import pinocchio
 from numpy.typing import NDArray
 
 from ..problem.kinematics import Kinematics
-from .changes import JUMP_FLOOR, asked_step, joint_change, largest_asked, largest_change
+from .changes import JUMP_FLOOR, asked_step, is_jump, joint_change
 from .native.codec import targets_of
 from .question import Question
 
@@ -110,8 +110,7 @@ def find_jumps(question: Question, goals: Array, q: Array, angles: Array, restar
     for index in suspects:
         before, after = q[index - 1], q[index]
         judge.kinematics.retarget(targets_of(problem.targets, goals[index]))
-        change = largest_change(problem, before, after)
-        if change > JUMP_FLOOR and change > largest_asked(judge.kinematics, before):
+        if is_jump(judge.kinematics, before, after):
             jumps.append(judge.jump(index, before, after, bool(restarts[index])))
     return jumps
 

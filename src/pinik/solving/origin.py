@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from ..errors import InputError
 from ..model.robot_model import RobotModel
 
-__all__ = ["Origin", "is_nearest", "unwound", "unwound_rows"]
+__all__ = ["Origin", "is_nearest", "turned_near", "unwound", "unwound_rows"]
 
 Array = NDArray[np.float64]
 
@@ -81,8 +81,13 @@ def unwound(robot: RobotModel, q: Array, start: Array, turned: Mapping[str, floa
     for joint in robot.joints:
         if joint.nq == 2 and joint.has_one_axis:
             near = turned.get(joint.name, joint.angle(start))
-            angles[joint.name] += _TURN * round((near - angles[joint.name]) / _TURN)
+            angles[joint.name] = turned_near(angles[joint.name], near)
     return angles
+
+
+def turned_near(angle: float, near: float) -> float:
+    """An angle, turned by whole turns to be as near to `near` as possible [rad]."""
+    return angle + _TURN * round((near - angle) / _TURN)
 
 
 def unwound_rows(robot: RobotModel, q: Array, starts: Array, turned: Mapping[str, float] = _NONE) -> Array:

@@ -20,7 +20,7 @@ from ..solvers.registry import Method
 from .native.codec import goals_of
 from .native.module import load
 from .options import OPTION_NAMES, Options
-from .origin import Origin
+from .origin import Origin, turned_near
 from .path import careful
 from .prepared import Prepared
 from .verdict import all_within, measure_errors
@@ -38,7 +38,6 @@ _MISSING = ("trace", "restarts", "seed", "polish", "choose", "choose_weights")
 _KEYWORDS = ("q0", "rate", "velocity", *(name for name in OPTION_NAMES if name not in _MISSING))
 
 _TOLERANCE = Tolerance(1e-6, 1e-5)
-_TURN = 2.0 * math.pi
 
 
 class TrackerStatus(Enum):
@@ -170,8 +169,7 @@ class Tracker:
         self._q = q
         for joint in self._continuous:
             angle = joint.angle(q)
-            near = self._turned.get(joint.name, angle)
-            self._turned[joint.name] = angle + _TURN * round((near - angle) / _TURN)
+            self._turned[joint.name] = turned_near(angle, self._turned.get(joint.name, angle))
 
     def __call__(self, target: Target | Sequence[Target] | pinocchio.SE3 | ArrayLike) -> Array:
         """Move towards the target within one tick.

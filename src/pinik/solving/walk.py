@@ -15,7 +15,7 @@ from ..problem.reach import shortfall
 from ..problem.targets import Target
 from ..solvers.base import Patience
 from .aims import between, present
-from .changes import JUMP_FLOOR, joint_change, largest_asked, largest_change
+from .changes import is_jump, joint_change, largest_change
 from .question import Question
 from .run import TO_THE_END, Pace, run
 from .starts import Starts
@@ -110,7 +110,7 @@ class Walk:
         self.kinematics.retarget(targets)
         plain = self._run(q, self._pace_of_a_tick)
         assert plain.status is not None
-        near, ticks = not self.is_jump(q, plain.q), self._largest_excess(q, plain.q, most)
+        near, ticks = not is_jump(self.kinematics, q, plain.q), self._largest_excess(q, plain.q, most)
         if near and ticks <= 1.0:
             approaches = plain.status in (Status.MAX_ITERATIONS, Status.TIME_LIMIT)
             return Stride(plain.status, plain.q, self._iterations, 0, approaches)
@@ -153,7 +153,7 @@ class Walk:
             aim = between(present(self.kinematics, targets, q), targets, 1.0 / excess)
             self.kinematics.retarget(aim)
             state = self._run(q, pace)
-            state = None if self.is_jump(q, state.q) else state
+            state = None if is_jump(self.kinematics, q, state.q) else state
         if state is None:
             _, state = self._creep(aim, q, pace)
         self.kinematics.retarget(targets)
@@ -214,12 +214,7 @@ class Walk:
 
     def _is_near(self, state: State, q: Array) -> bool:
         """Whether a run reached its targets without a jump away from `q`."""
-        return state.status is Status.CONVERGED and not self.is_jump(q, state.q)
-
-    def is_jump(self, before: Array, after: Array) -> bool:
-        """Whether joints change far more than the motion of the present targets asks for (see `largest_asked`)."""
-        change = largest_change(self.question.problem, before, after)
-        return change > JUMP_FLOOR and change > largest_asked(self.kinematics, before)
+        return state.status is Status.CONVERGED and not is_jump(self.kinematics, q, state.q)
 
     def _creep(self, targets: tuple[Target, ...], q: Array, pace: Pace) -> tuple[float, State | None]:
         """Approach the targets in smaller steps, each half of the last if it fails.
@@ -253,7 +248,7 @@ class Walk:
             state = self._run(self._starts.next(q, target=number, number=attempt), pace)
             if state.status is Status.CONVERGED:
                 answers.append(state._replace(q=self.question.limits.wrap(state.q, q)))
-                if not self.is_jump(q, answers[-1].q):
+                if not is_jump(self.kinematics, q, answers[-1].q):
                     break
             elif state.status is Status.TIME_LIMIT:
                 break

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
-from ...errors import InputError, PinikError
+from ...errors import PinikError
 from ...problem.targets import Target
 from ...robot import Robot
 from ...solvers.base import Solver
@@ -15,7 +15,14 @@ from ..inputs import solve_options as given
 from ..inputs.assignments import numbers_by_joint, origin, solver_with
 from ..inputs.loading import load_robot
 from ..inputs.options import AsJson, Degrees, PackageDirs, RobotSource, Root
-from ..inputs.targets import check_frames, option_of, read_position, target_from_options, targets_from_file
+from ..inputs.targets import (
+    check_frames,
+    named_by_option,
+    option_of,
+    read_position,
+    target_from_options,
+    targets_from_file,
+)
 from ..reports.solution_report import emit_solution
 from ..terminal import output
 from ..terminal.exits import CommandError, ExitStatus, in_words
@@ -107,12 +114,9 @@ def _asked(frame: str | None, wanted: Mapping[str, Any], file: str | None) -> li
 def _solved(robot: Robot, asked: list[Target], solver: Solver, method: str, options: Mapping[str, Any]) -> Solution:
     """`pinik.solve`; its errors name the option, and a failure inside the user's own solver becomes one sentence."""
     try:
-        return solve_targets(robot, asked, solver, **options)
-    except InputError as error:
-        if error.argument is None or error.argument not in options:
-            raise
-        raise CommandError(f"{option_of(error.argument)} {error.requirement}") from None
-    except PinikError:
+        with named_by_option(options):
+            return solve_targets(robot, asked, solver, **options)
+    except (PinikError, CommandError):
         raise
     except (Exception, SystemExit) as error:
         if type(solver).__module__.startswith("pinik."):

@@ -7,17 +7,16 @@ from typing import Annotated, Any
 
 import typer
 
-from ...errors import InputError
 from ...solving.track import track as follow
 from ..inputs import solve_options as given
 from ..inputs.assignments import origin, solver_with
 from ..inputs.loading import load_robot
 from ..inputs.options import AsJson, Degrees, PackageDirs, RobotSource, Root
 from ..inputs.paths import read_path
-from ..inputs.targets import option_of
+from ..inputs.targets import named_by_option
 from ..reports.track_report import check_output, emit_track
 from ..terminal import output
-from ..terminal.exits import CommandError, ExitStatus
+from ..terminal.exits import ExitStatus
 from ..terminal.units import Units
 
 __all__ = ["track"]
@@ -106,12 +105,8 @@ def track(
         "on_miss": on_miss,
         "q0": origin(machine, pose, start, "--start", units, None if no_limits else "moved inside"),
     }
-    try:
+    with named_by_option(options):
         answer = follow(machine, points.targets, method=solver, times=points.times or None, **options)
-    except InputError as error:
-        if error.argument is None or error.argument not in options:
-            raise
-        raise CommandError(f"{option_of(error.argument)} {error.requirement}") from None
     if as_json:
         output.emit_json(answer.to_dict())
     if to_file is not None or not as_json:

@@ -7,7 +7,6 @@ import json
 import sys
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
-from pathlib import Path
 from typing import Any
 
 from ...errors import PinikError
@@ -15,6 +14,7 @@ from ...problem.targets import Target
 from ...robot import Robot
 from ..terminal.exits import CommandError
 from ..terminal.units import Units
+from .files import label_of, read_bytes
 from .targets import option_of, read_target
 
 __all__ = ["PathPoints", "read_path"]
@@ -63,7 +63,7 @@ def read_path(path: str, frame: str | None, common: Mapping[str, Any], units: Un
     Raises:
         CommandError: The file is unreadable, or a line is faulty; the message names file and line.
     """
-    label = "stdin" if path == "-" else path
+    label = label_of(path)
     lines = [(number, line) for number, line in enumerate(_text(path, label).splitlines(), start=1) if line.strip()]
     if not lines:
         raise CommandError(f"{label}: there are no points")
@@ -91,16 +91,7 @@ def read_path(path: str, frame: str | None, common: Mapping[str, Any], units: Un
 
 def _text(path: str, label: str) -> str:
     try:
-        if path == "-":
-            data = sys.stdin.buffer.read(_MOST_BYTES + 1)
-        else:
-            with open(Path(path).expanduser(), "rb") as file:
-                data = file.read(_MOST_BYTES + 1)
-        if len(data) > _MOST_BYTES:
-            raise CommandError(f"{label}: a path must not be larger than {_MOST_BYTES // 1024**2} MB")
-        return data.decode("utf-8-sig")
-    except OSError as error:
-        raise CommandError(f"{label}: cannot read the file: {error.strerror or error}") from None
+        return read_bytes(path, _MOST_BYTES, "a path").decode("utf-8-sig")
     except UnicodeDecodeError as error:
         raise CommandError(f"{label}: not UTF-8: {error.reason} at byte {error.start}") from None
 

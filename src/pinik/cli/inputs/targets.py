@@ -3,21 +3,29 @@
 from __future__ import annotations
 
 import json
-import sys
 import warnings
-from collections.abc import Callable, Mapping, Sequence
-from pathlib import Path
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from typing import Any
 
 from ...checks import as_point, as_unit_vector, as_vector
-from ...errors import InputWarning, PinikError
+from ...errors import InputError, InputWarning, PinikError
 from ...problem.target_values import as_position
 from ...problem.targets import Target
 from ...robot import Robot
 from ..terminal import output
 from ..terminal.exits import CommandError
+from .files import label_of, read_bytes
 
-__all__ = ["check_frames", "option_of", "read_position", "read_target", "target_from_options", "targets_from_file"]
+__all__ = [
+    "check_frames",
+    "named_by_option",
+    "option_of",
+    "read_position",
+    "read_target",
+    "target_from_options",
+    "targets_from_file",
+]
 
 _MOST_BYTES = 16 * 1024 * 1024
 _MOST_TARGETS = 100
@@ -86,6 +94,21 @@ def option_of(keyword: str) -> str:
     return "--" + keyword.replace("_", "-")
 
 
+@contextmanager
+def named_by_option(options: Mapping[str, Any]) -> Iterator[None]:
+    """Let the library's errors about these keywords name the option instead.
+
+    Raises:
+        CommandError: In place of an InputError about one of the keywords.
+    """
+    try:
+        yield
+    except InputError as error:
+        if error.argument is None or error.argument not in options:
+            raise
+        raise CommandError(f"{option_of(error.argument)} {error.requirement}") from None
+
+
 def targets_from_file(path: str) -> list[Target]:
     """The targets in a JSON file; "-" is stdin.
 
@@ -93,18 +116,10 @@ def targets_from_file(path: str) -> list[Target]:
         CommandError: The file is unreadable or not JSON, or `Target.from_dict` refuses a target; the message names
             file, index and key.
     """
-    label = _label(path)
+    label = label_of(path)
+    data = read_bytes(path, _MOST_BYTES, "a file of targets")
     try:
-        if path == "-":
-            data = sys.stdin.buffer.read(_MOST_BYTES + 1)
-        else:
-            with open(Path(path).expanduser(), "rb") as file:
-                data = file.read(_MOST_BYTES + 1)
-        if len(data) > _MOST_BYTES:
-            raise CommandError(f"{label}: a file of targets must not be larger than {_MOST_BYTES // 1024**2} MB")
         document = json.loads(data.decode("utf-8-sig"), object_pairs_hook=_without_duplicates)
-    except OSError as error:
-        raise CommandError(f"{label}: cannot read the file: {error.strerror or error}") from None
     except (ValueError, RecursionError) as error:
         raise CommandError(f"{label}: not JSON: {error}") from None
     items = _items(document, label)
@@ -123,11 +138,7 @@ def check_frames(robot: Robot, targets: list[Target], path: str) -> None:
                 if frame is not None:
                     robot.frame_id(frame)
             except PinikError as error:
-                raise CommandError(f"{_label(path)}: target {index}: {key}: {error}") from None
-
-
-def _label(path: str) -> str:
-    return "stdin" if path == "-" else path
+                raise CommandError(f"{label_of(path)}: target {index}: {key}: {error}") from None
 
 
 def _items(document: Any, label: str) -> list[Any]:

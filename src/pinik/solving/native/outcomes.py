@@ -43,19 +43,18 @@ def _numbered() -> NDArray[np.object_]:
 
 def attempt_many(engine: Engine, goals: Array, starts: Array, nearest: bool, threads: int) -> Outcomes:
     """Solve for goals (N, n, 18) from starts (N or 1, nq). The number of a question seeds its restarts."""
-    q, status, position, orientation, iterations, updates, restarts, chosen_from, seconds = engine.solve_many(
-        starts, goals, nearest, threads
-    )
-    return Outcomes(q, _numbered()[status], position, orientation, iterations, updates, restarts, chosen_from, seconds)
+    return _outcomes(*engine.solve_many(starts, goals, nearest, threads))
 
 
 def follow(engine: Engine, goals: Array, start: Array, on_miss: str) -> Outcomes:
     """Follow a path of goals (N, n, 18) from a start (nq,); fewer than N outcomes if the path stops at a miss."""
     module = load()
-    q, status, position, orientation, iterations, updates, restarts, chosen_from, seconds = module.Track(engine).follow(
-        start, goals, module.OnMiss[on_miss]
-    )
-    return Outcomes(q, _numbered()[status], position, orientation, iterations, updates, restarts, chosen_from, seconds)
+    return _outcomes(*module.Track(engine).follow(start, goals, module.OnMiss[on_miss]))
+
+
+def _outcomes(q: Array, status: NDArray[np.int32], *columns: Any) -> Outcomes:
+    """The engine's columns, in the order of the fields of `Outcomes`."""
+    return Outcomes(q, _numbered()[status], *columns)
 
 
 class NativeOutcome:
