@@ -9,7 +9,8 @@ import pytest
 
 import pinik
 from pinik.checks import as_count, as_point, as_positive_number
-from pinik.errors import Flaw, near_names
+from pinik.description.flaw import Edit, Flaw
+from pinik.errors import near_names
 from urdf_texts import joint, link, robot
 
 KEYWORDS = ("max_step", "max_residual", "max_iterations", "position", "rotation", "restarts", "damping")
@@ -94,13 +95,22 @@ def test_an_unknown_name_comes_with_advice(valid, words):
 
 
 def test_a_flaw_is_a_sentence_that_knows_its_parts():
-    flaw = Flaw("link 'a: b'", "there is no mesh 'c'", common="a mesh is missing", mesh="c")
+    edit = Edit(3, 4, "d")
+    flaw = Flaw(
+        "link 'a: b'", "there is no mesh 'c'", code="missing-mesh", line=7, common="a mesh is missing",
+        why="it cannot be drawn", mend="give its address", edits=[edit], mesh="c",
+    )  # fmt: skip
     for one in (flaw, pickle.loads(pickle.dumps(flaw)), copy.deepcopy(flaw)):
-        assert one == "link 'a: b': there is no mesh 'c'"
-        assert (one.element, one.cause, one.common, one.mesh) == (
-            "link 'a: b'", "there is no mesh 'c'", "a mesh is missing", "c",
-        )  # fmt: skip
-    assert Flaw("link 'a'", "why").common == "why"
+        assert one == "link 'a: b': there is no mesh 'c' (line 7)"
+        assert (one.element, one.cause, one.code, one.line) == (
+            "link 'a: b'",
+            "there is no mesh 'c'",
+            "missing-mesh",
+            7,
+        )
+        assert (one.common, one.mesh) == ("a mesh is missing", "c")
+        assert (one.why, one.mend, one.edits) == ("it cannot be drawn", "give its address", (edit,))
+    assert Flaw("link 'a'", "why", code="odd").common == "why"
 
 
 def test_warnings_of_a_robot_are_sentences_with_elements():

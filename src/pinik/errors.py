@@ -9,7 +9,6 @@ from typing import Any
 
 __all__ = [
     "EngineError",
-    "Flaw",
     "InputError",
     "InputWarning",
     "PinikError",
@@ -144,29 +143,3 @@ class InputWarning(UserWarning):
 
 class UrdfWarning(UserWarning):
     """pinik repaired or ignored something in a robot description."""
-
-
-class Flaw(str):
-    """What pinik repaired or ignored in a robot description: a sentence that also knows its parts.
-
-    Attributes:
-        element: The element, such as "joint 'elbow'".
-        cause: The sentence without it.
-        common: The cause without the names in it, equal for all flaws of the same sort.
-        mesh: The address of a mesh that was not found; None for all other flaws.
-    """
-
-    element: str
-    cause: str
-    common: str
-    mesh: str | None
-
-    def __new__(cls, element: str, cause: str, *, common: str | None = None, mesh: str | None = None) -> Flaw:
-        """The sentence "element: cause"."""
-        self = super().__new__(cls, f"{element}: {cause}")
-        self.element, self.cause, self.mesh = element, cause, mesh
-        self.common = cause if common is None else common
-        return self
-
-    def __reduce__(self) -> tuple[Any, ...]:
-        return partial(type(self), common=self.common, mesh=self.mesh), (self.element, self.cause)

@@ -10,6 +10,7 @@ from pathlib import Path
 from .description import catalog as robot_catalog
 from .description import packages
 from .description import reader as urdf
+from .description.flaw import summarised
 from .errors import InputError, RobotLoadError, UrdfWarning
 from .robot import Robot
 
@@ -37,10 +38,10 @@ def load(
         InputError: The root is unknown, the source is not a name, a path or text, or `package_dirs` is not a list.
 
     Warns:
-        UrdfWarning: pinik repaired or ignored something, or did not find a mesh.
+        UrdfWarning: pinik repaired, assumed or ignored something, or did not find a mesh; once for each sort of flaw.
     """
     robot = load_in_silence(source, root=root, package_dirs=package_dirs, mimic=mimic)
-    for words in robot.warnings:
+    for words in summarised(robot.warnings):
         warnings.warn(f"{robot.name}: {words}", UrdfWarning, stacklevel=2)
     return robot
 

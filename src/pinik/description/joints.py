@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from ..errors import Flaw
+from .flaw import Flaw
 from .values import Vector, attribute_text, bad_value, number, only_child, read_origin, required_name, vector
 from .xml import DocumentError, Element
 
@@ -135,7 +135,8 @@ def _read_axis(joint: Element, kind: str, owner: str, warnings: list[str]) -> Ve
     length = math.hypot(x, y, z)
     axis = (x / length, y / length, z / length)
     if kind == "planar" and axis != (0.0, 0.0, 1.0):
-        warnings.append(Flaw(owner, "a planar joint moves in the xy-plane of its own frame here; its axis is ignored"))
+        cause = "a planar joint moves in the xy-plane of its own frame here; its axis is ignored"
+        warnings.append(Flaw(owner, cause, code="planar-axis", line=element.line))
     return axis
 
 
@@ -161,9 +162,8 @@ def _read_limit(
     absent = [name for name, value in (("lower", lower), ("upper", upper)) if value is None]
     if absent:
         bounds = f"{lower or 0.0:g}..{upper or 0.0:g}"
-        warnings.append(
-            Flaw(owner, f"<limit> has no {' and no '.join(absent)}, which is read as 0: its range is {bounds}")
-        )
+        cause = f"<limit> has no {' and no '.join(absent)}, which is read as 0: its range is {bounds}"
+        warnings.append(Flaw(owner, cause, code="absent-limit", line=element.line))
     if (lower or 0.0) > (upper or 0.0):
         note = f" (no {absent[0]} is given, which is read as 0)" if absent else ""
         raise DocumentError(

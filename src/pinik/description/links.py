@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from ..errors import Flaw
+from .flaw import Flaw
 from .values import Vector, attribute_text, bad_value, number, numbers, only_child, read_origin, required_name, vector
 from .xml import Element
 
@@ -92,7 +92,8 @@ def _read_inertial(element: Element, owner: str, warnings: list[str]) -> Inertia
             inertia.append(number(inertia_element, attribute, owner) or 0.0)
     if mass is None or inertia_element is None:
         absent = "mass" if mass is None else "inertia"
-        warnings.append(Flaw(owner, f"<inertial> has no <{absent}>; the link is taken as massless"))
+        cause = f"<inertial> has no <{absent}>; the link is taken as massless"
+        warnings.append(Flaw(owner, cause, code="incomplete-inertial", line=element.line))
         return None
     return Inertial(xyz, rpy, mass, tuple(inertia))
 
@@ -104,7 +105,7 @@ def _read_shape(shape: Element, owner: str, warnings: list[str]) -> tuple[str, .
     solid = geometry.children[0] if geometry is not None and geometry.children else None
     if solid is None or solid.tag not in SHAPE_SIZES:
         what = "has no shape" if solid is None else f"<{solid.tag}> is not a URDF shape"
-        warnings.append(Flaw(owner, f"{what}; it is left out"))
+        warnings.append(Flaw(owner, f"{what}; it is left out", code="dropped-shape", line=shape.line))
         return ()
     for attribute, count in SHAPE_SIZES[solid.tag]:
         attribute_text(solid, attribute, owner)

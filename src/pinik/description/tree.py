@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 
-from ..errors import Flaw
+from .flaw import Flaw
 from .joints import ONE_AXIS_KINDS, JointTag, Mimic
 from .values import FARTHEST, required_name
 from .xml import DocumentError, Element
@@ -87,7 +87,7 @@ def resolved_mimics(joints: Sequence[JointTag], warnings: list[str]) -> list[Joi
         else:
             followers[joint.name] = joint.mimic
             continue
-        warnings.append(Flaw(f"joint {joint.name!r}", cause, common=common))
+        warnings.append(Flaw(f"joint {joint.name!r}", cause, code="mimic-ignored", common=common))
     circle = _cycle({name: mimic.leader for name, mimic in followers.items()})
     if circle:
         cause = "it mimics itself" if len(circle) == 1 else f"joints mimic in a circle: {_listed(circle)}"

@@ -39,12 +39,14 @@ class Element:
         tag: The name as written, with its namespace prefix.
         attributes: The decoded attributes.
         line: The line on which the element begins, from 1.
+        start: The offset of its "<" in the bytes of the document.
         children: The child elements, in order.
     """
 
     tag: str
     attributes: dict[str, str]
     line: int
+    start: int = 0
     children: list[Element] = field(default_factory=list)
 
     def named(self, tag: str) -> list[Element]:
@@ -63,12 +65,13 @@ class Element:
 class _Builder:
     """Builds a tree of `Element` from expat's events."""
 
-    def __init__(self, parser: expat.XMLParserType, lines_before: int) -> None:
+    def __init__(self, parser: expat.XMLParserType, blank: bytes) -> None:
         self.root: Element | None = None
         self._open: list[Element] = []
         self._count = 0
         self._parser = parser
-        self._lines_before = lines_before
+        self._lines_before = blank.count(b"\n")
+        self._bytes_before = len(blank)
         self._xinclude_prefixes = {"xi"}
         parser.StartElementHandler = self._start
         parser.EndElementHandler = self._end
@@ -82,7 +85,7 @@ class _Builder:
         if len(self._open) == MAX_DEPTH:
             raise DocumentError(f"XML elements nested more than {MAX_DEPTH} deep", line=line)
         self._refuse_xinclude(tag, attributes, line)
-        element = Element(tag, attributes, line)
+        element = Element(tag, attributes, line, self._parser.CurrentByteIndex + self._bytes_before)
         if self._open:
             self._open[-1].children.append(element)
         else:
@@ -132,7 +135,7 @@ def parse(document: bytes, encoding: str | None = None) -> Element:
     # Blank lines before the declaration are common in pasted text, and other URDF readers accept them.
     blank = document[: len(document) - len(document.lstrip())]
     parser = expat.ParserCreate(encoding)
-    builder = _Builder(parser, blank.count(b"\n"))
+    builder = _Builder(parser, blank)
     try:
         parser.Parse(document[len(blank) :], True)
     except expat.ExpatError as error:

@@ -12,8 +12,8 @@ from collections import defaultdict
 from collections.abc import Iterable, Mapping
 from dataclasses import replace
 
+from ..description.flaw import Flaw
 from ..description.reader import Description, JointTag, Mimic
-from ..errors import Flaw
 
 __all__ = ["leaders_first"]
 
@@ -71,14 +71,14 @@ def _changed_roles(first: str, leader: str) -> Flaw:
     why = "Pinocchio's model needs a leader before its followers, and cannot have"
     cause = f"{why} {leader!r} before {first!r}; {leader!r} follows {first!r} instead, with the same angles"
     common = f"{why} their leader before them; the leader follows one of them instead, with the same angles"
-    return Flaw(f"joint {first!r}", cause, common=common)
+    return Flaw(f"joint {first!r}", cause, code="changed-roles", common=common)
 
 
 def _left_free(follower: str, mimic: Mimic) -> Flaw:
     why = "which Pinocchio's model cannot have before it"
     end = f"and with multiplier {mimic.multiplier:g} it cannot lead; it is left free"
     cause, common = f"it mimics {mimic.leader!r}, {why}, {end}", f"it mimics a joint, {why}, {end}"
-    return Flaw(f"joint {follower!r}", cause, common=common)
+    return Flaw(f"joint {follower!r}", cause, code="mimic-left-free", common=common)
 
 
 def _paths(description: Description, names: Iterable[str]) -> dict[str, _Path]:

@@ -9,8 +9,8 @@ import numpy as np
 import pinocchio
 from numpy.typing import NDArray
 
+from ..description.flaw import Flaw
 from ..description.reader import Description
-from ..errors import Flaw
 from .joint import Joint
 
 __all__ = ["configuration_limits", "set_position_limits", "velocity_limits"]
@@ -98,7 +98,7 @@ def _cut_by_followers(joint: Joint, followers: Iterable[Joint], warnings: list[F
             common = (
                 "its limits are ignored, because they would leave the joint that it mimics no room, or a single value"
             )
-            warnings.append(Flaw(f"joint {follower.name!r}", cause, common=common))
+            warnings.append(Flaw(f"joint {follower.name!r}", cause, code="follower-limits", common=common))
         else:
             lower, upper = low, high
     return lower + 0.0, upper + 0.0  # no −0, which a negative multiplier makes of 0

@@ -16,9 +16,10 @@ import trimesh
 from numpy.typing import NDArray
 
 from ..description import reader as urdf
+from ..description.flaw import Flaw
 from ..description.packages import resolve
 from ..description.xml import Element, parse
-from ..errors import Flaw, InputError
+from ..errors import InputError
 from ..model.robot_model import RobotModel
 from . import triangles
 from .triangles import Color
@@ -90,7 +91,9 @@ def load_shapes(
                 parts = _parts(visual, description.path, folders, files)
             except Exception as fault:  # a shape never stops kinematics, and trimesh may raise anything
                 missing = fault.address if isinstance(fault, _MeshNotFoundError) else None
-                warnings.append(Flaw(f"link {link_name!r}", f"a shape is left out: {fault}", mesh=missing))
+                cause = f"a shape is left out: {fault}"
+                code = "unreadable-shape" if missing is None else "missing-mesh"
+                warnings.append(Flaw(f"link {link_name!r}", cause, code=code, line=visual.line, mesh=missing))
                 continue
             for part, (mesh, own) in enumerate(parts):
                 name = f"{link_name}/{index}" + (f"/{part}" if len(parts) > 1 else "")

@@ -6,7 +6,8 @@ from typing import Annotated
 
 import typer
 
-from ..inputs.loading import check_folders, summarised
+from ...description.flaw import summarised
+from ..inputs.loading import check_folders
 from ..inputs.options import AsJson, PackageDirs
 from ..reports.inspection import Inspection, inspect
 from ..terminal import output

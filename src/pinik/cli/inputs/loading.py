@@ -5,15 +5,14 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from pathlib import Path
 
-from ...errors import Flaw, RobotLoadError, UnknownNameError
+from ...description.flaw import summarised
+from ...errors import RobotLoadError, UnknownNameError
 from ...loading import load_in_silence
 from ...robot import Robot
 from ..terminal import output
 from ..terminal.exits import CommandError, ExitStatus
 
-__all__ = ["check_folders", "load_robot", "summarised"]
-
-_MOST_NAMED = 6
+__all__ = ["check_folders", "load_robot"]
 
 
 def load_robot(source: str, *, root: str = "fixed", package_dirs: Sequence[Path] | None = None) -> Robot:
@@ -42,17 +41,3 @@ def check_folders(package_dirs: Iterable[Path] | None) -> None:
     for folder in package_dirs or ():
         if not folder.expanduser().is_dir():
             raise CommandError(f"--package-dir {folder}: no such folder")
-
-
-def summarised(warnings: Iterable[str]) -> list[str]:
-    """The warnings without repetitions, with one line for all flaws that have the same cause."""
-    sorts: dict[str, list[str]] = {}
-    for words in dict.fromkeys(warnings):
-        sorts.setdefault(words.common if isinstance(words, Flaw) else words, []).append(words)
-    return [members[0] if len(members) == 1 else _together(common, members) for common, members in sorts.items()]
-
-
-def _together(common: str, flaws: Sequence[str]) -> str:
-    named = [flaw.element for flaw in flaws[:_MOST_NAMED] if isinstance(flaw, Flaw)]
-    more = f" and {len(flaws) - _MOST_NAMED} more" if len(flaws) > _MOST_NAMED else ""
-    return f"{', '.join(named)}{more}: {common}"

@@ -11,7 +11,8 @@ from typing import TYPE_CHECKING, Any
 
 from ...description import packages
 from ...description import reader as urdf
-from ...errors import Flaw, RobotLoadError, UnknownNameError
+from ...description.flaw import Flaw
+from ...errors import RobotLoadError, UnknownNameError
 from ...extras import needed_by
 from ...loading import locate
 from ...robot import Robot

@@ -1,0 +1,91 @@
+"""What pinik repaired, assumed or ignored in a robot description, and the edits that mend it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from functools import partial
+from typing import Any
+
+__all__ = ["Edit", "Flaw", "summarised"]
+
+_MOST_NAMED = 6
+
+
+@dataclass(frozen=True, slots=True)
+class Edit:
+    """A replacement of bytes in a document.
+
+    Attributes:
+        start: The offset of the first byte that is replaced.
+        end: The offset after the last one; equal to `start` for an insertion.
+        text: What stands there instead.
+    """
+
+    start: int
+    end: int
+    text: str
+
+
+class Flaw(str):
+    """What pinik repaired, assumed or ignored in a robot description: a sentence that also knows its parts.
+
+    Attributes:
+        element: The element, such as "joint 'elbow'".
+        cause: What is wrong and what was assumed, without the element.
+        line: The line of the file, from 1; None if the flaw belongs to no line.
+        code: The sort of flaw in a word for programs, such as "unknown-attribute".
+        common: The cause without the names and numbers in it, equal for all flaws that are reported together.
+        why: Why it matters, in one sentence; empty if the cause says it.
+        mend: What to do about it, in one sentence; empty if there is nothing to do.
+        edits: The edits of the document that mend it; empty if there is no mend, or more than one.
+        mesh: The address of a mesh that was not found; None for all other flaws.
+    """
+
+    element: str
+    cause: str
+    line: int | None
+    code: str
+    common: str
+    why: str
+    mend: str
+    edits: tuple[Edit, ...]
+    mesh: str | None
+
+    def __new__(
+        cls,
+        element: str,
+        cause: str,
+        *,
+        code: str,
+        line: int | None = None,
+        common: str | None = None,
+        why: str = "",
+        mend: str = "",
+        edits: Sequence[Edit] = (),
+        mesh: str | None = None,
+    ) -> Flaw:
+        """The sentence "element: cause (line 12)"."""
+        self = super().__new__(cls, f"{element}: {cause}" + (f" (line {line})" if line else ""))
+        self.element, self.cause, self.line, self.code = element, cause, line, code
+        self.common = cause if common is None else common
+        self.why, self.mend, self.edits, self.mesh = why, mend, tuple(edits), mesh
+        return self
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        given = {name: value for name, value in vars(self).items() if name not in ("element", "cause")}
+        return partial(type(self), **given), (self.element, self.cause)
+
+
+def summarised(warnings: Iterable[str]) -> list[str]:
+    """The warnings without repetitions, with one line for all flaws that have the same cause."""
+    sorts: dict[str, list[str]] = {}
+    for words in dict.fromkeys(warnings):
+        sorts.setdefault(words.common if isinstance(words, Flaw) else words, []).append(words)
+    return [members[0] if len(members) == 1 else _together(common, members) for common, members in sorts.items()]
+
+
+def _together(common: str, flaws: Sequence[str]) -> str:
+    named = [flaw.element for flaw in flaws[:_MOST_NAMED] if isinstance(flaw, Flaw)]
+    more = f" and {len(flaws) - _MOST_NAMED} more" if len(flaws) > _MOST_NAMED else ""
+    return f"{', '.join(named)}{more}: {common}"
