@@ -1,0 +1,63 @@
+"""Mutated robots: pinik refuses each in words, or places its links as yourdfpy does. `tools/attack_urdf.py` does more."""
+
+from __future__ import annotations
+
+import os
+import signal
+from collections.abc import Iterator
+
+import pytest
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+from urdf_attack.corpus import robots
+from urdf_attack.mutations import Case, mutated
+from urdf_attack.workers import Worker
+
+from urdf_texts import chain, joint, link, pair, robot
+
+ROBOTS = robots()
+
+
+@pytest.fixture(scope="module")
+def worker() -> Iterator[Worker]:
+    """A process that judges inputs: 5 s of computing, 2 GB and the robot's own folders are all that each may take."""
+    one = Worker()
+    yield one
+    one.close()
+
+
+@settings(max_examples=400, deadline=None, suppress_health_check=list(HealthCheck))
+@given(random=st.randoms(use_true_random=False))
+def test_a_mutated_robot_is_refused_in_words_or_stands_where_yourdfpy_has_it(worker, random):
+    case = mutated(random, ROBOTS)
+    outcome = worker.judged(case)
+    assert not outcome.is_fault, f"{outcome.kind}: {outcome.words}\n{case.written[:20_000]!r}"
+
+
+def case(written: str, meant: str | None = None, harmless: bool = False) -> Case:
+    return Case(written.encode(), (meant or written).encode(), harmless, shapes=True)
+
+
+# Each is an input that the attack must tell from a good one, else it finds nothing.
+@pytest.mark.parametrize(
+    ("given", "kind"),
+    [
+        (case(pair()), "agreed"),
+        (case(pair().replace("revolute", "hinge")), "refused"),
+        (case(pair('<origin xyz="0 0 1"/>'), meant=pair('<origin xyz="0 0 1.001"/>')), "disagreed"),
+        (case(pair('<axis xyz="0 0 1"/>'), meant=pair('<axis xyz="0 0 -1"/>')), "disagreed"),
+        (case(pair(), meant=robot(link("a"))), "disagreed"),
+        (case(pair(), meant="<robot"), "unread"),
+        (case(pair().replace("revolute", "hinge"), harmless=True), "stopped"),
+        (case(robot(link("a"), joint("j", "a", "x" * 5_000))), "wordless"),
+        (case(chain(3_000, "fixed")), "agreed"),
+    ],
+)
+def test_the_attack_tells_outcomes_apart(worker, given, kind):
+    assert worker.judged(given).kind == kind
+
+
+def test_the_attack_goes_on_after_a_crash(worker):
+    os.kill(worker.process_id, signal.SIGKILL)
+    assert worker.judged(case(pair())).kind == "crashed"
+    assert worker.judged(case(pair())).kind == "agreed"
