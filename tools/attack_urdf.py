@@ -11,7 +11,6 @@ if one did not; the first input of each kind of fault is then in build/attack.
 from __future__ import annotations
 
 import argparse
-import atexit
 import sys
 from pathlib import Path
 
@@ -36,7 +35,6 @@ def main() -> int:
     if given.atheris:
         from urdf_attack.guided import attack
 
-        atexit.register(lambda: print(report))
         attack(given.count, given.seed, given.minutes, report)
     worker = Worker()
     try:

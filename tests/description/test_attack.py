@@ -1,4 +1,4 @@
-"""Mutated robots: pinik refuses each in words, or places its links as yourdfpy does. `tools/attack_urdf.py` does more."""
+"""Mutated robots are refused in words, or placed as yourdfpy places them; `tools/attack_urdf.py` tries more."""
 
 from __future__ import annotations
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import sys
 import tempfile
 from pathlib import Path
@@ -46,6 +47,7 @@ def attack(count: int, seed: int, minutes: float, report: Report) -> None:
     from .mutations import mutated
     from .sandbox import Sandbox
 
+    report.folder.mkdir(parents=True, exist_ok=True)
     known = robots()
     judge = Judge(Sandbox(Path(tempfile.mkdtemp(prefix="pinik-attack-"))))
     number = 0
@@ -57,6 +59,9 @@ def attack(count: int, seed: int, minutes: float, report: Report) -> None:
         outcome = judge(case)
         if report.is_new(outcome):
             report.keep(number, case, outcome)
+        if number == count or report.minutes > minutes:
+            print(report, flush=True)
+            os._exit(1 if report.faults else 0)  # atheris ends the process without Python's own clean-up
 
     limits = [
         f"-runs={count}",
@@ -66,7 +71,5 @@ def attack(count: int, seed: int, minutes: float, report: Report) -> None:
         "-max_len=400",
         "-len_control=0",
     ]
-    if minutes < float("inf"):
-        limits.append(f"-max_total_time={round(minutes * 60)}")
-    atheris.Setup([sys.argv[0], *limits, "-verbosity=0", "-print_final_stats=1"], one)
+    atheris.Setup([sys.argv[0], *limits, "-verbosity=0", f"-artifact_prefix={report.folder}/"], one)
     atheris.Fuzz()

@@ -110,11 +110,16 @@ def _reworded(random: Random, robot: Node) -> bool:
         if name != "name" and is_numeric(value)
     ]
     harmless = True
-    for element, name, inside in random.sample(places, min(len(places), random.randrange(1, 4))):
-        element.meant.setdefault(name, element.written[name])
+    for _ in range(random.randrange(1, 4) if places else 0):
+        element, name, inside = random.choice(places)
+        if name in element.meant:
+            continue
         try:
-            element.written[name] = same_number(random, element.written[name])
-        except ValueError:  # an earlier mutation wrote no number there
+            element.written[name], element.meant[name] = (
+                same_number(random, element.written[name]),
+                element.written[name],
+            )
+        except ValueError:  # an earlier mutation wrote what only resembles numbers
             continue
         harmless &= inside
     return harmless

@@ -21,12 +21,14 @@ class Report:
 
     Attributes:
         kinds: The number of outcomes of each kind.
+        folder: Where inputs are kept.
     """
 
     def __init__(self, title: str, folder: Path) -> None:
         self.kinds: Counter[str] = Counter()
         self._signatures: dict[str, Counter[str]] = {}
-        self._title, self._folder, self._start = title, folder, time.monotonic()
+        self.folder = folder
+        self._title, self._start = title, time.monotonic()
 
     @property
     def minutes(self) -> float:
@@ -51,8 +53,8 @@ class Report:
 
     def keep(self, number: int, case: Case, outcome: Outcome) -> None:
         """Write an input and what became of it into the folder."""
-        self._folder.mkdir(parents=True, exist_ok=True)
-        name = self._folder / f"{outcome.kind}-{number}"
+        self.folder.mkdir(parents=True, exist_ok=True)
+        name = self.folder / f"{outcome.kind}-{number}"
         name.with_suffix(".urdf").write_bytes(case.written)
         name.with_suffix(".meant").write_bytes(case.meant)
         name.with_suffix(".txt").write_text(f"{outcome.words}\n{outcome.signature}\nas text: {case.as_text}\n")
