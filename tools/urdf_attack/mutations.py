@@ -49,7 +49,7 @@ class Case:
     Attributes:
         written: The file.
         meant: The same robot in a form that every reader understands, without shapes.
-        harmless: Whether only parts were changed that say nothing about where the links are, so that the robot loads.
+        harmless: Whether it says as plainly as before where the links are, so that the robot must load.
         shapes: Whether parts of that kind were changed, so that its shapes are read too.
         as_text: Whether it is handed over as text rather than as a file.
     """
@@ -64,7 +64,7 @@ class Case:
 def mutated(random: Random, robots: Sequence[Node]) -> Case:
     """One of the robots with one to four mutations."""
     robot = random.choice(robots).copy()
-    harmless = True
+    unchanged = robot.render(plainly=True)
     shapes = False
     for _ in range(random.choice((1, 1, 1, 2, 2, 3, 4))):
         if random.randrange(4) == 0:
@@ -75,12 +75,10 @@ def mutated(random: Random, robots: Sequence[Node]) -> Case:
                 break
             parent, element, inside = random.choice(places)
             random.choice(OPERATIONS)(random, robot, parent, element)
-        harmless &= inside
         shapes |= inside
     text, plainly = robot.render(), robot.render(plainly=True)
-    harmless = (
-        harmless and not any(sign in text for sign in ("${", "$(", "xacro:", "xi:", "xmlns")) and _is_plain_xml(text)
-    )
+    foreign = any(sign in text for sign in ("${", "$(", "xacro:", "xi:", "xmlns"))
+    harmless = plainly == unchanged and not foreign and _is_plain_xml(text)
     meant = plainly.encode("utf-8", "surrogatepass")
     if random.randrange(8) == 0:
         return Case(random.choice(ENCODERS)(random, text), meant, harmless=False, shapes=shapes)
@@ -102,14 +100,14 @@ def _is_plain_xml(text: str) -> bool:
 
 
 def _reworded(random: Random, robot: Node) -> bool:
-    """Write some numbers in another notation; say whether none of them places a link."""
+    """Write some numbers in another notation; say whether one of them belongs to a shape."""
     places = [
         (element, name, inside)
         for _, element, inside in robot.walk()
         for name, value in element.written.items()
         if name != "name" and is_numeric(value)
     ]
-    harmless = True
+    shapes = False
     for _ in range(random.randrange(1, 4) if places else 0):
         element, name, inside = random.choice(places)
         if name in element.meant:
@@ -121,8 +119,8 @@ def _reworded(random: Random, robot: Node) -> bool:
             )
         except ValueError:  # an earlier mutation wrote what only resembles numbers
             continue
-        harmless &= inside
-    return harmless
+        shapes |= inside
+    return shapes
 
 
 def _drop(random: Random, robot: Node, parent: Node, element: Node) -> None:
