@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from pinik.description import packages
+from pinik.description import shares
 from pinik.description.packages import example_robot_data, resolve
 
 
@@ -91,7 +91,7 @@ def test_the_robots_folder_is_found_without_importing_anything_heavy() -> None:
     """The module alone, without pinik's front, in a fresh interpreter."""
     code = (
         "import runpy, sys; "
-        f"robots = runpy.run_path({packages.__file__!r})['example_robot_data'](); "
+        f"robots = runpy.run_path({shares.__file__!r})['example_robot_data'](); "
         "assert robots.is_dir() and not {'numpy', 'pinocchio'} & set(sys.modules)"
     )
     subprocess.run([sys.executable, "-c", code], check=True)

@@ -8,18 +8,19 @@ shapes, so that Pinocchio reads exactly that.
 from __future__ import annotations
 
 import os
-import stat
 from dataclasses import dataclass, field
 from pathlib import Path
 
 from ..errors import RobotLoadError
+from .addresses import uses_find
+from .files import FileError, read_within
 from .joints import JointTag, Mimic, read_joint
 from .links import read_link
 from .tree import check_unique, resolved_mimics, root_link
 from .writer import written
 from .xml import MAX_BYTES, DocumentError, Element, parse
 
-__all__ = ["Description", "JointTag", "Mimic", "read"]
+__all__ = ["Description", "JointTag", "Mimic", "file_bytes", "read", "read_document"]
 
 # What a document is if its root element is not <robot>.
 OTHER_FORMATS = {
@@ -31,7 +32,7 @@ OTHER_FORMATS = {
     "COLLADA": "a COLLADA mesh, not a robot",
 }
 SRDF_TAGS = {"group", "group_state", "virtual_joint", "end_effector", "disable_collisions", "passive_joint"}
-XACRO_HELP = "an unexpanded xacro file; expand it first: xacro file.xacro > file.urdf"
+XACRO_HELP = "an unexpanded xacro file; load it by its path, or expand it first: xacro file.xacro > file.urdf"
 
 
 @dataclass(frozen=True)
@@ -80,7 +81,37 @@ def read(source: str | os.PathLike[str]) -> Description:
         path = Path(source)
     try:
         document = _file_bytes(path) if path else _text_bytes(str(source))
-        return _describe(parse(document, None if path else "utf-8"), label, path, document)
+    except DocumentError as fault:
+        raise RobotLoadError(fault.message, source=label) from None
+    return read_document(document, label, path, None if path else "utf-8")
+
+
+def file_bytes(path: Path) -> bytes:
+    """The bytes of a file that should be a URDF.
+
+    Raises:
+        RobotLoadError: The file cannot be read; the message says why.
+    """
+    try:
+        return _file_bytes(path)
+    except DocumentError as fault:
+        raise RobotLoadError(fault.message, source=_shown(os.fspath(path))) from None
+
+
+def read_document(document: bytes, label: str, path: Path | None, encoding: str | None = None) -> Description:
+    """Check a URDF whose bytes were read already.
+
+    Args:
+        document: The bytes.
+        label: What messages call the file.
+        path: The file, from which relative addresses start; None for text.
+        encoding: The encoding of the bytes; None to take it from the document's declaration.
+
+    Raises:
+        RobotLoadError: It is not a valid URDF; the message names the element and the cause.
+    """
+    try:
+        return _describe(parse(document, encoding), label, path, document)
     except DocumentError as fault:
         line = f" (line {fault.line})" if fault.line else ""
         raise RobotLoadError(fault.message + line, source=label, element=fault.owner) from None
@@ -101,23 +132,10 @@ def _text_bytes(text: str) -> bytes:
 
 def _file_bytes(path: Path) -> bytes:
     try:
-        if path.is_dir():
-            raise DocumentError("this is a directory, not a URDF file")
-        if not (stat.S_ISREG(path.stat().st_mode) or _is_open_already(path)):
-            raise DocumentError("this is a pipe or a device, not a URDF file")
-        # An endless stream must not fill up the memory.
-        with path.open("rb") as file:
-            return file.read(MAX_BYTES + 1)
-    except FileNotFoundError:
-        raise DocumentError("there is no such file (URDF text would begin with '<')") from None
-    except (OSError, ValueError) as error:
-        cause = getattr(error, "strerror", None) or str(error)
-        raise DocumentError(f"the file cannot be read: {cause}") from None
-
-
-def _is_open_already(path: Path) -> bool:
-    """Whether the path names a stream that is open already, such as "<(xacro ...)" or "/dev/stdin"."""
-    return os.path.abspath(path).startswith(("/dev/fd/", "/proc/self/fd/", "/dev/stdin"))
+        return read_within(path, MAX_BYTES, "a URDF file", streams=True)
+    except FileError as fault:
+        remark = "" if os.path.lexists(path) else " (URDF text would begin with '<')"
+        raise DocumentError(f"{fault}{remark}") from None
 
 
 def _describe(robot: Element, source: str, path: Path | None, document: bytes) -> Description:
@@ -158,7 +176,8 @@ def _check_root(robot: Element) -> None:
     for part in [*robot.named("link"), *robot.named("joint")]:
         for element in part.walk():
             for attribute, text in element.attributes.items():
-                if "${" in text or "$(" in text:
+                # "$(find package)/mesh.stl" has one meaning, and files that were expanded by hand still have it.
+                if "${" in text or ("$(" in text and not (attribute == "filename" and uses_find(text))):
                     raise DocumentError(
                         f'{attribute}="{text[:60]}" is a xacro expression: this is {XACRO_HELP}',
                         owner=f"<{element.tag}>",

@@ -14,7 +14,7 @@ from ...robot import Robot
 from ...solving.native.module import why_not
 from ...version import __version__
 from ..inputs.loading import load_robot
-from ..inputs.options import AsJson, Degrees, PackageDirs, RobotSource, Root
+from ..inputs.options import AllowOutside, AsJson, Degrees, PackageDirs, RobotSource, Root, XacroArgs
 from ..terminal import output
 from ..terminal.exits import ExitStatus
 from ..terminal.tables import emit_table
@@ -28,6 +28,8 @@ def info(
     degrees: Degrees = False,
     root: Root = "fixed",
     package_dir: PackageDirs = None,
+    xacro_arg: XacroArgs = None,
+    allow_outside: AllowOutside = False,
     as_json: AsJson = False,
 ) -> ExitStatus:
     """Show a robot's joints with their limits, its frames and its named poses.
@@ -38,7 +40,7 @@ def info(
 
       pinik info panda
     """
-    machine = load_robot(robot, root=root, package_dirs=package_dir)
+    machine = load_robot(robot, root=root, package_dirs=package_dir, xacro_args=xacro_arg, allow_outside=allow_outside)
     if as_json:
         output.emit_json(_fields(machine))
     else:

@@ -12,7 +12,7 @@ from pathlib import Path
 import platformdirs
 import umsgpack
 
-from ...description.packages import resolve
+from ...description.files import FileError, read_within
 from ...robot import Robot
 from .scene import Shapes, make_shapes
 
@@ -61,8 +61,9 @@ def _key(robot: Robot) -> str:
 
 def _mesh_files(robot: Robot) -> Iterator[str]:
     """Yield path, size and modification time of each mesh file, and of the material files that an OBJ may use."""
+    surroundings = robot.surroundings
     for address in robot.description.meshes:
-        mesh = resolve(address, urdf_path=robot.description.path, package_dirs=robot.package_dirs)
+        mesh = surroundings.find(address).path
         yield address
         if mesh is not None:
             materials = sorted(mesh.parent.glob("*.mtl")) if mesh.suffix.lower() == ".obj" else []
@@ -74,12 +75,12 @@ def _mesh_files(robot: Robot) -> Iterator[str]:
 def _read(path: Path) -> Shapes | None:
     """Read the shapes from a file; None if it is missing or damaged. Reading counts as use."""
     try:
-        content = path.read_bytes()
+        content = read_within(path, LIMIT, "a file of shapes")
         body = memoryview(content)[_DIGEST_SIZE:]
         if hashlib.sha256(body).digest() != content[:_DIGEST_SIZE]:
             return None
         parts, commands, warnings = umsgpack.unpackb(bytes(body))
-    except OSError:
+    except FileError:
         return None
     with contextlib.suppress(OSError):
         os.utime(path)
