@@ -1,4 +1,4 @@
-"""`load`: makes a robot from a catalogue name, a path or URDF text."""
+"""`load`: makes a robot from a catalogue name, a path, URDF text or bytes, or an open file."""
 
 from __future__ import annotations
 
@@ -12,18 +12,22 @@ from .description import catalog as robot_catalog
 from .description import downloads, xacro
 from .description import reader as urdf
 from .description.flaw import Flaw, summarised
+from .description.source import RobotSource, Source, is_document, is_source
 from .errors import InputError, RobotLoadError, UnknownNameError, UrdfWarning
 from .robot import Robot
 
 __all__ = ["load", "load_in_silence", "locate"]
 
+_MOST_LISTED = 12
+
 
 def load(
-    source: str | os.PathLike[str],
+    source: RobotSource,
     *,
     root: str = "fixed",
     package_dirs: Iterable[str | os.PathLike[str]] = (),
     mimic: bool = True,
+    strict: bool = False,
     xacro_args: Mapping[str, object] | None = None,
     allow_outside: bool = False,
 ) -> Robot:
@@ -31,26 +35,35 @@ def load(
 
     Args:
         source: A catalogue name ("arm", "lion", "panda", …: `pinik.catalog()`), a path to a URDF or xacro file, URDF
-            text, or the name of a robot in the cache of robot_descriptions ("ur10e_description").
+            text, the bytes of a URDF file, an open file, which is read from where it stands to its end, or the name of
+            a robot in the cache of robot_descriptions ("ur10e_description").
         root: How the root link is attached to the world: "fixed", "free_flyer" or "planar".
         package_dirs: Folders that are searched first for `package://` addresses of meshes.
         mimic: Whether mimic joints follow their leaders; with False they are all free.
+        strict: Whether every warning is an error.
         xacro_args: The arguments of a xacro file by name, such as {"ur_type": "ur10e"}. xacro evaluates expressions and
             opens other files, so load only xacro files that you trust.
         allow_outside: Whether the URDF may open meshes outside its own folder, its packages and `package_dirs`.
 
     Raises:
-        RobotLoadError: The description is faulty; the message names the element and the cause.
+        RobotLoadError: The description is faulty; the message names the element and the cause. With `strict`, also if
+            pinik repaired, assumed or ignored something, or did not find a mesh; the message lists what.
         UnknownNameError: There is no robot of that name, or the xacro file has no argument of a given name.
-        InputError: The root is unknown, the source is not a name, a path or text, `package_dirs` is not a list, or
-            `xacro_args` is not a dict or is given for a file that is not xacro.
+        InputError: The root is unknown, the source is none of these, `package_dirs` is not a list, or `xacro_args` is
+            not a dict or is given for a file that is not xacro.
         MissingExtraError: The file is xacro, and xacrodoc is not installed.
 
     Warns:
         UrdfWarning: pinik repaired, assumed or ignored something, or did not find a mesh; once for each sort of flaw.
     """
     robot = load_in_silence(
-        source, root=root, package_dirs=package_dirs, mimic=mimic, xacro_args=xacro_args, allow_outside=allow_outside
+        source,
+        root=root,
+        package_dirs=package_dirs,
+        mimic=mimic,
+        strict=strict,
+        xacro_args=xacro_args,
+        allow_outside=allow_outside,
     )
     for words in summarised(robot.warnings):
         warnings.warn(f"{robot.name}: {words}", UrdfWarning, stacklevel=2)
@@ -58,11 +71,12 @@ def load(
 
 
 def load_in_silence(
-    source: str | os.PathLike[str],
+    source: RobotSource,
     *,
     root: str = "fixed",
     package_dirs: Iterable[str | os.PathLike[str]] = (),
     mimic: bool = True,
+    strict: bool = False,
     xacro_args: Mapping[str, object] | None = None,
     allow_outside: bool = False,
 ) -> Robot:
@@ -83,11 +97,28 @@ def load_in_silence(
         root=root,
         package_dirs=homes,
         mimic=mimic,
-        srdf=located.srdf,
+        srdf=located.srdf or _beside(description),
         allow_outside=allow_outside,
     )
     robot.warnings += tuple(_unfound(robot))
+    if strict and robot.warnings:
+        raise RobotLoadError(_listed(robot.warnings), source=description.source)
     return robot
+
+
+def _listed(flaws: Sequence[str]) -> str:
+    """All warnings in one message, with one for each sort."""
+    sorts = summarised(flaws)
+    more = f"; and {len(sorts) - _MOST_LISTED} other sorts" if len(sorts) > _MOST_LISTED else ""
+    count = "one warning is an error" if len(flaws) == 1 else f"each of {len(flaws)} warnings is an error"
+    return f"with strict=True, {count}: {'; '.join(sorts[:_MOST_LISTED])}{more}"
+
+
+def _beside(description: urdf.Description) -> Path | None:
+    """The SRDF file of the same name in the same folder, if there is one."""
+    path = description.path
+    srdf = path.with_suffix(".srdf") if path and path.name else None
+    return srdf if srdf and srdf.is_file() else None
 
 
 @dataclass(frozen=True)
@@ -95,14 +126,14 @@ class Located:
     """Where a robot's description is.
 
     Attributes:
-        source: The path of its file, or its text.
-        name: Its name in the catalogue or in robot_descriptions; None for a path or text.
-        srdf: Its SRDF file, if it has one.
+        source: Its path, its text or bytes, or an open file.
+        name: Its name in the catalogue or in robot_descriptions; None for all others.
+        srdf: Its SRDF file, if the catalogue or robot_descriptions has one.
         package_dirs: Folders of its packages.
         xacro_args: Arguments of its xacro file.
     """
 
-    source: str | Path
+    source: RobotSource
     name: str | None = None
     srdf: Path | None = None
     package_dirs: tuple[Path, ...] = ()
@@ -118,40 +149,44 @@ def describe(
         RobotLoadError, UnknownNameError, InputError, MissingExtraError: As for `load`.
     """
     given = xacro.check_arguments(xacro_args)
+    source = Source.of(located.source)
+    content = source.content()
     path = located.source
-    document = urdf.file_bytes(path) if isinstance(path, Path) else None
-    if document is None or not isinstance(path, Path) or not xacro.is_xacro(path, document):
+    if not (isinstance(path, Path) and xacro.is_xacro(path, content)):
         if given:
             raise InputError(f"are for xacro files, and this is none; got {xacro_args!r}", argument="xacro_args")
-        return urdf.read(path)
+        return urdf.read_content(content, source)
     expansion = xacro.expand(path, {**located.xacro_args, **given}, package_dirs)
-    description = urdf.read_document(expansion.document, str(path), path, "utf-8")
+    description = urdf.read_content(expansion.document, source)
     remarks = (Flaw("xacro", remark, code="xacro") for remark in expansion.remarks)
     return replace(description, warnings=(*remarks, *description.warnings))
 
 
-def locate(source: str | os.PathLike[str]) -> Located:
+def locate(source: RobotSource) -> Located:
     """Find a robot's description by its name or path.
 
     Raises:
         UnknownNameError: There is no robot of that name.
         RobotLoadError: There is no such file, but the catalogue has a robot of that name; or robot_descriptions has the
             robot, but not in its cache.
-        InputError: The source is not a name, a path or text.
+        InputError: The source is none of these.
     """
-    if not isinstance(source, (str, os.PathLike)):
-        raise InputError(f"a robot must be a catalogue name, a path or URDF text; got {source!r}")
+    if not is_source(source):
+        raise InputError(
+            f"a robot must be a catalogue name, a path or URDF text, its bytes, or an open file; got {source!r}"
+        )
     if isinstance(source, str):
-        if source.lstrip("\ufeff \t\r\n").startswith("<"):
+        if is_document(source):
             return Located(source)
         looks_like_path = os.sep in source or source.endswith((".urdf", ".xml", ".xacro"))
         if not looks_like_path and (source in robot_catalog.catalog() or not os.path.exists(source)):
             return _named(source)
+    if not isinstance(source, (str, os.PathLike)):
+        return Located(source)
     path = _home_expanded(Path(source))
     if path.stem in robot_catalog.catalog() and not os.path.lexists(path):
         raise RobotLoadError(f"no such file, but the catalogue has a robot {path.stem!r}", source=str(path))
-    srdf = path.with_suffix(".srdf") if path.name else None
-    return Located(path, srdf=srdf if srdf and srdf.is_file() else None)
+    return Located(path)
 
 
 def _named(name: str) -> Located:

@@ -136,14 +136,20 @@ class RobotModel:
         return self._local
 
     @property
+    def urdf(self) -> str:
+        """The robot as URDF text, as Pinocchio reads it: checked and with plain numbers, without shapes."""
+        return self.description.xml
+
+    @property
     def poses(self) -> dict[str, Array]:
         """The named configurations in the SRDF file that belongs to the URDF: name → q (nq,).
 
         The arrays are read-only; copy one to change it. Joints that a pose does not mention are neutral. Without an
-        SRDF file there are no poses.
+        SRDF file there are no poses. The file is read when the poses are first asked for.
 
         Raises:
-            RobotLoadError: The SRDF file is faulty.
+            RobotLoadError: The SRDF file cannot be read, or a pose in it has no number for a joint, or one outside its
+                limits; the message names the pose and the joint.
         """
         poses = {name: q.copy() for name, q in self._poses.items()}
         for q in poses.values():
@@ -228,7 +234,8 @@ class RobotModel:
 
         Args:
             angles: Joint name → angle [rad], or position [m] for prismatic joints.
-            joint_placements: Name of a floating or planar joint → its placement in its parent, an SE3 or a 4×4 matrix.
+            joint_placements: Name of a floating or planar joint → how far it moved from where it is when neutral, along
+                the axes of its frame: an SE3 or a 4×4 matrix. A planar joint moves across its axis.
 
         Raises:
             UnknownNameError: No such joint; the message lists near names.
@@ -265,7 +272,9 @@ class RobotModel:
         return {joint.name: joint.angle(values) for joint in self.joints if joint.has_one_axis}
 
     def joint_placements(self, q: ArrayLike) -> dict[str, pinocchio.SE3]:
-        """The placements of all floating and planar joints at `q`, a free root included: name → SE3 in its parent.
+        """The placements of all floating and planar joints at `q`, a free root included: name → SE3.
+
+        Each is relative to where the joint is when it is neutral, along the axes of its frame.
 
         Raises:
             InputError: `q` is not a configuration of this robot.

@@ -17,12 +17,13 @@ from numpy.typing import NDArray
 
 from ..description import reader as urdf
 from ..description.flaw import Flaw
+from ..description.materials import Color
 from ..description.packages import resolve
-from ..description.xml import Element, parse
+from ..description.shape_tags import ShapeTag
+from ..description.source import RobotSource, is_source
 from ..errors import InputError
 from ..model.robot_model import RobotModel
 from . import triangles
-from .triangles import Color
 
 __all__ = ["Color", "Shape", "load_shapes"]
 
@@ -49,16 +50,17 @@ class Shape:
 
 
 def load_shapes(
-    robot_or_urdf: RobotModel | str | os.PathLike[str], package_dirs: Iterable[str | os.PathLike[str]] = ()
+    robot_or_urdf: RobotModel | RobotSource, package_dirs: Iterable[str | os.PathLike[str]] = ()
 ) -> tuple[list[Shape], list[Flaw]]:
     """Read the visual shapes of a robot.
 
     Args:
-        robot_or_urdf: A robot, a path to a .urdf file, or URDF text.
+        robot_or_urdf: A robot, a path to a .urdf file, URDF text or bytes, or an open file.
         package_dirs: Folders to search first for `package://` addresses; the robot's own come next.
 
     Returns:
-        The shapes in the order of the file, and one warning for each shape that could not be read.
+        The shapes in the order of the file, and one warning for each shape that could not be read. For a robot, the
+        shapes that its description left out are among the robot's own warnings instead.
 
     Raises:
         RobotLoadError: The file cannot be read, or is not a valid URDF.
@@ -70,34 +72,29 @@ def load_shapes(
     if isinstance(robot_or_urdf, RobotModel):
         description = robot_or_urdf.description
         folders.extend(robot_or_urdf.package_dirs)
-    elif isinstance(robot_or_urdf, (str, os.PathLike)):
+    elif is_source(robot_or_urdf):
         description = urdf.read(robot_or_urdf)
     else:
-        raise InputError(f"robot_or_urdf must be a robot, a path or URDF text; got {robot_or_urdf!r}")
-    robot = parse(description.document, None if description.path else "utf-8")
-    named = {
-        material.attributes.get("name", ""): color
-        for material in robot.walk()
-        if material.tag == "material" and (color := _material_color(material)) is not None
-    }
+        raise InputError(
+            f"robot_or_urdf must be a robot, a path or URDF text, its bytes, or an open file; got {robot_or_urdf!r}"
+        )
+    known = isinstance(robot_or_urdf, RobotModel)
+    warnings = [] if known else [flaw for flaw in description.warnings if flaw.code == "dropped-shape"]
     shapes: list[Shape] = []
-    warnings: list[Flaw] = []
     files: dict[str, list[triangles.Part]] = {}
-    for link in robot.named("link"):
-        link_name = link.attributes["name"]
-        for index, visual in enumerate(link.named("visual")):
+    for link in description.link_tags:
+        for visual in link.visuals:
             try:
-                placement, given = _origin(visual), _visual_color(visual, named)
                 parts = _parts(visual, description.path, folders, files)
             except Exception as fault:  # a shape never stops kinematics, and trimesh may raise anything
                 missing = fault.address if isinstance(fault, _MeshNotFoundError) else None
                 cause = f"a shape is left out: {fault}"
                 code = "unreadable-shape" if missing is None else "missing-mesh"
-                warnings.append(Flaw(f"link {link_name!r}", cause, code=code, line=visual.line, mesh=missing))
+                warnings.append(Flaw(f"link {link.name!r}", cause, code=code, line=visual.line, mesh=missing))
                 continue
             for part, (mesh, own) in enumerate(parts):
-                name = f"{link_name}/{index}" + (f"/{part}" if len(parts) > 1 else "")
-                shapes.append(Shape(link_name, name, placement, mesh, given or own or GREY))
+                name = f"{link.name}/{visual.index}" + (f"/{part}" if len(parts) > 1 else "")
+                shapes.append(Shape(link.name, name, _placement(visual), mesh, visual.color or own or GREY))
     return shapes, warnings
 
 
@@ -107,64 +104,33 @@ class _MeshNotFoundError(Exception):
         super().__init__(f"there is no mesh {address!r}")
 
 
-def _child(element: Element, tag: str) -> Element | None:
-    return next(iter(element.named(tag)), None)
-
-
-def _numbers(text: str) -> NDArray[np.float64]:
-    return np.array([float(word) for word in text.split()])
-
-
-def _origin(visual: Element) -> NDArray[np.float64]:
-    origin = _child(visual, "origin")
-    if origin is None:
-        return np.eye(4)
+def _placement(visual: ShapeTag) -> NDArray[np.float64]:
     placement = np.eye(4)
-    placement[:3, :3] = pinocchio.rpy.rpyToMatrix(_numbers(origin.attributes.get("rpy", "0 0 0")))
-    placement[:3, 3] = _numbers(origin.attributes.get("xyz", "0 0 0"))
+    placement[:3, :3] = pinocchio.rpy.rpyToMatrix(np.array(visual.rpy))
+    placement[:3, 3] = visual.xyz
     return placement
 
 
-def _material_color(material: Element) -> Color | None:
-    color = _child(material, "color")
-    if color is None or "rgba" not in color.attributes:
-        return None
-    r, g, b, a = _numbers(color.attributes["rgba"])
-    return (float(r), float(g), float(b), float(a))
-
-
-def _visual_color(visual: Element, named: dict[str, Color]) -> Color | None:
-    material = _child(visual, "material")
-    if material is None:
-        return None
-    return _material_color(material) or named.get(material.attributes.get("name", ""))
-
-
 def _parts(
-    visual: Element,
+    visual: ShapeTag,
     urdf_path: Path | None,
     package_dirs: Sequence[Path],
     files: dict[str, list[triangles.Part]],
 ) -> list[triangles.Part]:
-    """The meshes of one visual element, each with its own colour if it has one."""
-    geometry = _child(visual, "geometry")
-    for element in geometry.children if geometry else ():
-        given = element.attributes
-        match element.tag:
-            case "box":
-                return [(triangles.box(_numbers(given["size"])), None)]
-            case "sphere":
-                return [(triangles.sphere(float(given["radius"])), None)]
-            case "cylinder" | "capsule":
-                make = triangles.cylinder if element.tag == "cylinder" else triangles.capsule
-                return [(make(float(given["radius"]), float(given["length"])), None)]
-            case "mesh":
-                address = given["filename"]
-                if address not in files:
-                    files[address] = _file(address, urdf_path, package_dirs)
-                scale = _numbers(given.get("scale", "1 1 1"))
-                return [(triangles.scaled(mesh, scale), color) for mesh, color in files[address]]
-    raise ValueError("it has no geometry of a known kind (box, sphere, cylinder, capsule or mesh)")
+    """The meshes of one visual shape, each with its own colour if it has one."""
+    match visual.kind, visual.size:
+        case "box", size:
+            return [(triangles.box(np.array(size)), None)]
+        case "sphere", (radius,):
+            return [(triangles.sphere(radius), None)]
+        case "cylinder", (radius, length):
+            return [(triangles.cylinder(radius, length), None)]
+        case "capsule", (radius, length):
+            return [(triangles.capsule(radius, length), None)]
+    if visual.filename not in files:
+        files[visual.filename] = _file(visual.filename, urdf_path, package_dirs)
+    scale = np.array(visual.size)
+    return [(triangles.scaled(mesh, scale), color) for mesh, color in files[visual.filename]]
 
 
 def _file(address: str, urdf_path: Path | None, package_dirs: Sequence[Path]) -> list[triangles.Part]:

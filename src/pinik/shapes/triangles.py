@@ -9,10 +9,10 @@ import numpy as np
 import trimesh
 from numpy.typing import NDArray
 
-__all__ = ["Color", "Part", "box", "capsule", "cylinder", "read_file", "scaled", "sphere"]
+from ..description.materials import Color
 
-Color = tuple[float, float, float, float]
-"""Red, green, blue, opacity, each in 0..1."""
+__all__ = ["Part", "box", "capsule", "cylinder", "read_file", "scaled", "sphere"]
+
 Part = tuple[trimesh.Trimesh, Color | None]
 """A mesh, and its own colour if it has one."""
 

@@ -7,8 +7,11 @@ import sys
 import textwrap
 from typing import Any
 
+import numpy as np
 import pinocchio
+from numpy.typing import NDArray
 
+from ...errors import RobotLoadError
 from ...model.joint import Joint
 from ...robot import Robot
 from ...solving.native.module import why_not
@@ -63,13 +66,22 @@ def _fields(robot: Robot) -> dict[str, Any]:
             for follower, (leader, multiplier, offset) in robot.mimics.items()
         },
         "frames": list(robot.frame_names),
-        "poses": {name: {"angles": robot.angles(q), "q": q.tolist()} for name, q in robot.poses.items()},
+        "poses": {name: {"angles": robot.angles(q), "q": q.tolist()} for name, q in _poses(robot).items()},
         "warnings": list(robot.warnings),
         "engine": _engine(),
         "why_not_native": why_not(),
         "version": __version__,
         "pinocchio": pinocchio.__version__,
     }
+
+
+def _poses(robot: Robot) -> dict[str, NDArray[np.float64]]:
+    """The named configurations; none if the SRDF has a fault, which is a warning here."""
+    try:
+        return robot.poses
+    except RobotLoadError as error:
+        output.warn(str(error))
+        return {}
 
 
 def _engine() -> str:
@@ -118,7 +130,7 @@ def _emit(robot: Robot, units: Units) -> None:
         emit_table(("joint", "kind", "lower", "upper", "unit", ""), rows, numeric=("lower", "upper"))
         output.emit("")
     output.emit(_wrapped("frames", robot.frame_names))
-    poses = tuple(robot.poses)
+    poses = tuple(_poses(robot))
     output.emit(_wrapped("poses", poses or ("none",)))
 
 

@@ -24,7 +24,15 @@ LIMIT = 500_000_000
 
 _DIGEST_SIZE = 32
 # The code that makes the shapes; changing it invalidates the cache.
-_MAKERS = [Path(__file__).with_name("scene.py"), Path(__file__).parents[2] / "shapes" / "meshes.py"]
+_MAKERS = [
+    Path(__file__).parents[2] / room / module
+    for room, module in (
+        ("description", "materials.py"),
+        ("description", "shape_tags.py"),
+        ("shapes", "meshes.py"),
+        ("viewer/web", "scene.py"),
+    )
+]
 
 
 def shapes_of(robot: Robot) -> Shapes:
