@@ -7,6 +7,8 @@ from difflib import get_close_matches
 from functools import partial
 from typing import Any
 
+from .echoes import bounded
+
 __all__ = [
     "EngineError",
     "Flaw",
@@ -24,7 +26,10 @@ _MOST_SHOWN = 12
 
 
 class PinikError(Exception):
-    """The base class of all errors that pinik raises on purpose."""
+    """The base class of all errors that pinik raises on purpose. Long names in a message lose their middle."""
+
+    def __init__(self, message: str, **fields: Any) -> None:
+        super().__init__(bounded(message), **fields)
 
 
 class RobotLoadError(PinikError, ValueError):
@@ -38,8 +43,8 @@ class RobotLoadError(PinikError, ValueError):
 
     def __init__(self, message: str, *, source: str = "<text>", element: str | None = None) -> None:
         self.source = source
-        self.element = element
-        self.cause = message
+        self.element = None if element is None else bounded(element)
+        self.cause = bounded(message)
         where = f"{source}: {element}" if element else source
         super().__init__(f"{where}: {message}")
 
@@ -163,9 +168,9 @@ class Flaw(str):
 
     def __new__(cls, element: str, cause: str, *, common: str | None = None, mesh: str | None = None) -> Flaw:
         """The sentence "element: cause"."""
+        element, cause, common = bounded(element), bounded(cause), bounded(cause if common is None else common)
         self = super().__new__(cls, f"{element}: {cause}")
-        self.element, self.cause, self.mesh = element, cause, mesh
-        self.common = cause if common is None else common
+        self.element, self.cause, self.common, self.mesh = element, cause, common, mesh
         return self
 
     def __reduce__(self) -> tuple[Any, ...]:
