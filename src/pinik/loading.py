@@ -10,6 +10,7 @@ from pathlib import Path
 from .description import catalog as robot_catalog
 from .description import packages
 from .description import reader as urdf
+from .echoes import bounded
 from .errors import InputError, RobotLoadError, UrdfWarning
 from .robot import Robot
 
@@ -41,7 +42,7 @@ def load(
     """
     robot = load_in_silence(source, root=root, package_dirs=package_dirs, mimic=mimic)
     for words in robot.warnings:
-        warnings.warn(f"{robot.name}: {words}", UrdfWarning, stacklevel=2)
+        warnings.warn(bounded(f"{robot.name}: {words}"), UrdfWarning, stacklevel=2)
     return robot
 
 
@@ -66,9 +67,8 @@ def load_in_silence(
     missing = [a for a in description.meshes if not _mesh_found(a, description.path, robot.package_dirs)]
     if missing:
         count = "1 mesh was" if len(missing) == 1 else f"{len(missing)} meshes were"
-        robot.warnings += (
-            f"{count} not found ({missing[0]}{', …' if len(missing) > 1 else ''}); kinematics works without them",
-        )
+        named = bounded(missing[0]) + (", …" if len(missing) > 1 else "")
+        robot.warnings += (f"{count} not found ({named}); kinematics works without them",)
     return robot
 
 
@@ -93,7 +93,7 @@ def locate(source: str | os.PathLike[str]) -> tuple[str | None, Path | None, str
     if path.stem in robot_catalog.catalog() and not os.path.lexists(path):
         raise RobotLoadError(f"no such file, but the catalogue has a robot {path.stem!r}", source=str(path))
     srdf = path.with_suffix(".srdf") if path.name else None
-    return None, srdf if srdf and srdf.is_file() else None, path
+    return None, srdf if srdf and os.path.isfile(srdf) else None, path
 
 
 def _home_expanded(path: Path) -> Path:

@@ -89,7 +89,7 @@ def stop_writing(error: OSError) -> None:
 
 def reason_of(error: OSError) -> str:
     """Why a file or a stream cannot be read or written."""
-    return "it is closed" if error.errno == errno.EBADF else error.strerror or str(error)
+    return "the stream is closed" if error.errno == errno.EBADF else error.strerror or str(error)
 
 
 def abandon(stream: TextIO) -> None:
