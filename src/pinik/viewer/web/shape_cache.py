@@ -5,6 +5,7 @@ from __future__ import annotations
 import contextlib
 import hashlib
 import os
+import stat
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -97,7 +98,7 @@ def _read(path: Path) -> Shapes | None:
             return None
         parts, commands, warnings = umsgpack.unpackb(bytes(body))
         shapes = Shapes(tuple((link, where) for link, where in parts), tuple(commands), tuple(warnings))
-    except (OSError, ValueError, TypeError, umsgpack.UnpackException):
+    except (OSError, ValueError, TypeError, RecursionError, umsgpack.UnpackException):
         return None
     with contextlib.suppress(OSError):
         os.utime(path)
@@ -110,6 +111,8 @@ def _write(path: Path, shapes: Shapes) -> None:
     with contextlib.suppress(OSError, ValueError):
         body = umsgpack.packb([shapes.parts, shapes.commands, shapes.warnings])
         path.parent.mkdir(parents=True, exist_ok=True)
+        if os.path.lexists(path) and not stat.S_ISREG(path.lstat().st_mode):
+            path.unlink()  # for a pipe or a device would be written to, and a pipe would wait for a reader
         write_whole(path, hashlib.sha256(body).digest() + body)
         _make_room(path.parent)
 
