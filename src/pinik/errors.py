@@ -7,6 +7,8 @@ from difflib import get_close_matches
 from functools import partial
 from typing import Any
 
+from .echoes import bounded
+
 __all__ = [
     "EngineError",
     "InputError",
@@ -23,7 +25,10 @@ _MOST_SHOWN = 12
 
 
 class PinikError(Exception):
-    """The base class of all errors that pinik raises on purpose."""
+    """The base class of all errors that pinik raises on purpose. Long names in a message lose their middle."""
+
+    def __init__(self, message: str, **fields: Any) -> None:
+        super().__init__(bounded(message), **fields)
 
 
 class RobotLoadError(PinikError, ValueError):
@@ -37,8 +42,8 @@ class RobotLoadError(PinikError, ValueError):
 
     def __init__(self, message: str, *, source: str = "<text>", element: str | None = None) -> None:
         self.source = source
-        self.element = element
-        self.cause = message
+        self.element = None if element is None else bounded(element)
+        self.cause = bounded(message)
         where = f"{source}: {element}" if element else source
         super().__init__(f"{where}: {message}")
 

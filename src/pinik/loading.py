@@ -13,6 +13,7 @@ from .description import downloads, xacro
 from .description import reader as urdf
 from .description.flaw import Flaw, summarised
 from .description.source import RobotSource, Source, is_document, is_source
+from .echoes import bounded
 from .errors import InputError, RobotLoadError, UnknownNameError, UrdfWarning
 from .robot import Robot
 
@@ -66,7 +67,7 @@ def load(
         allow_outside=allow_outside,
     )
     for words in summarised(robot.warnings):
-        warnings.warn(f"{robot.name}: {words}", UrdfWarning, stacklevel=2)
+        warnings.warn(bounded(f"{robot.name}: {words}"), UrdfWarning, stacklevel=2)
     return robot
 
 
@@ -118,7 +119,7 @@ def _beside(description: urdf.Description) -> Path | None:
     """The SRDF file of the same name in the same folder, if there is one."""
     path = description.path
     srdf = path.with_suffix(".srdf") if path and path.name else None
-    return srdf if srdf and srdf.is_file() else None
+    return srdf if srdf and os.path.isfile(srdf) else None
 
 
 @dataclass(frozen=True)
@@ -217,10 +218,9 @@ def _unfound(robot: Robot) -> Iterator[Flaw]:
     for address in robot.description.meshes:
         found = surroundings.find(address)
         if found.path is None:
-            shown = address if len(address) <= 80 else address[:77] + "..."
             what = "not opened" if found.refused else "not found"
             yield Flaw(
-                f"mesh {shown!r}",
+                f"mesh {address!r}",
                 f"{what}: {found.why}; kinematics works without it",
                 code=found.code,
                 common=f"{what}; kinematics works without it",

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from ..errors import UnknownNameError
-from .files import FileError, read_within
+from ..files import FileError, read_within
 from .packages import example_robot_data
 from .xml import MAX_BYTES, DocumentError, parse
 

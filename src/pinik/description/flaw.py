@@ -7,6 +7,8 @@ from dataclasses import dataclass
 from functools import partial
 from typing import Any
 
+from ..echoes import bounded
+
 __all__ = ["Edit", "Flaw", "summarised"]
 
 _MOST_NAMED = 6
@@ -66,9 +68,10 @@ class Flaw(str):
         mesh: str | None = None,
     ) -> Flaw:
         """The sentence "element: cause (line 12)"."""
+        element, cause, common = bounded(element), bounded(cause), bounded(cause if common is None else common)
         self = super().__new__(cls, f"{element}: {cause}" + (f" (line {line})" if line else ""))
         self.element, self.cause, self.line, self.code = element, cause, line, code
-        self.common = cause if common is None else common
+        self.common = common
         self.why, self.mend, self.edits, self.mesh = why, mend, tuple(edits), mesh
         return self
 

@@ -6,7 +6,7 @@ import os
 import re
 from pathlib import Path
 
-from .files import FileError, read_within
+from ..files import FileError, read_within
 
 __all__ = ["is_package", "manifest_name", "packages_in"]
 

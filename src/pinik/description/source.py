@@ -8,8 +8,8 @@ from pathlib import Path
 from typing import IO, Any
 
 from ..errors import RobotLoadError
+from ..files import FileError, read_within
 from .document import declared_as_utf_8
-from .files import FileError, read_within
 from .xml import MAX_BYTES, DocumentError
 
 __all__ = ["RobotSource", "Source", "is_document", "is_source"]

@@ -20,7 +20,7 @@ from typing import IO, Any
 
 from ..errors import InputError, RobotLoadError, UnknownNameError
 from ..extras import needed_by
-from .files import megabytes
+from ..files import megabytes
 from .packages import Surroundings
 from .xml import MAX_BYTES
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import logging
 from collections.abc import Iterable
 from pathlib import Path
 
@@ -15,6 +16,9 @@ __all__ = ["Part", "box", "capsule", "cylinder", "read_file", "scaled", "sphere"
 
 Part = tuple[trimesh.Trimesh, Color | None]
 """A mesh, and its own colour if it has one."""
+
+# Otherwise trimesh prints tracebacks on stderr, such as that of a missing texture. Programs can still listen to it.
+logging.getLogger("trimesh").addHandler(logging.NullHandler())
 
 CREASE = np.deg2rad(40.0)  # edges sharper than this stay sharp when a mesh brings no normals
 

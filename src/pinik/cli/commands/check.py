@@ -50,18 +50,18 @@ def check(
 
 def _emit(found: Inspection) -> None:
     verdict = "loads" if found.loads else "cannot be loaded"
-    output.emit(output.painted(f"{found.file}: {verdict}", "green" if found.loads else "red"))
+    output.emit_words(f"{found.file}: {verdict}", "green" if found.loads else "red")
     for fault in found.faults:
-        output.emit("fault: " + (f"{fault.element}: " if fault.element else "") + fault.message)
+        output.emit_words("fault: " + (f"{fault.element}: " if fault.element else "") + fault.message)
     for words in summarised(found.warnings):
-        output.emit(f"warning: {words}")
+        output.emit_words(f"warning: {words}")
     for address in found.missing_meshes:
-        output.emit(f"missing mesh: {address}")
+        output.emit_words(f"missing mesh: {address}")
     for words in found.mesh_faults:
-        output.emit(f"mesh: {words}")
+        output.emit_words(f"mesh: {words}")
     opinion = found.second_opinion
     if opinion is not None:
-        output.emit(str(opinion) if opinion.agrees else f"warning: {opinion}")
+        output.emit_words(str(opinion) if opinion.agrees else f"warning: {opinion}")
     if found.loads:
         counts = {"link": found.links, "joint": found.joints, "mesh": found.meshes, "shape": found.shapes}
-        output.emit(", ".join(counted(count, noun) for noun, count in counts.items()))
+        output.emit_words(", ".join(counted(count, noun) for noun, count in counts.items()))

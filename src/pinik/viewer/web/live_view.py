@@ -13,7 +13,6 @@ import threading
 import webbrowser
 from collections.abc import Callable
 from concurrent.futures import Future, ThreadPoolExecutor
-from pathlib import Path
 from types import TracebackType
 from typing import Any, TypeVar
 
@@ -22,6 +21,7 @@ import tornado.ioloop
 from numpy.typing import ArrayLike, NDArray
 
 from ... import errors
+from ...files import write_whole
 from ...picture.camera import Camera
 from ...picture.picture import Picture
 from ...robot import Robot
@@ -182,8 +182,12 @@ class LiveView:
         return self._do(lambda: [instance.q.copy() for instance in self._show.session.seen])
 
     def save_animation(self, path: str | os.PathLike[str]) -> None:
-        """Write the last 20 seconds as one HTML file that plays without a server."""
-        Path(path).write_text(self._do(self._show.animation), "utf-8")
+        """Write the last 20 seconds as one HTML file, whole or not at all, that plays without a server.
+
+        Raises:
+            OSError: The file cannot be written.
+        """
+        write_whole(path, self._do(self._show.animation).encode())
 
     def _do(self, work: Callable[[], T]) -> T:
         """Call `work` in the server's thread, between two steps, and return its result."""
