@@ -119,11 +119,11 @@ def describe(
     """
     given = xacro.check_arguments(xacro_args)
     path = located.source
-    document = urdf.file_bytes(path) if isinstance(path, Path) else None
-    if document is None or not isinstance(path, Path) or not xacro.is_xacro(path, document):
+    document = urdf.file_bytes(path) if isinstance(path, Path) else b""
+    if not isinstance(path, Path) or not xacro.is_xacro(path, document):
         if given:
             raise InputError(f"are for xacro files, and this is none; got {xacro_args!r}", argument="xacro_args")
-        return urdf.read(path)
+        return urdf.read_document(document, str(path), path) if isinstance(path, Path) else urdf.read(path)
     expansion = xacro.expand(path, {**located.xacro_args, **given}, package_dirs)
     description = urdf.read_document(expansion.document, str(path), path, "utf-8")
     remarks = (Flaw("xacro", remark, code="xacro") for remark in expansion.remarks)

@@ -111,10 +111,10 @@ def read_document(document: bytes, label: str, path: Path | None, encoding: str 
         RobotLoadError: It is not a valid URDF; the message names the element and the cause.
     """
     try:
-        return _describe(parse(document, encoding), label, path, document)
+        return _describe(parse(document, encoding), _shown(label), path, document)
     except DocumentError as fault:
         line = f" (line {fault.line})" if fault.line else ""
-        raise RobotLoadError(fault.message + line, source=label, element=fault.owner) from None
+        raise RobotLoadError(fault.message + line, source=_shown(label), element=fault.owner) from None
 
 
 def _shown(path: str) -> str:
