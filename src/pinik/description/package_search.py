@@ -43,9 +43,9 @@ class PackageSearch:
         self._by_manifest: dict[str, list[Path]] | None = None
 
     def places(self, name: str) -> Iterator[Path]:
-        """The folders in which a package of this name may be: given ones, those near the URDF, installed ones."""
+        """The folders that may be a package of this name: given ones, those near the URDF, installed ones."""
         if name not in self._by_folder_name:
-            self._by_folder_name[name] = list(dict.fromkeys(self._named(name)))
+            self._by_folder_name[name] = [place for place in dict.fromkeys(self._named(name)) if os.path.isdir(place)]
         yield from self._by_folder_name[name]
         if self._by_manifest is None:
             self._by_manifest = self._named_by_manifests()

@@ -90,7 +90,7 @@ class Surroundings:
 
     def package(self, name: str) -> Path | None:
         """The folder of a package, or None if the search does not find it."""
-        return next((place for place in self._search.places(name) if os.path.isdir(place)), None)
+        return next(self._search.places(name), None)
 
     def _candidates(self, address: Address) -> Iterator[Path]:
         if address.package is not None:

@@ -129,8 +129,12 @@ class _Builder:
         return self._parser.CurrentLineNumber + self._lines_before
 
 
-def parse(document: bytes) -> Element:
+def parse(document: bytes, most_bytes: int = MAX_BYTES) -> Element:
     """Parse an XML document, in the encoding that it declares.
+
+    Args:
+        document: The bytes of the file.
+        most_bytes: The largest size.
 
     Returns:
         The root element.
@@ -139,8 +143,8 @@ def parse(document: bytes) -> Element:
         BrokenXMLError: The document is not well-formed XML.
         DocumentError: It declares a document type, or exceeds the bounds of this module.
     """
-    if len(document) > MAX_BYTES:
-        raise DocumentError(f"larger than {MAX_BYTES // 1024**2} MB, too large for a robot description")
+    if len(document) > most_bytes:
+        raise DocumentError(f"larger than {most_bytes // 1024**2} MB, too large for a robot description")
     if not document.strip():
         raise DocumentError("empty: it contains no XML")
     # Blank lines before the declaration are common in pasted text, and other URDF readers accept them.

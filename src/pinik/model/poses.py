@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from ..description.numbers import FARTHEST, in_words, plain_number
 from ..description.xml import MAX_BYTES, DocumentError, Element, parse
 from ..errors import RobotLoadError
+from ..files import FileError, read_within
 from .joint import Joint
 
 __all__ = ["read_poses"]
@@ -39,10 +40,9 @@ def read_poses(srdf: Path, model: pinocchio.Model, joints: Iterable[Joint]) -> d
             or a number outside its limits. The message names the pose and the joint.
     """
     try:
-        with srdf.open("rb") as file:
-            robot = parse(file.read(MAX_BYTES + 1))
-    except OSError as error:
-        raise RobotLoadError(f"the SRDF cannot be read: {error.strerror or error}", source=str(srdf)) from None
+        robot = parse(read_within(srdf, MAX_BYTES, "an SRDF file"))
+    except FileError as fault:
+        raise RobotLoadError(f"the SRDF cannot be read: {fault}", source=str(srdf)) from None
     except DocumentError as fault:
         raise RobotLoadError(f"the SRDF cannot be read: {fault.message}", source=str(srdf)) from None
     by_name = {joint.name: joint for joint in joints}
