@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import sys
 from dataclasses import dataclass
 
 from .flaw import Flaw
@@ -15,6 +16,7 @@ __all__ = ["ENDLESS", "ONE_AXIS_KINDS", "JointTag", "Mimic", "read_joint"]
 # [rad or m]: how SDF and Gazebo write that there is no limit; larger ones are read as infinite.
 ENDLESS = 1e16
 
+_ROUNDING = 4.0 * sys.float_info.epsilon
 JOINT_KINDS = ("revolute", "continuous", "prismatic", "fixed", "floating", "planar")
 ONE_AXIS_KINDS = ("revolute", "continuous", "prismatic")
 
@@ -121,7 +123,10 @@ def _read_mimic(mimic: Part) -> Mimic:
 
 
 def _read_axis(joint: Part, kind: str) -> Vector:
-    """The unit axis; scaled before it is normalised, so that squares neither overflow nor underflow."""
+    """The unit axis; scaled before it is normalised, so that squares neither overflow nor underflow.
+
+    An axis that is one long already stays as it is written.
+    """
     default = (1.0, 0.0, 0.0)
     axis = joint.only("axis")
     if axis is None and kind == "planar":
@@ -135,6 +140,8 @@ def _read_axis(joint: Part, kind: str) -> Vector:
     largest = max(abs(x), abs(y), abs(z))
     if largest == 0.0:
         raise axis.bad_value("xyz", "the axis is zero")
+    if abs(math.hypot(x, y, z) - 1.0) <= _ROUNDING:
+        return (x, y, z)
     x, y, z = x / largest, y / largest, z / largest
     length = math.hypot(x, y, z)
     return (x / length, y / length, z / length)

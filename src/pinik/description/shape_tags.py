@@ -109,20 +109,20 @@ def _size(solid: Part) -> tuple[float, ...]:
 
 def _scale(mesh: Part) -> tuple[float, ...]:
     """The scale of a mesh; a negative one mirrors it, as is common for left and right limbs."""
-    text = mesh.element.attributes.get("scale", "1 1 1")
+    text = mesh.element.attributes.get("scale", "")
     if not text.strip():
         return (1.0, 1.0, 1.0)
-    scale = mesh.numbers("scale", (1, 3, 4)) if "scale" in mesh.element.attributes else (1.0, 1.0, 1.0)
+    scale = mesh.numbers("scale", (1, 3, 4))
     if len(scale) != 3:
-        shown = " ".join(f"{value:g}" for value in (scale * 3 if len(scale) == 1 else scale[:3]))
+        what, how = ("one number", "for all axes") if len(scale) == 1 else ("four numbers", "without the last")
+        scale = scale * 3 if len(scale) == 1 else scale[:3]
+        shown = " ".join(f"{value:g}" for value in scale)
         mesh.flaw(
-            f'<mesh scale="{text.strip()}"> has {len(scale)} numbers instead of three; it is read as "{shown}"',
+            f'<mesh scale="{text.strip()}"> has {what} instead of three; it is read as "{shown}"',
             code="loose-scale",
-            common=f"a mesh's scale has {len(scale)} numbers instead of three, of which "
-            + ("the only one is taken for all axes" if len(scale) == 1 else "the first three are taken"),
+            common=f"a mesh's scale has {what} instead of three, and is taken {how}",
             mend=f'write scale="{shown}"',
         )
-        scale = scale * 3 if len(scale) == 1 else scale[:3]
     if min(map(abs, scale)) < _SMALLEST:
         raise mesh.bad_value("scale", f"a scale must not be zero, or smaller than {_SMALLEST:g}")
     return scale

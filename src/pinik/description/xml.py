@@ -37,7 +37,7 @@ class BrokenXMLError(DocumentError):
     Attributes:
         kind: "junk" for something after the root element, "encoding" for bytes that are not in the encoding of the
             document, "token" for characters that XML does not allow, "" for anything else.
-        start: The offset of the fault in the bytes of the document.
+        start: The offset of what comes after the root element; None for other kinds.
     """
 
     def __init__(self, message: str, *, kind: str = "", line: int | None = None, start: int | None = None) -> None:
@@ -82,6 +82,7 @@ class _Builder:
 
     def __init__(self, parser: expat.XMLParserType, blank: bytes) -> None:
         self.root: Element | None = None
+        self.end: int | None = None  # the offset of the tag that ends the root element
         self._open: list[Element] = []
         self._count = 0
         self._parser = parser
@@ -109,6 +110,8 @@ class _Builder:
 
     def _end(self, _tag: str) -> None:
         self._open.pop()
+        if not self._open:
+            self.end = self._parser.CurrentByteIndex + self._bytes_before
 
     def _refuse_doctype(self, name: str, *_: object) -> None:
         raise DocumentError(
@@ -154,7 +157,10 @@ def parse(document: bytes, most_bytes: int = MAX_BYTES) -> Element:
     try:
         parser.Parse(document[len(blank) :], True)
     except expat.ExpatError as error:
-        raise _broken(document, error, parser.ErrorByteIndex + len(blank), blank.count(b"\n")) from None
+        broken = _broken(document, error, parser.ErrorByteIndex + len(blank), blank.count(b"\n"))
+        if builder.end is not None:
+            broken.kind, broken.start = "junk", document.find(b">", builder.end) + 1
+        raise broken from None
     except (UnicodeError, LookupError, ValueError) as error:
         raise BrokenXMLError(f"not XML: its encoding cannot be read ({error})", kind="encoding") from None
     if builder.root is None:
@@ -166,7 +172,6 @@ def _broken(document: bytes, error: expat.ExpatError, start: int, lines_before: 
     """What expat found, with a plainer description of its "invalid token" where the bytes are not text."""
     codes = expat.errors.codes
     kinds = {
-        codes[expat.errors.XML_ERROR_JUNK_AFTER_DOC_ELEMENT]: "junk",
         codes[expat.errors.XML_ERROR_UNKNOWN_ENCODING]: "encoding",
         codes[expat.errors.XML_ERROR_INCORRECT_ENCODING]: "encoding",
         codes[expat.errors.XML_ERROR_INVALID_TOKEN]: "token",
@@ -174,12 +179,12 @@ def _broken(document: bytes, error: expat.ExpatError, start: int, lines_before: 
     kind, cause = kinds.get(error.code, ""), expat.ErrorString(error.code)
     if kind == "token" and b"\0" in document:
         kind, cause = "", "it contains null bytes"
-    elif kind == "token":
+    elif kind == "token" and document[start : start + 1] >= b"\x80":
+        kind = "encoding"
         try:
             document.decode("utf-8")
         except UnicodeDecodeError as undecoded:
-            kind = "encoding"
             cause = f"byte 0x{document[undecoded.start]:02x} is not UTF-8, and no other encoding is declared"
     line = error.lineno + lines_before
     message = f"not XML: {cause} (line {line}, column {error.offset + 1})"
-    return BrokenXMLError(message, kind=kind, line=line, start=start)
+    return BrokenXMLError(message, kind=kind, line=line)
