@@ -22,7 +22,7 @@ SOURCE = ROOT / "src" / "pinik"
 # Package → the modules and rooms that alone may import it.
 ONLY_THERE = {
     "yourdfpy": {"shapes.second_opinion"},
-    "trimesh": {"shapes.meshes", "shapes.triangles"},
+    "trimesh": {"shapes.meshes", "shapes.neighbours", "shapes.triangles"},
     "scipy": set(),
     "PIL": {"picture.picture"},
     "meshcat": set(),  # of meshcat the page takes the JavaScript; the Python package brings IPython and ZeroMQ
