@@ -100,7 +100,7 @@ def test_signals_at_random_moments(started, tmp_path):
     path.write_text("x,y,z\n" + "".join(f"0.2,0.2,{0.7 + k / 1000}\n" for k in range(200)))
     moments = random.Random(20)
     statuses = set()
-    for attempt in range(12):
+    for attempt in range(9):
         file.write_text(OLD)
         number = (signal.SIGINT, signal.SIGTERM, signal.SIGPIPE)[attempt % 3]
         process = started("track", "arm", str(path), "--frame", "tip", "--output", str(file))
