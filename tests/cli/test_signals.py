@@ -44,12 +44,14 @@ def started(environment, tmp_path):
     (tmp_path / "site" / "sitecustomize.py").write_text(TELLING)
     running = []
 
-    def start(*arguments: str, before: str = "pinik.version", wait: bool = False) -> subprocess.Popen[bytes]:
+    def start(
+        *arguments: str, how: tuple[str, ...] = ("-m", "pinik"), before: str = "pinik.version", wait: bool = False
+    ) -> subprocess.Popen[bytes]:
         reading, writing = os.pipe()
         told = {"TELL_BEFORE": before, "TELL_TO": str(writing)} | ({"THEN_WAIT": "1"} if wait else {})
         path = os.pathsep.join([str(tmp_path / "site"), environment["PYTHONPATH"]])
         process = subprocess.Popen(
-            [sys.executable, "-c", USUAL, "-m", "pinik", *arguments],
+            [sys.executable, "-c", USUAL, *how, *arguments],
             stdout=subprocess.PIPE,
             stderr=subprocess.PIPE,
             env=environment | told | {"PYTHONPATH": path},
@@ -85,6 +87,15 @@ def test_a_signal_while_modules_load_is_one_word_and_its_status(started, number,
     assert (process.returncode, out, err) == (SIGNALS[number][0], b"", SIGNALS[number][1])
 
 
+def test_the_installed_script_is_the_command_too(started, tmp_path):
+    (tmp_path / "bin").mkdir()
+    (tmp_path / "bin" / "pinik").write_text("import sys\nfrom pinik.cli import main\nsys.exit(main())\n")
+    process = started("robots", how=(str(tmp_path / "bin" / "pinik"),), before="pinik.errors", wait=True)
+    process.send_signal(signal.SIGINT)
+    assert process.communicate(timeout=30) == (b"", b"interrupted\n")
+    assert process.returncode == 130
+
+
 def test_sigterm_ends_the_live_view_in_one_word(started):
     process = started("live", "two_link", "--no-browser", "--port", "0")
     assert process.stdout.readline().startswith(b"http://")
@@ -100,7 +111,7 @@ def test_signals_at_random_moments(started, tmp_path):
     path.write_text("x,y,z\n" + "".join(f"0.2,0.2,{0.7 + k / 1000}\n" for k in range(200)))
     moments = random.Random(20)
     statuses = set()
-    for attempt in range(12):
+    for attempt in range(9):
         file.write_text(OLD)
         number = (signal.SIGINT, signal.SIGTERM, signal.SIGPIPE)[attempt % 3]
         process = started("track", "arm", str(path), "--frame", "tip", "--output", str(file))

@@ -81,11 +81,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
     """
     words = list(sys.argv[1:] if arguments is None else arguments)
     try:
-        with (
-            as_exceptions(),
-            warnings.catch_warnings(),
-            np.errstate(all="ignore"),
-        ):  # plain Pinocchio checks each answer
+        # numpy need not warn of infinities and NaN, as plain Pinocchio checks each answer.
+        with as_exceptions(), warnings.catch_warnings(), np.errstate(all="ignore"):
             warnings.showwarning = _show_warning
             output.prepare_streams()
             return _run(words)

@@ -56,8 +56,8 @@ def shapes_of(robot: Robot) -> Shapes:
 
 def _path(robot: Robot) -> Path | None:
     """The robot's file; None without a home folder, or if its meshes cannot be looked at."""
-    folder = cache_folder()
     try:
+        folder = cache_folder()
         return folder / f"{_key(robot)}.shapes" if folder.is_absolute() else None
     except (OSError, ValueError):
         return None
