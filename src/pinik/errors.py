@@ -106,9 +106,12 @@ def near_names(name: object, valid: Iterable[str], most: int = 4) -> tuple[str, 
     names: dict[str, str] = {}
     for one in valid:
         names.setdefault(one.casefold(), one)
+    # A much longer word is close to none of the names, and a search with it would take long.
+    similar = len(word) <= 3 * max(map(len, names), default=0)
+    close = get_close_matches(word, names, n=most, cutoff=0.6) if similar else []
     longer = sorted((one for one in names if one.startswith(word)), key=len)
     shorter = sorted((one for one in names if one and word.startswith(one)), key=len, reverse=True)
-    ranked = dict.fromkeys([*longer, *get_close_matches(word, names, n=most, cutoff=0.6), *shorter])
+    ranked = dict.fromkeys([*longer, *close, *shorter])
     return tuple(names[one] for one in ranked)[:most]
 
 
