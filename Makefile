@@ -4,17 +4,19 @@ VENV := .venv
 python := $(VENV)/bin/python
 pip := $(python) -m pip --quiet --quiet --no-input --disable-pip-version-check
 engine := CMakeLists.txt $(wildcard src/native/*.cmake src/native/*/*)
+compiled := build/{wheel_tag}
 sanitized := build/sanitized
 
 # A sourced ROS workspace would put another Pinocchio, built for another Python, before ours.
 unexport PYTHONPATH
 
-.PHONY: help run test lint sanitize bench notebooks clean
+.PHONY: help run test lint versions sanitize bench notebooks clean
 
 help:
 	@echo "make run       install what is missing into $(VENV), run a tour and open the live view"
 	@echo "make test      run every check: style, types and tests"
 	@echo "make lint      check style and types only"
+	@echo "make versions  build, install and try pinik under every other Python that it supports and that is found here"
 	@echo "make sanitize  run the engine's tests under AddressSanitizer and UndefinedBehaviorSanitizer"
 	@echo "make bench     measure how fast the solvers are"
 	@echo "make notebooks run the notebooks and save them with their pictures"
@@ -33,6 +35,9 @@ lint: $(VENV)/installed-dev
 	@$(python) -m ruff check .
 	@$(python) -m ruff format --check .
 	@$(python) -m mypy
+
+versions: $(python)
+	@$(python) tools/try_versions.py
 
 # Python itself is built without sanitizers, so their library must be loaded first and Python's own leaks be ignored.
 # pytest must not capture the reports, which are written just before the process ends.
@@ -68,7 +73,7 @@ $(VENV)/installed-dev: pyproject.toml $(engine) $(python)
 	@echo "Installing pinik and its tools into $(VENV) (two or three minutes, as its engine is compiled)"
 	@$(pip) install $$($(python) tools/build_requirements.py)
 	@$(pip) install $$($(python) tools/build_requirements.py --with-tools)
-	@$(pip) install --no-build-isolation --editable '.[dev]'
+	@$(pip) install --no-build-isolation --config-settings 'build-dir=$(compiled)' --editable '.[dev]'
 	@touch $(VENV)/installed $@
 
 $(sanitized)/built: pyproject.toml $(engine) $(python)

@@ -34,9 +34,11 @@ from pinocchio.visualize import MeshcatVisualizer
 import pinik
 from pinik.description.packages import example_robot_data
 from pinik.viewer.simulation.session import Session
+from pinik.viewer.web.guests import Guests
+from pinik.viewer.web.heartbeat import Heartbeat
 from pinik.viewer.web.scene import Shapes
 from pinik.viewer.web.seats import Tab
-from pinik.viewer.web.server import make_application
+from pinik.viewer.web.server import make_server
 from pinik.viewer.web.show import Show
 
 BAR = 2.0  # [ms]
@@ -105,7 +107,7 @@ async def measure(name: str, frames: int) -> dict[str, list[float]]:
     session.running = True
     show = TimedShow(session)
     listening = tornado.netutil.bind_sockets(0, "127.0.0.1")
-    server = tornado.httpserver.HTTPServer(make_application(show, "127.0.0.1"))
+    server = make_server(show, Heartbeat(lambda: None, lambda: True), Guests(), "127.0.0.1", "")
     server.add_sockets(listening)
     address = f"ws://127.0.0.1:{listening[0].getsockname()[1]}/ws"
     with contextlib.redirect_stdout(sys.stderr):

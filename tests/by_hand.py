@@ -47,7 +47,7 @@ ZOO = robot(
     joint("l_hinge", "a", "b", origin((0, 0.3, 0), (0, 0.7, 0)), axis(0, 1, 0), limit=limit(-2, 1.5)),
     joint("m_slide", "b", "c", origin((0.1, 0, 0.2)), axis(1, 0, 1), kind="prismatic", limit=limit(-0.2, 0.6)),
     joint("n_fixed", "c", "tip", origin((0, 0.1, 0.25), (1, 2, 3)), kind="fixed", limit=""),
-    joint("s_plane", "body", "d", origin((-0.2, 0.1, 0), (0.2, 0.5, -1)), kind="planar", limit=""),
+    joint("s_plane", "body", "d", origin((-0.2, 0.1, 0), (0.2, 0.5, -1)), axis(0, 0, 1), kind="planar", limit=""),
     joint("t_hinge", "d", "e", origin((0.3, 0, 0)), axis(0, 0, -1), mimic("l_hinge", -0.5, 0.1)),
     joint("u_slide", "e", "f", origin((0, 0.2, 0)), axis(0, 1, 0), mimic("l_hinge", 0.1), kind="prismatic"),
     joint("v_turn", "f", "g", origin((0.1, 0, 0)), axis(1, 0, 0), mimic("l_hinge", 0.5), kind="continuous"),
@@ -92,6 +92,8 @@ def chains(draw: st.DrawFn, kinds: Sequence[str] = ("revolute", "continuous", "p
                 leaders[name] = (kind, 0.0 if kind == "continuous" else middle)
             if kind != "continuous":
                 bounds = limit(middle - half - 1e-6, middle + half)
+        elif kind == "planar":
+            words.append(axis(*draw(vector.filter(any))))
         parts.append(joint(name, f"l{i}", f"l{i + 1}", *words, kind=kind, limit=bounds))
     end = joint("end", f"l{count}", "tip", origin(draw(vector)), kind="fixed", limit="")
     return robot(*(link(f"l{i}") for i in range(count + 1)), link("tip"), *parts, end)
@@ -180,9 +182,23 @@ def random_rotation(rng: np.random.Generator) -> Array:
     return rotation_about(direction / np.linalg.norm(direction), rng.uniform(-math.pi, math.pi))
 
 
-def random_placement(rng: np.random.Generator, kind: str = "floating") -> Array:
-    """A 4×4 of a floating joint, or of a planar one."""
+def joint_axes(text: str) -> dict[str, Array]:
+    """Joint → its unit axis in its own frame, x where the text gives none."""
+    axes = {}
+    for tag in ElementTree.fromstring(text).findall("joint"):
+        element = tag.find("axis")
+        direction = np.array([1.0, 0, 0] if element is None else [float(w) for w in element.attrib["xyz"].split()])
+        axes[tag.attrib["name"]] = direction / (np.linalg.norm(direction) or 1.0)
+    return axes
+
+
+def random_placement(
+    rng: np.random.Generator, kind: str = "floating", normal: Sequence[float] | Array = (0.0, 0.0, 1.0)
+) -> Array:
+    """A 4×4 of a floating joint, or of a planar one that moves across `normal`."""
     if kind == "planar":
-        turn = rotation_about(np.array([0.0, 0, 1]), rng.uniform(-math.pi, math.pi))
-        return homogeneous(turn, (*rng.uniform(-1, 1, 2), 0))
+        across = np.array(normal)
+        turn = rotation_about(across, rng.uniform(-math.pi, math.pi))
+        way = rng.uniform(-1, 1, 3)
+        return homogeneous(turn, way - (way @ across) * across)
     return homogeneous(random_rotation(rng), rng.uniform(-1, 1, 3))

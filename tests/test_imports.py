@@ -22,12 +22,12 @@ SOURCE = ROOT / "src" / "pinik"
 # Package → the modules and rooms that alone may import it.
 ONLY_THERE = {
     "yourdfpy": {"shapes.second_opinion"},
-    "trimesh": {"shapes.meshes", "shapes.triangles"},
+    "trimesh": {"shapes.meshes", "shapes.neighbours", "shapes.triangles"},
     "scipy": set(),
     "PIL": {"picture.picture"},
     "meshcat": set(),  # of meshcat the page takes the JavaScript; the Python package brings IPython and ZeroMQ
     "zmq": set(),
-    "tornado": {"viewer.web.server", "viewer.web.later", "viewer.web.live_view"},
+    "tornado": {f"viewer.web.{name}" for name in ("server", "tab", "door", "heartbeat", "later", "live_view")},
     "umsgpack": {"viewer.web.scene", "viewer.web.shape_cache"},
 }
 HEAVY = {"yourdfpy", "trimesh", "scipy", "PIL", "meshcat", "matplotlib", "typer", "rich", "tornado", "umsgpack"}

@@ -82,23 +82,39 @@ def is_installed(requirement: Requirement) -> bool:
         return False
 
 
+def need_to_build(what: str, *names: str) -> None:
+    """Skip the test, or fail where the engine is required, if one of these packages is missing; by default any."""
+    listed = run(sys.executable, ROOT / "tools" / "build_requirements.py", "--with-tools", cwd=ROOT)
+    missing = [r.name for r in map(Requirement, listed.splitlines()) if not is_installed(r)]
+    missing = [name for name in missing if not names or name in names]
+    if missing:
+        reason = f"{what} cannot be built here, as these are not installed: {', '.join(missing)}"
+        assert not os.environ.get("PINIK_REQUIRE_NATIVE"), reason
+        pytest.skip(reason)
+
+
 @pytest.fixture(scope="module")
 def engine(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """The Python of a fresh environment into which pinik's wheel was installed with its compiled engine.
 
     What pinik needs is seen there from this environment, and pinik itself is not: its own folder comes first.
     """
-    listed = run(sys.executable, ROOT / "tools" / "build_requirements.py", "--with-tools", cwd=ROOT)
-    needed = map(Requirement, listed.splitlines())
-    missing = [r.name for r in needed if not is_installed(r)]
-    if missing:
-        reason = f"the engine cannot be built here, as these are not installed: {', '.join(missing)}"
-        assert not os.environ.get("PINIK_REQUIRE_NATIVE"), reason
-        pytest.skip(reason)
+    need_to_build("the engine")
     folder = tmp_path_factory.mktemp("engine")
     pip = (sys.executable, "-m", "pip", "--quiet", "--disable-pip-version-check")
     # What `make` has compiled in build/ is linked again; otherwise this takes a minute or two.
-    run(*pip, "wheel", "--no-deps", "--no-build-isolation", "--wheel-dir", folder / "wheels", ROOT, cwd=folder)
+    compiled = ("--config-settings", f"build-dir={ROOT}/build/{{wheel_tag}}")
+    run(
+        *pip,
+        "wheel",
+        "--no-deps",
+        "--no-build-isolation",
+        *compiled,
+        "--wheel-dir",
+        folder / "wheels",
+        ROOT,
+        cwd=folder,
+    )
     (wheel,) = (folder / "wheels").glob("*.whl")
     run(sys.executable, "-m", "venv", "--without-pip", folder / "venv", cwd=folder)
     python = folder / "venv" / "bin" / "python"
@@ -153,6 +169,38 @@ def test_the_wheels_engine_finds_pinocchios_libraries_beside_it_by_its_own_rpath
     elsewhere.parent.mkdir()
     shutil.copy(module, elsewhere)
     assert "libpinocchio" in load(elsewhere).stderr
+
+
+def test_building_writes_nothing_into_a_checkout_that_cannot_be_written(tmp_path):
+    need_to_build("the wheel", "scikit-build-core", "cmake", "ninja")
+    checkout = tmp_path / "checkout"
+    for path in tracked_files():
+        if path.name in ("pyproject.toml", "README.md", "LICENSE") or "src" in path.relative_to(ROOT).parts:
+            copy = checkout / path.relative_to(ROOT)
+            copy.parent.mkdir(parents=True, exist_ok=True)
+            shutil.copy(path, copy)
+    (checkout / "urdf").mkdir()
+    # The engine would take minutes; CMake runs all the same, and leaves its files where it was told to.
+    (checkout / "CMakeLists.txt").write_text("cmake_minimum_required(VERSION 3.20)\nproject(pinik LANGUAGES NONE)\n")
+    before = sorted(checkout.rglob("*"))
+    folders = [path for path in (checkout, *before) if path.is_dir()]
+    for folder in folders:
+        folder.chmod(0o555)
+    wheels = tmp_path / "wheels"
+    try:
+        pip = (sys.executable, "-m", "pip", "--quiet", "--disable-pip-version-check")
+        run(*pip, "wheel", "--no-deps", "--no-build-isolation", "--wheel-dir", wheels, checkout, cwd=tmp_path)
+    finally:
+        for folder in folders:
+            folder.chmod(0o755)
+    (wheel,) = wheels.glob("*.whl")
+    assert not wheel.stem.endswith("none-any")  # as it would without CMake
+    assert sorted(checkout.rglob("*")) == before
+
+
+def test_the_oldest_python_that_the_project_names_is_the_oldest_that_it_admits():
+    named = [name.rpartition(" ")[2] for name in PROJECT["classifiers"] if ":: Python :: 3." in name]
+    assert PROJECT["requires-python"] == f">={min(named, key=lambda name: int(name.split('.')[1]))}"
 
 
 def test_an_installed_pinik_loads_and_solves_its_own_robots_outside_the_checkout(installed, tmp_path):
@@ -225,7 +273,7 @@ def test_every_requirement_has_an_upper_end_and_admits_what_is_installed():
     assert [r.name for r in asked if not is_capped(r)] == []
     installed = {canonicalize_name(found.name) for found in importlib.metadata.distributions()}
     here = [r for r in asked if canonicalize_name(r.name) in installed]  # Jupyter is for readers of the notebooks
-    assert {r.name for r in asked} - {r.name for r in here} <= {"jupyterlab"}
+    assert {r.name for r in asked} - {r.name for r in here} <= {"jupyterlab", "robot_descriptions", "xacrodoc"}
     assert [r.name for r in here if not r.specifier.contains(importlib.metadata.version(r.name))] == []
 
 

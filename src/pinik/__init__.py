@@ -4,6 +4,9 @@ Where are its frames (`Robot.placement`, `Robot.jacobian`), and which joint valu
 (`Robot.solve`, `solve`, `iterate`).
 """
 
+from . import interrupts as interrupts  # before the others, whose loading takes most of a short command's time
+
+# isort: split
 from .closed_form.robot_bones import TwoBone, TwoBoneConfigurations
 from .closed_form.two_bone import TwoBoneAnswers, two_bone
 from .description.catalog import catalog

@@ -7,6 +7,8 @@ from difflib import get_close_matches
 from functools import partial
 from typing import Any
 
+from .echoes import bounded
+
 __all__ = [
     "EngineError",
     "InputError",
@@ -23,7 +25,10 @@ _MOST_SHOWN = 12
 
 
 class PinikError(Exception):
-    """The base class of all errors that pinik raises on purpose."""
+    """The base class of all errors that pinik raises on purpose. Long names in a message lose their middle."""
+
+    def __init__(self, message: str, **fields: Any) -> None:
+        super().__init__(bounded(message), **fields)
 
 
 class RobotLoadError(PinikError, ValueError):
@@ -37,8 +42,8 @@ class RobotLoadError(PinikError, ValueError):
 
     def __init__(self, message: str, *, source: str = "<text>", element: str | None = None) -> None:
         self.source = source
-        self.element = element
-        self.cause = message
+        self.element = None if element is None else bounded(element)
+        self.cause = bounded(message)
         where = f"{source}: {element}" if element else source
         super().__init__(f"{where}: {message}")
 
@@ -101,9 +106,12 @@ def near_names(name: object, valid: Iterable[str], most: int = 4) -> tuple[str, 
     names: dict[str, str] = {}
     for one in valid:
         names.setdefault(one.casefold(), one)
+    # A much longer word is close to none of the names, and a search with it would take long.
+    similar = len(word) <= 3 * max(map(len, names), default=0)
+    close = get_close_matches(word, names, n=most, cutoff=0.6) if similar else []
     longer = sorted((one for one in names if one.startswith(word)), key=len)
     shorter = sorted((one for one in names if one and word.startswith(one)), key=len, reverse=True)
-    ranked = dict.fromkeys([*longer, *get_close_matches(word, names, n=most, cutoff=0.6), *shorter])
+    ranked = dict.fromkeys([*longer, *close, *shorter])
     return tuple(names[one] for one in ranked)[:most]
 
 

@@ -1,57 +1,85 @@
-"""`load`: makes a robot from a catalogue name, a path or URDF text."""
+"""`load`: makes a robot from a catalogue name, a path, URDF text or bytes, or an open file."""
 
 from __future__ import annotations
 
 import os
 import warnings
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 from .description import catalog as robot_catalog
-from .description import packages
+from .description import downloads, xacro
 from .description import reader as urdf
-from .description.flaw import summarised
-from .errors import InputError, RobotLoadError, UrdfWarning
+from .description.flaw import Flaw, summarised
+from .description.source import RobotSource, Source, is_document, is_source
+from .echoes import bounded
+from .errors import InputError, RobotLoadError, UnknownNameError, UrdfWarning
 from .robot import Robot
 
 __all__ = ["load", "load_in_silence", "locate"]
 
+_MOST_LISTED = 12
+
 
 def load(
-    source: str | os.PathLike[str],
+    source: RobotSource,
     *,
     root: str = "fixed",
     package_dirs: Iterable[str | os.PathLike[str]] = (),
     mimic: bool = True,
+    strict: bool = False,
+    xacro_args: Mapping[str, object] | None = None,
+    allow_outside: bool = False,
 ) -> Robot:
     """Load a robot.
 
     Args:
-        source: A catalogue name ("arm", "lion", "panda", …: `pinik.catalog()`), a path to a .urdf file, or URDF text.
+        source: A catalogue name ("arm", "lion", "panda", …: `pinik.catalog()`), a path to a URDF or xacro file, URDF
+            text, the bytes of a URDF file, an open file, which is read from where it stands to its end, or the name of
+            a robot in the cache of robot_descriptions ("ur10e_description").
         root: How the root link is attached to the world: "fixed", "free_flyer" or "planar".
         package_dirs: Folders that are searched first for `package://` addresses of meshes.
         mimic: Whether mimic joints follow their leaders; with False they are all free.
+        strict: Whether every warning is an error.
+        xacro_args: The arguments of a xacro file by name, such as {"ur_type": "ur10e"}. xacro evaluates expressions and
+            opens other files, so load only xacro files that you trust.
+        allow_outside: Whether the URDF may open meshes outside its own folder, its packages and `package_dirs`.
 
     Raises:
-        RobotLoadError: The description is faulty; the message names the element and the cause.
-        UnknownNameError: The catalogue has no robot of that name.
-        InputError: The root is unknown, the source is not a name, a path or text, or `package_dirs` is not a list.
+        RobotLoadError: The description is faulty; the message names the element and the cause. With `strict`, also if
+            pinik repaired, assumed or ignored something, or did not find a mesh; the message lists what.
+        UnknownNameError: There is no robot of that name, or the xacro file has no argument of a given name.
+        InputError: The root is unknown, the source is none of these, `package_dirs` is not a list, or `xacro_args` is
+            not a dict or is given for a file that is not xacro.
+        MissingExtraError: The file is xacro, and xacrodoc is not installed.
 
     Warns:
         UrdfWarning: pinik repaired, assumed or ignored something, or did not find a mesh; once for each sort of flaw.
     """
-    robot = load_in_silence(source, root=root, package_dirs=package_dirs, mimic=mimic)
+    robot = load_in_silence(
+        source,
+        root=root,
+        package_dirs=package_dirs,
+        mimic=mimic,
+        strict=strict,
+        xacro_args=xacro_args,
+        allow_outside=allow_outside,
+    )
     for words in summarised(robot.warnings):
-        warnings.warn(f"{robot.name}: {words}", UrdfWarning, stacklevel=2)
+        warnings.warn(bounded(f"{robot.name}: {words}"), UrdfWarning, stacklevel=2)
     return robot
 
 
 def load_in_silence(
-    source: str | os.PathLike[str],
+    source: RobotSource,
     *,
     root: str = "fixed",
     package_dirs: Iterable[str | os.PathLike[str]] = (),
     mimic: bool = True,
+    strict: bool = False,
+    xacro_args: Mapping[str, object] | None = None,
+    allow_outside: bool = False,
 ) -> Robot:
     """`load` without Python warnings, for callers that show `Robot.warnings` themselves."""
     if isinstance(package_dirs, (str, os.PathLike)) or not isinstance(package_dirs, Iterable):
@@ -61,40 +89,119 @@ def load_in_silence(
         if not isinstance(folder, (str, os.PathLike)):
             raise InputError(f"must be a list of folders; got {folder!r} in it", argument="package_dirs")
     homes = tuple(_home_expanded(Path(folder)) for folder in folders)
-    name, srdf, path_or_text = locate(source)
-    description = urdf.read(path_or_text)
-    robot = Robot(description, name=name, root=root, package_dirs=homes, mimic=mimic, srdf=srdf)
-    missing = [a for a in description.meshes if not _mesh_found(a, description.path, robot.package_dirs)]
-    if missing:
-        count = "1 mesh was" if len(missing) == 1 else f"{len(missing)} meshes were"
-        robot.warnings += (
-            f"{count} not found ({missing[0]}{', …' if len(missing) > 1 else ''}); kinematics works without them",
-        )
+    located = locate(source)
+    homes = (*homes, *located.package_dirs)
+    description = describe(located, package_dirs=homes, xacro_args=xacro_args)
+    robot = Robot(
+        description,
+        name=located.name,
+        root=root,
+        package_dirs=homes,
+        mimic=mimic,
+        srdf=located.srdf or _beside(description),
+        allow_outside=allow_outside,
+    )
+    robot.warnings += tuple(_unfound(robot))
+    if strict and robot.warnings:
+        raise RobotLoadError(_listed(robot.warnings), source=description.source)
     return robot
 
 
-def locate(source: str | os.PathLike[str]) -> tuple[str | None, Path | None, str | Path]:
-    """Find a robot's source: (catalogue name or None, SRDF path or None, URDF path or text).
+def _listed(flaws: Sequence[str]) -> str:
+    """All warnings in one message, with one for each sort."""
+    sorts = summarised(flaws)
+    more = f"; and {len(sorts) - _MOST_LISTED} other sorts" if len(sorts) > _MOST_LISTED else ""
+    count = "one warning is an error" if len(flaws) == 1 else f"each of {len(flaws)} warnings is an error"
+    return f"with strict=True, {count}: {'; '.join(sorts[:_MOST_LISTED])}{more}"
+
+
+def _beside(description: urdf.Description) -> Path | None:
+    """The SRDF file of the same name in the same folder, if there is one."""
+    path = description.path
+    srdf = path.with_suffix(".srdf") if path and path.name else None
+    return srdf if srdf and os.path.isfile(srdf) else None
+
+
+@dataclass(frozen=True)
+class Located:
+    """Where a robot's description is.
+
+    Attributes:
+        source: Its path, its text or bytes, or an open file.
+        name: Its name in the catalogue or in robot_descriptions; None for all others.
+        srdf: Its SRDF file, if the catalogue or robot_descriptions has one.
+        package_dirs: Folders of its packages.
+        xacro_args: Arguments of its xacro file.
+    """
+
+    source: RobotSource
+    name: str | None = None
+    srdf: Path | None = None
+    package_dirs: tuple[Path, ...] = ()
+    xacro_args: Mapping[str, str] = field(default_factory=dict)
+
+
+def describe(
+    located: Located, *, package_dirs: Sequence[Path] = (), xacro_args: Mapping[str, object] | None = None
+) -> urdf.Description:
+    """Read and check a description; a xacro file is expanded first, if it is given by its path.
 
     Raises:
-        UnknownNameError: The catalogue has no robot of that name.
-        RobotLoadError: There is no such file, but the catalogue has a robot of that name.
-        InputError: The source is not a name, a path or text.
+        RobotLoadError, UnknownNameError, InputError, MissingExtraError: As for `load`.
     """
-    if not isinstance(source, (str, os.PathLike)):
-        raise InputError(f"a robot must be a catalogue name, a path or URDF text; got {source!r}")
+    given = xacro.check_arguments(xacro_args)
+    source = Source.of(located.source)
+    content = source.content()
+    path = located.source
+    if not (isinstance(path, Path) and xacro.is_xacro(path, content)):
+        if given:
+            raise InputError(f"are for xacro files, and this is none; got {xacro_args!r}", argument="xacro_args")
+        return urdf.read_content(content, source)
+    expansion = xacro.expand(path, {**located.xacro_args, **given}, package_dirs)
+    description = urdf.read_content(expansion.document, source)
+    remarks = (Flaw("xacro", remark, code="xacro") for remark in expansion.remarks)
+    return replace(description, warnings=(*remarks, *description.warnings))
+
+
+def locate(source: RobotSource) -> Located:
+    """Find a robot's description by its name or path.
+
+    Raises:
+        UnknownNameError: There is no robot of that name.
+        RobotLoadError: There is no such file, but the catalogue has a robot of that name; or robot_descriptions has the
+            robot, but not in its cache.
+        InputError: The source is none of these.
+    """
+    if not is_source(source):
+        raise InputError(
+            f"a robot must be a catalogue name, a path or URDF text, its bytes, or an open file; got {source!r}"
+        )
     if isinstance(source, str):
-        if source.lstrip("\ufeff \t\r\n").startswith("<"):
-            return None, None, source
+        if is_document(source):
+            return Located(source)
         looks_like_path = os.sep in source or source.endswith((".urdf", ".xml", ".xacro"))
         if not looks_like_path and (source in robot_catalog.catalog() or not os.path.exists(source)):
-            entry = robot_catalog.find(source)
-            return entry.name, entry.srdf, entry.urdf
+            return _named(source)
+    if not isinstance(source, (str, os.PathLike)):
+        return Located(source)
     path = _home_expanded(Path(source))
     if path.stem in robot_catalog.catalog() and not os.path.lexists(path):
         raise RobotLoadError(f"no such file, but the catalogue has a robot {path.stem!r}", source=str(path))
-    srdf = path.with_suffix(".srdf") if path.name else None
-    return None, srdf if srdf and srdf.is_file() else None, path
+    return Located(path)
+
+
+def _named(name: str) -> Located:
+    """A robot of the catalogue, else one in the cache of robot_descriptions."""
+    own = robot_catalog.catalog()
+    if name not in own and name in downloads.downloadable():
+        found = downloads.find_download(name)
+        return Located(found.file, name, found.srdf, found.package_dirs, found.arguments)
+    if name in own or not name.endswith(downloads.ENDING):
+        entry = robot_catalog.find(name)
+        return Located(entry.urdf, entry.name, entry.srdf)
+    others = downloads.downloadable()
+    hint = "or give the path of a .urdf file" if others else f"more robots: {downloads.INSTALL}"
+    raise UnknownNameError("robot", name, [*own, *others], hint=hint)
 
 
 def _home_expanded(path: Path) -> Path:
@@ -105,5 +212,18 @@ def _home_expanded(path: Path) -> Path:
         return path
 
 
-def _mesh_found(address: str, urdf_path: Path | None, package_dirs: Sequence[Path]) -> bool:
-    return packages.resolve(address, urdf_path=urdf_path, package_dirs=package_dirs) is not None
+def _unfound(robot: Robot) -> Iterator[Flaw]:
+    """A flaw for each mesh that is not there, or that the URDF may not open."""
+    surroundings = robot.surroundings
+    for address in robot.description.meshes:
+        found = surroundings.find(address)
+        if found.path is None:
+            what = "not opened" if found.refused else "not found"
+            yield Flaw(
+                f"mesh {address!r}",
+                f"{what}: {found.why}; kinematics works without it",
+                code=found.code,
+                common=f"{what}; kinematics works without it",
+                mend=found.mend,
+                mesh=address,
+            )

@@ -236,7 +236,7 @@ def test_a_picture_is_the_same_whatever_the_size_of_the_robot(scale):
 def test_a_shape_that_cannot_be_read_is_named_and_left_out():
     text = CUBE.format(size="1 1 1", color="0.5 0.5 0.5 1")
     lost = '<visual><geometry><mesh filename="nowhere.stl"/></geometry></visual></link>'
-    with pytest.warns(pinik.UrdfWarning, match="1 mesh was not found"):
+    with pytest.warns(pinik.UrdfWarning, match="mesh 'nowhere.stl': not found"):
         robot = pinik.load(text.replace("</link>", lost))
     with pytest.warns(pinik.UrdfWarning, match=r"cube: link 'base': a shape is left out: there is no mesh 'nowhere"):
         picture = pinik.draw(robot, size=(100, 100), ground=False, background=None)
@@ -331,7 +331,7 @@ def test_a_mesh_that_is_inside_out_looks_as_if_it_were_not(tmp_path):
             mesh.invert()
         mesh.export(tmp_path / f"{name}.stl")
         text = f'<robot name="r"><link name="l"><visual><geometry><mesh filename="{tmp_path}/{name}.stl"/>'
-        robot = pinik.load(text + "</geometry></visual></link></robot>")
+        robot = pinik.load(text + "</geometry></visual></link></robot>", package_dirs=[tmp_path])
         pictures.append(pinik.draw(robot, size=(120, 90), ground=False).pixels.astype(int))
     outwards, inwards = pictures
     assert np.ptp(outwards[45, 40:80]) > 10

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-import sys
 from collections.abc import Sequence
 
 from ..extras import MissingExtraError, needed_by
+from .terminal import output
 from .terminal.exits import ExitStatus
 
 __all__ = ["ExitStatus", "main"]
@@ -24,6 +24,6 @@ def main(arguments: Sequence[str] | None = None) -> int:
         with needed_by("the pinik command", "cli"):
             from . import app
     except MissingExtraError as error:
-        print(f"error: {error}", file=sys.stderr)
-        return ExitStatus.WRONG_USAGE
+        output.prepare_streams()
+        return output.say_error(str(error), ExitStatus.WRONG_USAGE)
     return app.main(arguments)

@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 import sys
+import warnings
 from collections.abc import Callable, Sequence
 from typing import Annotated, Any
 
+import numpy as np
 import typer
 
 from ..errors import PinikError
+from ..interrupts import Terminated, as_exceptions
 from ..version import __version__
 from .commands import accuracy, check, compare, fk, info, jacobian, live, robots, solve, track
 from .reports.solver_help import solvers_help
@@ -53,7 +56,8 @@ def _pinik(
     """Inverse and forward kinematics for any robot with a URDF file.
 
     Exit status: 0 for success, 1 if a target was missed (the best answer is still
-    printed), 2 for wrong usage or bad input, 3 if the robot cannot be loaded, 130 if interrupted.
+    printed), 2 for wrong usage, bad input or an answer that cannot be written, 3 if
+    the robot cannot be loaded, 130 if interrupted (Ctrl-C), 143 if terminated.
 
     Example:
 
@@ -77,30 +81,55 @@ def main(arguments: Sequence[str] | None = None) -> int:
     """
     words = list(sys.argv[1:] if arguments is None else arguments)
     try:
-        output.prepare_streams()
-        if not {"--help", "-h"}.isdisjoint(words):
+        # numpy need not warn of infinities and NaN, as plain Pinocchio checks each answer.
+        with as_exceptions(), warnings.catch_warnings(), np.errstate(all="ignore"):
+            warnings.showwarning = _show_warning
+            output.prepare_streams()
+            return _run(words)
+    except (KeyboardInterrupt, typer.Abort):
+        output.say("interrupted")
+        return ExitStatus.INTERRUPTED
+    except Terminated:
+        output.say("terminated")
+        return ExitStatus.TERMINATED
+
+
+def _run(words: Sequence[str]) -> ExitStatus:
+    """Run one command line; only interrupts are raised."""
+    for_help = not {"--help", "-h"}.isdisjoint(words)
+    try:
+        if for_help:
             _keep_help_texts_plain()
         command = typer.main.get_command(_application())
         # The commands return their status, and so do --help and --version, which end early.
-        returned = command.main(args=words, prog_name="pinik", standalone_mode=False)
-        status = ExitStatus(returned or ExitStatus.ANSWERED)
+        returned = command.main(args=list(words), prog_name="pinik", standalone_mode=False)
+        if returned == ExitStatus.INTERRUPTED:  # which Typer makes of a KeyboardInterrupt
+            raise KeyboardInterrupt
         output.finish()
+        return ExitStatus(returned or ExitStatus.ANSWERED)
     except typer.TyperException as error:
-        status = _wrong_usage(error, words)
+        return _wrong_usage(error, words)
+    except typer.Abort:
+        raise
     except CommandError as error:
-        status = output.say_error(str(error), error.status)
+        return output.say_error(str(error), error.status)
     except SystemExit:  # raised by Typer and rich when the reader of the help has gone
-        output.abandon_stdout()
-        status = ExitStatus.ANSWERED
-    except (PinikError, OSError) as error:
-        status = output.say_error(str(error), ExitStatus.WRONG_USAGE)
-    except (KeyboardInterrupt, typer.Abort):
-        status = ExitStatus.INTERRUPTED
+        output.abandon(sys.stdout)
+        return ExitStatus.ANSWERED
+    except OSError as error:
+        if not for_help:
+            return output.say_error(str(error), ExitStatus.WRONG_USAGE)
+        output.abandon(sys.stdout)
+        return output.say_error(f"cannot write the help: {output.reason_of(error)}", ExitStatus.WRONG_USAGE)
+    except PinikError as error:
+        return output.say_error(str(error), ExitStatus.WRONG_USAGE)
     except Exception as error:
-        status = output.say_error(f"unexpected, please report it: {in_words(error)}", ExitStatus.WRONG_USAGE)
-    if status is ExitStatus.INTERRUPTED:
-        output.say("interrupted")
-    return status
+        return output.say_error(f"unexpected, please report it: {in_words(error)}", ExitStatus.WRONG_USAGE)
+
+
+def _show_warning(message: Warning | str, *_: Any, **__: Any) -> None:
+    """A warning of any library on one line of stderr, without the place in the code."""
+    output.warn(str(message))
 
 
 def _keep_help_texts_plain() -> None:

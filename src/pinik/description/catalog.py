@@ -9,8 +9,9 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from ..errors import UnknownNameError
+from ..files import FileError, read_within
 from .packages import example_robot_data
-from .xml import DocumentError, parse
+from .xml import MAX_BYTES, DocumentError, parse
 
 __all__ = ["CatalogEntry", "catalog", "find"]
 
@@ -118,9 +119,9 @@ def _srdf_of(name: str, urdf: Path) -> Path | None:
 
 def _poses_fit(srdf: Path, urdf: Path) -> bool:
     try:
-        states = parse(srdf.read_bytes()).named("group_state")
-        joints = parse(urdf.read_bytes()).named("joint")
-    except (OSError, DocumentError):
+        states = parse(read_within(srdf, MAX_BYTES, "an SRDF file")).named("group_state")
+        joints = parse(read_within(urdf, MAX_BYTES, "a URDF file")).named("joint")
+    except (FileError, DocumentError):
         return False
     posed = {joint.attributes.get("name") for state in states for joint in state.named("joint")}
     return posed <= {"root_joint", *(joint.attributes.get("name") for joint in joints)}

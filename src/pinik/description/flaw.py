@@ -7,6 +7,8 @@ from dataclasses import dataclass
 from functools import partial
 from typing import Any
 
+from ..echoes import bounded
+
 __all__ = ["Edit", "Flaw", "summarised"]
 
 _MOST_NAMED = 6
@@ -66,9 +68,10 @@ class Flaw(str):
         mesh: str | None = None,
     ) -> Flaw:
         """The sentence "element: cause (line 12)"."""
+        element, cause, common = bounded(element), bounded(cause), bounded(cause if common is None else common)
         self = super().__new__(cls, f"{element}: {cause}" + (f" (line {line})" if line else ""))
         self.element, self.cause, self.line, self.code = element, cause, line, code
-        self.common = cause if common is None else common
+        self.common = common
         self.why, self.mend, self.edits, self.mesh = why, mend, tuple(edits), mesh
         return self
 
@@ -79,13 +82,24 @@ class Flaw(str):
 
 def summarised(warnings: Iterable[str]) -> list[str]:
     """The warnings without repetitions, with one line for all flaws that have the same cause."""
-    sorts: dict[str, list[str]] = {}
+    lines: list[str] = []
+    sorts: dict[str, list[Flaw]] = {}
     for words in dict.fromkeys(warnings):
-        sorts.setdefault(words.common if isinstance(words, Flaw) else words, []).append(words)
-    return [members[0] if len(members) == 1 else _together(common, members) for common, members in sorts.items()]
+        if not isinstance(words, Flaw):
+            lines.append(words)
+            continue
+        if words.common not in sorts:
+            lines.append(words.common)
+        sorts.setdefault(words.common, []).append(words)
+    return [_together(line, sorts[line]) if line in sorts else line for line in lines]
 
 
-def _together(common: str, flaws: Sequence[str]) -> str:
-    named = [flaw.element for flaw in flaws[:_MOST_NAMED] if isinstance(flaw, Flaw)]
-    more = f" and {len(flaws) - _MOST_NAMED} more" if len(flaws) > _MOST_NAMED else ""
-    return f"{', '.join(named)}{more}: {common}"
+def _together(common: str, flaws: Sequence[Flaw]) -> str:
+    """One line for flaws of one sort: where they are, how many, what is wrong, and the first one in full."""
+    if len(flaws) == 1:
+        return flaws[0]
+    places = list(dict.fromkeys(f.element + (f" (line {f.line})" if f.line else "") for f in flaws))
+    more = f" and {len(places) - _MOST_NAMED} more" if len(places) > _MOST_NAMED else ""
+    count = f", {len(flaws)} times" if more or len(flaws) > len(places) else ""
+    first = "" if flaws[0].cause == common else f" (the first: {flaws[0].cause})"
+    return f"{', '.join(places[:_MOST_NAMED])}{more}{count}: {common}{first}"

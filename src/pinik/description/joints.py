@@ -3,14 +3,20 @@
 from __future__ import annotations
 
 import math
+import sys
 from dataclasses import dataclass
 
 from .flaw import Flaw
-from .values import Vector, attribute_text, bad_value, number, only_child, read_origin, required_name, vector
+from .numbers import FARTHEST, in_words
+from .part import Part, Vector
 from .xml import DocumentError, Element
 
-__all__ = ["ONE_AXIS_KINDS", "JointTag", "Mimic", "read_joint"]
+__all__ = ["ENDLESS", "ONE_AXIS_KINDS", "JointTag", "Mimic", "read_joint"]
 
+# [rad or m]: how SDF and Gazebo write that there is no limit; larger ones are read as infinite.
+ENDLESS = 1e16
+
+_ROUNDING = 4.0 * sys.float_info.epsilon
 JOINT_KINDS = ("revolute", "continuous", "prismatic", "fixed", "floating", "planar")
 ONE_AXIS_KINDS = ("revolute", "continuous", "prismatic")
 
@@ -46,9 +52,11 @@ class JointTag:
         child: The child link.
         xyz: The joint's origin in the parent link's frame [m].
         rpy: The joint's orientation in the parent link's frame: fixed-axis roll, pitch, yaw [rad].
-        axis: The unit axis in the joint's frame; (1, 0, 0) if the file gives none.
-        lower: The lower limit [rad or m]; None if the file gives none, or joints of this kind have none.
-        upper: The upper limit, likewise.
+        axis: The unit axis in the joint's frame, which is the normal of a planar joint's plane; (1, 0, 0) if the file
+            gives none.
+        lower: The lower limit [rad or m], which may be -inf; None if the file gives none, or joints of this kind have
+            none.
+        upper: The upper limit, likewise; it may be inf.
         mimic: How it follows another joint, if it does.
         effort: The largest effort [N m or N]; None if the file gives none.
         velocity: The largest velocity [rad/s or m/s], likewise.
@@ -72,111 +80,140 @@ class JointTag:
     friction: float | None = None
 
 
-def read_joint(element: Element, warnings: list[str]) -> JointTag:
-    """Read and check a `<joint>`. Doubtful values are named in `warnings`, which is appended to.
+def read_joint(element: Element, flaws: list[Flaw]) -> JointTag:
+    """Read and check a `<joint>`. What is left out or assumed is added to `flaws`.
 
     Raises:
-        DocumentError: A number is malformed or not finite, a required part is missing, or the type is unknown.
+        DocumentError: Something that decides where links are cannot be read, can be read in two ways, or is missing.
     """
-    name = required_name(element)
-    owner = f"joint {name!r}"
-    kind = attribute_text(element, "type", owner)
+    joint = Part.named(element, flaws)
+    kind = joint.text("type")
     if kind not in JOINT_KINDS:
-        raise DocumentError(
-            f"unknown type {kind!r}; it must be one of {', '.join(JOINT_KINDS)}", owner=owner, line=element.line
-        )
-    xyz, rpy = read_origin(element, owner)
-    mimic = only_child(element, "mimic", owner)
-    dynamics = only_child(element, "dynamics", owner) or Element("dynamics", {}, element.line)
-    lower, upper, effort, velocity = _read_limit(element, kind, owner, warnings)
-    friction = number(dynamics, "friction", owner)
-    if friction is not None and friction < 0.0:
-        raise bad_value(dynamics, "friction", owner, "it must not be negative")
+        raise joint.fault(f"unknown type {kind!r}; it must be one of {', '.join(JOINT_KINDS)}")
+    xyz, rpy = joint.origin()
+    # Reduced robots often have fixed joints with a mimic left on them.
+    mimic, dynamics, limit = joint.only("mimic"), joint.only("dynamics"), joint.only("limit")
+    lower, upper = _read_limits(joint, limit, kind)
+    has_axis = kind in ONE_AXIS_KINDS
     return JointTag(
-        name=name,
+        name=joint.name,
         kind=kind,
-        parent=_linked(element, "parent", owner),
-        child=_linked(element, "child", owner),
+        parent=_linked(joint, "parent"),
+        child=_linked(joint, "child"),
         xyz=xyz,
         rpy=rpy,
-        axis=_read_axis(element, kind, owner, warnings),
+        axis=_read_axis(joint, kind),
         lower=lower,
         upper=upper,
-        mimic=None if mimic is None else _read_mimic(mimic, owner),
-        effort=effort,
-        velocity=velocity,
-        damping=number(dynamics, "damping", owner),
-        friction=friction,
+        mimic=None if mimic is None or kind == "fixed" else _read_mimic(mimic),
+        effort=_strength(limit, "effort", "effort") if has_axis else None,
+        velocity=_strength(limit, "velocity", "speed") if has_axis else None,
+        damping=_strength(dynamics, "damping", "number", may_be_negative=True),
+        friction=_strength(dynamics, "friction", "number"),
     )
 
 
-def _read_mimic(element: Element, owner: str) -> Mimic:
-    multiplier = number(element, "multiplier", owner)
+def _read_mimic(mimic: Part) -> Mimic:
+    multiplier = mimic.number("multiplier")
     return Mimic(
-        leader=attribute_text(element, "joint", owner),
+        leader=mimic.text("joint"),
         multiplier=1.0 if multiplier is None else multiplier,
-        offset=number(element, "offset", owner) or 0.0,
+        offset=mimic.number("offset", "angle") or 0.0,
     )
 
 
-def _read_axis(joint: Element, kind: str, owner: str, warnings: list[str]) -> Vector:
-    """The unit axis; scaled before it is normalised, so that squares neither overflow nor underflow."""
+def _read_axis(joint: Part, kind: str) -> Vector:
+    """The unit axis; scaled before it is normalised, so that squares neither overflow nor underflow.
+
+    An axis that is one long already stays as it is written.
+    """
     default = (1.0, 0.0, 0.0)
-    element = only_child(joint, "axis", owner)
+    axis = joint.only("axis")
+    if axis is None and kind == "planar":
+        cause = "it has no <axis>, for which URDF's default is x; it moves in the yz-plane of its frame"
+        joint.flaw(cause, code="planar-axis", mend='write <axis xyz="0 0 1"/> if it moves in the xy-plane')
     # Exporters write "0 0 0" for joints without an axis, where it has no meaning.
-    if element is None or kind in ("fixed", "floating"):
+    if axis is None or kind in ("fixed", "floating"):
         return default
-    attribute_text(element, "xyz", owner)
-    x, y, z = vector(element, "xyz", owner, default)
+    axis.text("xyz")
+    x, y, z = axis.vector("xyz", "axis", default)
     largest = max(abs(x), abs(y), abs(z))
     if largest == 0.0:
-        raise bad_value(element, "xyz", owner, "the axis is zero")
+        raise axis.bad_value("xyz", "the axis is zero")
+    if abs(math.hypot(x, y, z) - 1.0) <= _ROUNDING:
+        return (x, y, z)
     x, y, z = x / largest, y / largest, z / largest
     length = math.hypot(x, y, z)
-    axis = (x / length, y / length, z / length)
-    if kind == "planar" and axis != (0.0, 0.0, 1.0):
-        cause = "a planar joint moves in the xy-plane of its own frame here; its axis is ignored"
-        warnings.append(Flaw(owner, cause, code="planar-axis", line=element.line))
-    return axis
+    return (x / length, y / length, z / length)
 
 
-def _read_limit(
-    joint: Element, kind: str, owner: str, warnings: list[str]
-) -> tuple[float | None, float | None, float | None, float | None]:
-    """The lower and upper limit, effort and velocity; None for each that is not given."""
-    element = only_child(joint, "limit", owner)
+def _read_limits(joint: Part, limit: Part | None, kind: str) -> tuple[float | None, float | None]:
+    """The lower and upper limit; None for each that is not given."""
     bounded = kind in ("revolute", "prismatic")
-    if element is None:
+    if limit is None:
         if bounded:
-            raise DocumentError(f"a {kind} joint needs a <limit> element", owner=owner, line=joint.line)
-        return None, None, None, None
-    if kind not in ONE_AXIS_KINDS:
-        return None, None, None, None
-    effort, velocity = (number(element, attribute, owner) for attribute in ("effort", "velocity"))
-    for attribute, value in (("effort", effort), ("velocity", velocity)):
-        if value is not None and value < 0.0:
-            raise bad_value(element, attribute, owner, "it must not be negative")
+            raise joint.fault(f"a {kind} joint needs a <limit> element")
+        return None, None
+    if kind in ("floating", "planar"):
+        limit.flaw(f"a {kind} joint has no limits here; its <limit> is ignored", code="limit-ignored")
     if not bounded:
-        return None, None, effort, velocity
-    lower, upper = number(element, "lower", owner), number(element, "upper", owner)
+        return None, None
+    lower, upper = _bound(limit, "lower", kind), _bound(limit, "upper", kind)
     absent = [name for name, value in (("lower", lower), ("upper", upper)) if value is None]
     if absent:
         bounds = f"{lower or 0.0:g}..{upper or 0.0:g}"
         cause = f"<limit> has no {' and no '.join(absent)}, which is read as 0: its range is {bounds}"
-        warnings.append(Flaw(owner, cause, code="absent-limit", line=element.line))
-    if (lower or 0.0) > (upper or 0.0):
+        limit.flaw(cause, code="absent-limit")
+    low, high = lower or 0.0, upper or 0.0
+    if low > high:
         note = f" (no {absent[0]} is given, which is read as 0)" if absent else ""
-        raise DocumentError(
-            f"lower limit {lower or 0.0:g} is above upper limit {upper or 0.0:g}{note}",
-            owner=owner,
-            line=element.line,
+        cause = (
+            f"lower limit {low:g} is above upper limit {high:g}{note}; either the two are swapped, and the range is "
         )
-    return lower, upper, effort, velocity
+        raise limit.fault(f"{cause}{high:g}..{low:g}, or one of them is wrong")
+    return lower, upper
 
 
-def _linked(joint: Element, tag: str, owner: str) -> str:
-    """The link that `<parent>` or `<child>` names."""
-    element = only_child(joint, tag, owner)
+def _bound(limit: Part, attribute: str, kind: str) -> float | None:
+    """A limit [rad or m], which is infinite if the file says so, or a number that no joint can reach."""
+    quantity = "length" if kind == "prismatic" else "angle"
+    value = limit.number(attribute, quantity, infinite=True)
+    if value is None or abs(value) <= ENDLESS:
+        return value
+    written = in_words(limit.element.attributes[attribute])
+    end = f"is beyond {ENDLESS:g}; it is read as no limit"
+    limit.flaw(f'<limit {attribute}="{written}"> {end}', code="endless-limit", common=f"a limit {end}")
+    return math.copysign(math.inf, value)
+
+
+def _strength(part: Part | None, attribute: str, quantity: str, *, may_be_negative: bool = False) -> float | None:
+    """The largest effort or velocity, or a friction; None if it is not given or no use, which is a flaw.
+
+    Kinematics does without it. A number beyond 1e12 limits nothing, and is left out in silence.
+    """
+    if part is None:
+        return None
+    try:
+        value = part.number(attribute, quantity, infinite=True)
+        if value is not None and value < 0.0 and not may_be_negative:
+            raise part.bad_value(attribute, "it must not be negative")
+    except DocumentError as fault:
+        common = f"<{part.element.tag} {attribute}> cannot be read; it is ignored"
+        part.flaw(f"{fault.message}; it is ignored", code="bad-strength", common=common)
+        return None
+    return value if value is not None and abs(value) <= FARTHEST else None
+
+
+def _linked(joint: Part, tag: str) -> str:
+    """The link that `<parent>` or `<child>` names.
+
+    Raises:
+        DocumentError: There is no such element, it names no link, or several name different links.
+    """
+    names = list(dict.fromkeys(joint.of(element).text("link") for element in joint.element.named(tag)))
+    if len(names) > 1:
+        raise joint.fault(f"has {len(names)} <{tag}> elements, for link {' and for link '.join(map(repr, names))}")
+    element = joint.only(tag)
     if element is None:
-        raise DocumentError(f"has no <{tag}> element", owner=owner, line=joint.line)
-    return attribute_text(element, "link", owner)
+        raise joint.fault(f"has no <{tag}> element")
+    return element.text("link")

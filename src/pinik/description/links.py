@@ -1,24 +1,19 @@
-"""Read and check a `<link>`: its mass and inertia, and the addresses of its meshes."""
+"""Read and check a `<link>`: its mass and inertia, and its shapes."""
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 from .flaw import Flaw
-from .values import Vector, attribute_text, bad_value, number, numbers, only_child, read_origin, required_name, vector
-from .xml import Element
+from .materials import Color
+from .part import Part, Vector
+from .shape_tags import ShapeTag, read_shapes
+from .xml import DocumentError, Element
 
 __all__ = ["INERTIA_ATTRIBUTES", "Inertial", "LinkTag", "read_link"]
 
 INERTIA_ATTRIBUTES = ("ixx", "ixy", "ixz", "iyy", "iyz", "izz")
-# The dimensions of each shape: attribute, and its count of numbers.
-SHAPE_SIZES = {
-    "box": (("size", 3),),
-    "sphere": (("radius", 1),),
-    "cylinder": (("radius", 1), ("length", 1)),
-    "capsule": (("radius", 1), ("length", 1)),
-    "mesh": (),
-}
 
 
 @dataclass(frozen=True)
@@ -44,76 +39,73 @@ class LinkTag:
 
     Attributes:
         name: Its name.
-        inertial: Its mass and inertia, if the file gives them.
-        meshes: The addresses of its meshes as written, in the file's order.
+        inertial: Its mass and inertia, if the file gives them and they can be read.
+        visuals: Its visual shapes that can be read, in the file's order.
+        collisions: Its collision shapes, likewise.
     """
 
     name: str
     inertial: Inertial | None
-    meshes: tuple[str, ...]
+    visuals: tuple[ShapeTag, ...]
+    collisions: tuple[ShapeTag, ...]
+
+    @property
+    def shapes(self) -> tuple[ShapeTag, ...]:
+        """All of its shapes that can be read, the visual ones first."""
+        return self.visuals + self.collisions
 
 
-def read_link(element: Element, warnings: list[str]) -> LinkTag:
-    """Read and check a `<link>`. Parts that are left out are named in `warnings`, which is appended to.
+def read_link(element: Element, colors: Mapping[str, Color], flaws: list[Flaw]) -> LinkTag:
+    """Read and check a `<link>`. What is left out or assumed is added to `flaws`.
+
+    Args:
+        element: The `<link>`.
+        colors: The colours of the materials that have a name.
+        flaws: The list of flaws.
 
     Raises:
-        DocumentError: A number is malformed, not finite or out of range, or a required attribute is missing.
+        DocumentError: The link has no name.
     """
-    name = required_name(element)
-    owner = f"link {name!r}"
-    meshes: list[str] = []
-    for tag in ("visual", "collision"):
-        shapes = element.named(tag)
-        for index, shape in enumerate(shapes, start=1):
-            place = f"{owner}, {tag} {index}" if len(shapes) > 1 else f"{owner}, {tag}"
-            meshes.extend(_read_shape(shape, place, warnings))
-    inertial = only_child(element, "inertial", owner)
+    link = Part.named(element, flaws)
     return LinkTag(
-        name=name,
-        inertial=None if inertial is None else _read_inertial(inertial, owner, warnings),
-        meshes=tuple(meshes),
+        name=link.name,
+        visuals=read_shapes(link, "visual", colors),
+        collisions=read_shapes(link, "collision", colors),
+        inertial=_read_inertial(link),
     )
 
 
-def _read_inertial(element: Element, owner: str, warnings: list[str]) -> Inertial | None:
-    xyz, rpy = read_origin(element, f"{owner}, inertial")
-    mass_element = only_child(element, "mass", owner)
-    inertia_element = only_child(element, "inertia", owner)
-    mass = None
-    if mass_element is not None:
-        attribute_text(mass_element, "value", owner)
-        mass = number(mass_element, "value", owner)
-        if mass is not None and mass < 0.0:
-            raise bad_value(mass_element, "value", owner, "the mass is negative")
-    inertia = []
-    if inertia_element is not None:
-        for attribute in INERTIA_ATTRIBUTES:
-            attribute_text(inertia_element, attribute, owner)
-            inertia.append(number(inertia_element, attribute, owner) or 0.0)
-    if mass is None or inertia_element is None:
-        absent = "mass" if mass is None else "inertia"
-        cause = f"<inertial> has no <{absent}>; the link is taken as massless"
-        warnings.append(Flaw(owner, cause, code="incomplete-inertial", line=element.line))
+def _read_inertial(link: Part) -> Inertial | None:
+    """The `<inertial>`; None if there is none, or if something in it cannot be read, which is a flaw."""
+    inertial = link.only("inertial")
+    if inertial is None:
         return None
+    before = len(link.flaws)
+    try:
+        return _checked_inertial(inertial)
+    except DocumentError as fault:
+        del link.flaws[before:]  # what was assumed about an inertial that is left out does not matter
+        at = Element("inertial", {}, fault.line or inertial.element.line, inertial.element.start)
+        link.of(at).flaw(
+            f"{fault.message}; the link is taken as massless",
+            code="bad-inertial",
+            common="<inertial> cannot be read; the link is taken as massless",
+        )
+        return None
+
+
+def _checked_inertial(inertial: Part) -> Inertial:
+    xyz, rpy = inertial.origin()
+    parts = {tag: inertial.only(tag) for tag in ("mass", "inertia")}
+    mass_part, inertia_part = parts["mass"], parts["inertia"]
+    if mass_part is None or inertia_part is None:
+        raise inertial.fault(f"<inertial> has no <{next(tag for tag, part in parts.items() if part is None)}>")
+    mass_part.text("value")
+    mass = mass_part.numbers("value", (1,), "mass")[0]
+    if mass < 0.0:
+        raise mass_part.bad_value("value", "the mass is negative")
+    inertia: list[float] = []
+    for attribute in INERTIA_ATTRIBUTES:
+        inertia_part.text(attribute)
+        inertia.extend(inertia_part.numbers(attribute, (1,)))
     return Inertial(xyz, rpy, mass, tuple(inertia))
-
-
-def _read_shape(shape: Element, owner: str, warnings: list[str]) -> tuple[str, ...]:
-    """Check a `<visual>` or `<collision>`; return the address of its mesh, if it has one."""
-    read_origin(shape, owner)
-    geometry = only_child(shape, "geometry", owner)
-    solid = geometry.children[0] if geometry is not None and geometry.children else None
-    if solid is None or solid.tag not in SHAPE_SIZES:
-        what = "has no shape" if solid is None else f"<{solid.tag}> is not a URDF shape"
-        warnings.append(Flaw(owner, f"{what}; it is left out", code="dropped-shape", line=shape.line))
-        return ()
-    for attribute, count in SHAPE_SIZES[solid.tag]:
-        attribute_text(solid, attribute, owner)
-        if min(numbers(solid, attribute, count, owner)) <= 0.0:
-            raise bad_value(solid, attribute, owner, "sizes must be positive")
-    if solid.tag != "mesh":
-        return ()
-    # A negative scale mirrors the mesh, as is common for left and right limbs.
-    if 0.0 in vector(solid, "scale", owner, (1.0, 1.0, 1.0)):
-        raise bad_value(solid, "scale", owner, "a scale must not be zero")
-    return (attribute_text(solid, "filename", owner),)

@@ -1,120 +1,165 @@
-"""Find the files that a URDF refers to: `package://`, `model://`, `file://`, absolute and relative."""
+"""Find the files that a URDF refers to, and open none that it may not open.
+
+A URDF may open files in its own folder, in its package, in packages that the search finds by name, and in
+`package_dirs`. Its package is the nearest folder above it with a package.xml or, without one, the folder above one that
+is called "urdf", "robots" or the like. Symbolic links are followed, and what counts is the file at their end.
+"""
 
 from __future__ import annotations
 
-import functools
-import glob
 import os
-import re
-import sys
 from collections.abc import Iterator, Sequence
-from pathlib import Path, PurePosixPath
-from urllib.parse import unquote, urlsplit
+from dataclasses import dataclass
+from pathlib import Path
 
-__all__ = ["example_robot_data", "resolve"]
+from .addresses import Address, UnusableAddressError, read_address
+from .package_search import PackageSearch, is_below
+from .shares import example_robot_data
 
-# ROS 1 searches packages anywhere below the entries of ROS_PACKAGE_PATH; workspaces nest them this deep.
-NESTED_PACKAGES = ("", "*/", "*/*/")
+__all__ = ["Found", "Surroundings", "example_robot_data", "resolve"]
+
+_MOST_ENTRIES = 5000
+
+
+@dataclass(frozen=True)
+class Found:
+    """What an address leads to.
+
+    Attributes:
+        path: The file, or None.
+        why: Why there is none, in words; empty if there is one.
+        refused: Whether there is a file, but the URDF may not open it.
+    """
+
+    path: Path | None
+    why: str = ""
+    refused: bool = False
+
+    @property
+    def code(self) -> str:
+        """The code of the flaw that a mesh at this address is."""
+        return "mesh-outside" if self.refused else "missing-mesh"
+
+    @property
+    def mend(self) -> str:
+        """What to do about it."""
+        if self.refused:
+            return "Name its folder in package_dirs (--package-dir), or load with allow_outside (--allow-outside)."
+        return "Correct the address, or name the folder of its package in package_dirs (--package-dir)."
+
+
+class Surroundings:
+    """The files around a URDF, by their addresses in it.
+
+    It remembers folders, so that thousands of addresses are looked up quickly; make a new one when files have changed.
+
+    Args:
+        urdf_path: The URDF file; None if the description was given as text, whose relative addresses begin at the
+            working directory.
+        package_dirs: Folders that contain packages, or are packages; they are searched first.
+        allow_outside: Whether the URDF may open any file of this machine.
+    """
+
+    def __init__(
+        self,
+        urdf_path: Path | None = None,
+        package_dirs: Sequence[os.PathLike[str] | str] = (),
+        allow_outside: bool = False,
+    ) -> None:
+        self._base = Path() if urdf_path is None else urdf_path.parent
+        self._package_dirs = tuple(map(Path, package_dirs))
+        self._search = PackageSearch(urdf_path, self._package_dirs)
+        self._allow_outside = allow_outside
+        self._entries: dict[Path, dict[str, str]] = {}
+
+    def find(self, text: str) -> Found:
+        """The file at an address: "package://name/rest", "$(find name)/rest", "file:///path", or a path."""
+        try:
+            address = read_address(text)
+        except UnusableAddressError as fault:
+            return Found(None, str(fault))
+        refused = False
+        for candidate in self._candidates(address):
+            if _is_file(candidate):
+                if self._may_open(candidate, address):
+                    return Found(candidate)
+                refused = True
+        if refused:
+            return Found(None, "it lies outside the folders that this URDF may open", refused=True)
+        return Found(None, self._why_not(address))
+
+    def package(self, name: str) -> Path | None:
+        """The folder of a package, or None if the search does not find it."""
+        return next(self._search.places(name), None)
+
+    def _candidates(self, address: Address) -> Iterator[Path]:
+        if address.package is not None:
+            for place in self._search.places(address.package):
+                yield from (place / inside for inside in address.spellings)
+            return
+        for folder in (self._base, *self._package_dirs):
+            yield from (folder / path for path in address.spellings)
+
+    def _may_open(self, file: Path, address: Address) -> bool:
+        if self._allow_outside:
+            return True
+        real = os.path.realpath(file)
+        if any(is_below(real, folder) for folder in self._search.roots):
+            return True
+        named = () if address.package is None else self._search.places(address.package)
+        if any(is_below(real, os.path.realpath(place)) for place in named):
+            return True
+        return self._search.belongs(real, address.package)
+
+    def _why_not(self, address: Address) -> str:
+        """Why nothing was found, with a file or package whose name differs only in upper and lower case."""
+        for candidate in self._candidates(address):
+            near = self._other_case(candidate)
+            if near is not None and self._may_open(near, address):
+                return f"there is {near.name!r}" if near.parent == candidate.parent else f"there is '{near}'"
+        if address.package is not None and self.package(address.package) is None:
+            return f"no package {address.package!r} was found"
+        return "there is no such file"
+
+    def _other_case(self, path: Path) -> Path | None:
+        """A file whose path differs only in upper and lower case, among the last folders of the path."""
+        folder, rest = path.parent, [path.name]
+        while not os.path.isdir(folder):
+            if folder == folder.parent or len(rest) > 20:
+                return None
+            folder, rest = folder.parent, [folder.name, *rest]
+        for part in rest:
+            name = self._names_in(folder).get(part.casefold())
+            if name is None:
+                return None
+            folder = folder / name
+        return folder if _is_file(folder) else None
+
+    def _names_in(self, folder: Path) -> dict[str, str]:
+        if folder not in self._entries:
+            try:
+                with os.scandir(folder) as entries:
+                    names = [entry.name for entry, _ in zip(entries, range(_MOST_ENTRIES), strict=False)]
+            except (OSError, ValueError):
+                names = []
+            self._entries[folder] = {name.casefold(): name for name in names}
+        return self._entries[folder]
 
 
 def resolve(
-    address: str, *, urdf_path: Path | None = None, package_dirs: Sequence[os.PathLike[str] | str] = ()
+    address: str,
+    *,
+    urdf_path: Path | None = None,
+    package_dirs: Sequence[os.PathLike[str] | str] = (),
+    allow_outside: bool = False,
 ) -> Path | None:
-    """Find the file that an address in a URDF refers to.
-
-    Packages are searched in `package_dirs`, in the folders above the URDF file, in example-robot-data, and in the
-    entries of ROS_PACKAGE_PATH and AMENT_PREFIX_PATH, in this order. The first place that has the file wins.
-
-    Args:
-        address: The address as written: "package://name/rest", "model://name/rest", "file:///path", or a path. A
-            relative path starts at the URDF file's folder.
-        urdf_path: The URDF file; None if the description was given as text.
-        package_dirs: Folders that contain packages, or are packages.
-
-    Returns:
-        The file, or None if it does not exist or the address leaves its package through "..".
-    """
-    address = address.strip().replace("\\", "/")
-    scheme, separator, rest = address.partition("://")
-    if not separator:
-        return _relative(address, urdf_path, package_dirs)
-    if scheme == "file":
-        path = unquote(urlsplit(address).path)
-        return Path(path) if os.path.isfile(path) else None
-    if scheme not in ("package", "model"):
-        return None
-    # Some files have three slashes.
-    name, _, inside = rest.lstrip("/").partition("/")
-    if name in ("", ".", "..") or not _stays_inside(inside):
-        return None
-    for package in _package_places(name, urdf_path, package_dirs):
-        if os.path.isfile(package / inside):
-            return package / inside
-    return None
+    """The file at an address in a URDF, or None; for many addresses of one URDF, `Surroundings` is quicker."""
+    return Surroundings(urdf_path, package_dirs, allow_outside).find(address).path
 
 
-@functools.cache
-def example_robot_data() -> Path | None:
-    """The robots folder of example-robot-data, or None if that package is not installed."""
-    prefixes = [Path(entry) / "cmeel.prefix" for entry in sys.path] + [Path(sys.prefix)]
-    for prefix in prefixes:
-        robots = prefix / "share" / "example-robot-data" / "robots"
-        if robots.is_dir():
-            return robots
-    return None
-
-
-def _relative(address: str, urdf_path: Path | None, package_dirs: Sequence[os.PathLike[str] | str]) -> Path | None:
-    base = Path() if urdf_path is None else urdf_path.parent
-    for directory in (base, *map(Path, package_dirs)):
-        if os.path.isfile(directory / address):
-            return directory / address
-    return None
-
-
-def _stays_inside(inside: str) -> bool:
-    depth = 0
-    for part in PurePosixPath(inside).parts:
-        depth += -1 if part == ".." else 1
-        if depth < 0:
-            return False
-    return not inside.startswith("/")
-
-
-def _package_places(
-    name: str, urdf_path: Path | None, package_dirs: Sequence[os.PathLike[str] | str]
-) -> Iterator[Path]:
-    """The folders in which a package of this name may be, nearest first."""
-    homes = [Path(directory) for directory in package_dirs]
-    if urdf_path is not None:
-        homes.extend(urdf_path.absolute().parents)
-        homes.extend(urdf_path.resolve().parents)
-    for home in dict.fromkeys(homes):
-        yield home / name
-        if home.name == name or _manifest_name(home) == name:
-            yield home
-    robots = example_robot_data()
-    if robots is not None:
-        yield robots.parent.parent / name
-        yield robots / name
-    for entry in _entries("ROS_PACKAGE_PATH"):
-        if entry.name == name:
-            yield entry
-        for nesting in NESTED_PACKAGES:
-            yield from entry.glob(nesting + glob.escape(name))
-    for entry in _entries("AMENT_PREFIX_PATH"):
-        yield entry / "share" / name
-
-
-def _manifest_name(directory: Path) -> str | None:
-    """The name in the folder's package.xml, for checkouts whose folder has another name."""
+def _is_file(path: Path) -> bool:
+    """Whether a path is a regular file; False for names that no file can have."""
     try:
-        manifest = (directory / "package.xml").read_text(errors="replace")
-    except OSError:
-        return None
-    name = re.search(r"<name>\s*([^<\s]+)\s*</name>", manifest)
-    return name and name.group(1)
-
-
-def _entries(variable: str) -> list[Path]:
-    return [Path(entry) for entry in os.environ.get(variable, "").split(os.pathsep) if entry]
+        return os.path.isfile(path)
+    except ValueError:
+        return False

@@ -7,19 +7,22 @@ shapes, so that Pinocchio reads exactly that.
 
 from __future__ import annotations
 
-import os
-import stat
 from dataclasses import dataclass, field
 from pathlib import Path
 
 from ..errors import RobotLoadError
+from .addresses import uses_find
+from .document import Document, read_document
+from .flaw import Flaw
 from .joints import JointTag, Mimic, read_joint
-from .links import read_link
+from .links import LinkTag, read_link
+from .materials import named_colors
+from .source import RobotSource, Source
 from .tree import check_unique, resolved_mimics, root_link
 from .writer import written
-from .xml import MAX_BYTES, DocumentError, Element, parse
+from .xml import BrokenXMLError, DocumentError, Element
 
-__all__ = ["Description", "JointTag", "Mimic", "read"]
+__all__ = ["Description", "JointTag", "Mimic", "read", "read_content"]
 
 # What a document is if its root element is not <robot>.
 OTHER_FORMATS = {
@@ -31,7 +34,7 @@ OTHER_FORMATS = {
     "COLLADA": "a COLLADA mesh, not a robot",
 }
 SRDF_TAGS = {"group", "group_state", "virtual_joint", "end_effector", "disable_collisions", "passive_joint"}
-XACRO_HELP = "an unexpanded xacro file; expand it first: xacro file.xacro > file.urdf"
+XACRO_HELP = "an unexpanded xacro file; load it by its path, or expand it first: xacro file.xacro > file.urdf"
 
 
 @dataclass(frozen=True)
@@ -41,14 +44,15 @@ class Description:
     Attributes:
         name: The robot's name.
         source: The file that was read, or "<text>".
-        path: The absolute path of that file; None for text.
+        path: The absolute path of that file; None if there is none.
         root: The root link.
-        links: The links, in the file's order.
+        links: The names of the links, in the file's order.
+        link_tags: The links themselves, with the shapes that can be read.
         joints: The joints, in the file's order; a mimic of a mimic names the leader at the end of the chain.
-        meshes: The addresses of the meshes as written, in order, without repetitions.
+        meshes: The addresses of those shapes' meshes as written, in order, without repetitions.
         xml: The URDF text for Pinocchio: kinematics, inertias and limits, without shapes.
         warnings: What was repaired or left out.
-        document: The bytes that were read, shapes included.
+        document: The bytes that were parsed, shapes included (`document.Document.content`).
     """
 
     name: str
@@ -56,95 +60,75 @@ class Description:
     path: Path | None
     root: str
     links: tuple[str, ...]
+    link_tags: tuple[LinkTag, ...]
     joints: tuple[JointTag, ...]
     meshes: tuple[str, ...]
     xml: str
-    warnings: tuple[str, ...]
+    warnings: tuple[Flaw, ...]
     document: bytes = field(repr=False)
 
 
-def read(source: str | os.PathLike[str]) -> Description:
+def read(given: RobotSource) -> Description:
     """Read a URDF and check it.
 
     Args:
-        source: The path of a file, or URDF text: a string that begins with "<" after any white space and byte-order
-            mark.
+        given: The path of a file, URDF text (a string that begins with "<" after any white space and byte-order mark),
+            the bytes of a file, or an open file, which is read from where it stands to its end.
 
     Raises:
         RobotLoadError: The file cannot be read, or is not a valid URDF; the message names the element and the cause.
     """
-    if isinstance(source, str) and source.lstrip("\ufeff \t\r\n").startswith("<"):
-        label, path = "<text>", None
-    else:
-        label = _shown(os.fspath(source))
-        path = Path(source)
+    source = Source.of(given)
+    return read_content(source.content(), source)
+
+
+def read_content(content: bytes, source: Source) -> Description:
+    """Check a URDF whose bytes were read already.
+
+    Args:
+        content: The bytes.
+        source: Where they come from.
+
+    Raises:
+        RobotLoadError: It is not a valid URDF; the message names the element and the cause.
+    """
     try:
-        document = _file_bytes(path) if path else _text_bytes(str(source))
-        return _describe(parse(document, None if path else "utf-8"), label, path, document)
+        return _described(read_document(content), source)
     except DocumentError as fault:
-        line = f" (line {fault.line})" if fault.line else ""
-        raise RobotLoadError(fault.message + line, source=label, element=fault.owner) from None
+        # The message of broken XML names line and column itself.
+        line = f" (line {fault.line})" if fault.line and not isinstance(fault, BrokenXMLError) else ""
+        raise RobotLoadError(fault.message + line, source=source.label, element=fault.owner) from None
 
 
-def _shown(path: str) -> str:
-    if len(path) > 200:
-        return repr(path[:60]) + "..."
-    return path if path and path.isprintable() else repr(path)
-
-
-def _text_bytes(text: str) -> bytes:
-    try:
-        return text.lstrip("\ufeff").encode("utf-8")
-    except UnicodeEncodeError as error:
-        raise DocumentError(f"not XML: the text cannot be encoded ({error.reason})") from None
-
-
-def _file_bytes(path: Path) -> bytes:
-    try:
-        if path.is_dir():
-            raise DocumentError("this is a directory, not a URDF file")
-        if not (stat.S_ISREG(path.stat().st_mode) or _is_open_already(path)):
-            raise DocumentError("this is a pipe or a device, not a URDF file")
-        # An endless stream must not fill up the memory.
-        with path.open("rb") as file:
-            return file.read(MAX_BYTES + 1)
-    except FileNotFoundError:
-        raise DocumentError("there is no such file (URDF text would begin with '<')") from None
-    except (OSError, ValueError) as error:
-        cause = getattr(error, "strerror", None) or str(error)
-        raise DocumentError(f"the file cannot be read: {cause}") from None
-
-
-def _is_open_already(path: Path) -> bool:
-    """Whether the path names a stream that is open already, such as "<(xacro ...)" or "/dev/stdin"."""
-    return os.path.abspath(path).startswith(("/dev/fd/", "/proc/self/fd/", "/dev/stdin"))
-
-
-def _describe(robot: Element, source: str, path: Path | None, document: bytes) -> Description:
+def _described(document: Document, source: Source) -> Description:
+    robot = document.root
     _check_root(robot)
-    warnings: list[str] = []
+    flaws: list[Flaw] = list(document.flaws)
     if not robot.named("link"):
         raise DocumentError(_why_no_links(robot), owner="<robot>", line=robot.line)
     check_unique(robot)
-    links = [read_link(element, warnings) for element in robot.named("link")]
-    joints = [read_joint(element, warnings) for element in robot.named("joint")]
+    colors = named_colors(robot, flaws)
+    links = [read_link(element, colors, flaws) for element in robot.named("link")]
+    joints = [read_joint(element, flaws) for element in robot.named("joint")]
     root = root_link([link.name for link in links], joints)
-    joints = resolved_mimics(joints, warnings)
+    joints = resolved_mimics(joints, flaws)
     name = robot.attributes.get("name")
     if name is None:
-        name = path.stem if path else "robot"
-        warnings.append(f"<robot> has no name; the robot is named {name!r}")
+        name = source.path.stem if source.path else "robot"
+        cause = f"has no name; the robot is named {name!r}"
+        flaws.append(Flaw("<robot>", cause, code="no-name", line=robot.line, mend=f"write <robot name={name!r}>"))
     return Description(
         name=name,
-        source=source,
-        path=path.absolute() if path else None,
+        source=source.label,
+        path=source.path.absolute() if source.path else None,
         root=root,
         links=tuple(link.name for link in links),
         joints=tuple(joints),
-        meshes=tuple(dict.fromkeys(mesh for link in links for mesh in link.meshes)),
+        link_tags=tuple(links),
+        meshes=tuple(dict.fromkeys(shape.filename for link in links for shape in link.shapes if shape.filename)),
         xml=written(name, links, joints),
-        warnings=tuple(warnings),
-        document=document,
+        warnings=tuple(flaws),
+        document=document.content,
     )
 
 
@@ -158,7 +142,8 @@ def _check_root(robot: Element) -> None:
     for part in [*robot.named("link"), *robot.named("joint")]:
         for element in part.walk():
             for attribute, text in element.attributes.items():
-                if "${" in text or "$(" in text:
+                # "$(find package)/mesh.stl" has one meaning, and files that were expanded by hand still have it.
+                if "${" in text or ("$(" in text and not (attribute == "filename" and uses_find(text))):
                     raise DocumentError(
                         f'{attribute}="{text[:60]}" is a xacro expression: this is {XACRO_HELP}',
                         owner=f"<{element.tag}>",

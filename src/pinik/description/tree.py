@@ -7,7 +7,8 @@ from dataclasses import replace
 
 from .flaw import Flaw
 from .joints import ONE_AXIS_KINDS, JointTag, Mimic
-from .values import FARTHEST, required_name
+from .numbers import FARTHEST
+from .part import required_name
 from .xml import DocumentError, Element
 
 __all__ = ["check_unique", "resolved_mimics", "root_link"]
@@ -59,10 +60,10 @@ def root_link(links: Sequence[str], joints: Iterable[JointTag]) -> str:
     return roots[0]
 
 
-def resolved_mimics(joints: Sequence[JointTag], warnings: list[str]) -> list[JointTag]:
+def resolved_mimics(joints: Sequence[JointTag], flaws: list[Flaw]) -> list[JointTag]:
     """The joints, with each mimic naming the leader at the end of its chain, and the chain's multiplier and offset.
 
-    Mimics that have nothing to follow are removed and named in `warnings`, which is appended to.
+    Mimics that have nothing to follow are removed and added to `flaws`.
 
     Raises:
         DocumentError: A joint mimics itself, joints mimic each other in a circle, or a multiplier or offset is so large
@@ -71,8 +72,7 @@ def resolved_mimics(joints: Sequence[JointTag], warnings: list[str]) -> list[Joi
     by_name = {joint.name: joint for joint in joints}
     followers: dict[str, Mimic] = {}
     for joint in joints:
-        # Reduced robots often have fixed joints with a mimic left on them.
-        if joint.mimic is None or joint.kind == "fixed":
+        if joint.mimic is None:
             continue
         leader = by_name.get(joint.mimic.leader)
         common = None
@@ -87,7 +87,7 @@ def resolved_mimics(joints: Sequence[JointTag], warnings: list[str]) -> list[Joi
         else:
             followers[joint.name] = joint.mimic
             continue
-        warnings.append(Flaw(f"joint {joint.name!r}", cause, code="mimic-ignored", common=common))
+        flaws.append(Flaw(f"joint {joint.name!r}", cause, code="mimic-ignored", common=common))
     circle = _cycle({name: mimic.leader for name, mimic in followers.items()})
     if circle:
         cause = "it mimics itself" if len(circle) == 1 else f"joints mimic in a circle: {_listed(circle)}"

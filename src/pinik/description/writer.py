@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-from .joints import JointTag
+from .joints import ENDLESS, JointTag
 from .links import INERTIA_ATTRIBUTES, Inertial, LinkTag
-from .values import Vector
+from .part import Vector
 
 __all__ = ["UNLIMITED", "written"]
 
@@ -68,7 +68,9 @@ def _limit(joint: JointTag) -> str:
         return ""
     effort = UNLIMITED if joint.effort is None else joint.effort
     velocity = UNLIMITED if joint.velocity is None else joint.velocity
-    bounds = f'lower="{joint.lower or 0.0!r}" upper="{joint.upper or 0.0!r}" ' if bounded else ""
+    # An infinite limit is written as a large one: URDF has no word for it, and `set_position_limits` makes it infinite.
+    lower, upper = max(joint.lower or 0.0, -ENDLESS), min(joint.upper or 0.0, ENDLESS)
+    bounds = f'lower="{lower!r}" upper="{upper!r}" ' if bounded else ""
     return f'<limit {bounds}effort="{effort!r}" velocity="{velocity!r}"/>'
 
 

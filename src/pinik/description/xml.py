@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field
 from xml.parsers import expat
 
-__all__ = ["DocumentError", "Element", "parse"]
+__all__ = ["BrokenXMLError", "DocumentError", "Element", "parse"]
 
 # The largest robot of the catalogue has 0.2 MB, 5,000 elements and 9 levels; these bounds stop XML bombs only.
 MAX_BYTES = 16 * 1024 * 1024
@@ -29,6 +29,21 @@ class DocumentError(Exception):
         self.owner = owner
         self.line = line
         super().__init__(message)
+
+
+class BrokenXMLError(DocumentError):
+    """A document that is not well-formed.
+
+    Attributes:
+        kind: "junk" for something after the root element, "encoding" for bytes that are not in the encoding of the
+            document, "token" for characters that XML does not allow, "" for anything else.
+        start: The offset of what comes after the root element; None for other kinds.
+    """
+
+    def __init__(self, message: str, *, kind: str = "", line: int | None = None, start: int | None = None) -> None:
+        self.kind = kind
+        self.start = start
+        super().__init__(message, line=line)
 
 
 @dataclass(slots=True)
@@ -67,6 +82,7 @@ class _Builder:
 
     def __init__(self, parser: expat.XMLParserType, blank: bytes) -> None:
         self.root: Element | None = None
+        self.end: int | None = None  # the offset of the tag that ends the root element
         self._open: list[Element] = []
         self._count = 0
         self._parser = parser
@@ -94,6 +110,8 @@ class _Builder:
 
     def _end(self, _tag: str) -> None:
         self._open.pop()
+        if not self._open:
+            self.end = self._parser.CurrentByteIndex + self._bytes_before
 
     def _refuse_doctype(self, name: str, *_: object) -> None:
         raise DocumentError(
@@ -114,49 +132,59 @@ class _Builder:
         return self._parser.CurrentLineNumber + self._lines_before
 
 
-def parse(document: bytes, encoding: str | None = None) -> Element:
-    """Parse an XML document.
+def parse(document: bytes, most_bytes: int = MAX_BYTES) -> Element:
+    """Parse an XML document, in the encoding that it declares.
 
     Args:
         document: The bytes of the file.
-        encoding: Their encoding; None to take it from the document's declaration.
+        most_bytes: The largest size.
 
     Returns:
         The root element.
 
     Raises:
-        DocumentError: The document is not well-formed XML, declares a document type, or exceeds the bounds of this
-            module.
+        BrokenXMLError: The document is not well-formed XML.
+        DocumentError: It declares a document type, or exceeds the bounds of this module.
     """
-    if len(document) > MAX_BYTES:
-        raise DocumentError(f"larger than {MAX_BYTES // 1024**2} MB, too large for a robot description")
+    if len(document) > most_bytes:
+        raise DocumentError(f"larger than {most_bytes // 1024**2} MB, too large for a robot description")
     if not document.strip():
         raise DocumentError("empty: it contains no XML")
     # Blank lines before the declaration are common in pasted text, and other URDF readers accept them.
     blank = document[: len(document) - len(document.lstrip())]
-    parser = expat.ParserCreate(encoding)
+    parser = expat.ParserCreate()
     builder = _Builder(parser, blank)
     try:
         parser.Parse(document[len(blank) :], True)
     except expat.ExpatError as error:
-        line = error.lineno + blank.count(b"\n")
-        cause = _encoding_fault(document, parser.ErrorCode) or expat.ErrorString(error.code)
-        raise DocumentError(f"not XML: {cause} (line {line}, column {error.offset + 1})") from None
+        broken = _broken(document, error, parser.ErrorByteIndex + len(blank), blank.count(b"\n"))
+        if builder.end is not None:
+            broken.kind, broken.start = "junk", document.find(b">", builder.end) + 1
+        raise broken from None
     except (UnicodeError, LookupError, ValueError) as error:
-        raise DocumentError(f"not XML: its encoding cannot be read ({error})") from None
+        raise BrokenXMLError(f"not XML: its encoding cannot be read ({error})", kind="encoding") from None
     if builder.root is None:
         raise DocumentError("not XML: it contains no element")
     return builder.root
 
 
-def _encoding_fault(document: bytes, code: int) -> str | None:
-    """A plainer description of expat's "invalid token" where the bytes are not text."""
-    if code != expat.errors.codes[expat.errors.XML_ERROR_INVALID_TOKEN]:
-        return None
-    if b"\0" in document:
-        return "it contains null bytes"
-    try:
-        document.decode("utf-8")
-    except UnicodeDecodeError as error:
-        return f"byte 0x{document[error.start]:02x} is not UTF-8, and no other encoding is declared"
-    return None
+def _broken(document: bytes, error: expat.ExpatError, start: int, lines_before: int) -> BrokenXMLError:
+    """What expat found, with a plainer description of its "invalid token" where the bytes are not text."""
+    codes = expat.errors.codes
+    kinds = {
+        codes[expat.errors.XML_ERROR_UNKNOWN_ENCODING]: "encoding",
+        codes[expat.errors.XML_ERROR_INCORRECT_ENCODING]: "encoding",
+        codes[expat.errors.XML_ERROR_INVALID_TOKEN]: "token",
+    }
+    kind, cause = kinds.get(error.code, ""), expat.ErrorString(error.code)
+    if kind == "token" and b"\0" in document:
+        kind, cause = "", "it contains null bytes"
+    elif kind == "token" and document[start : start + 1] >= b"\x80":
+        kind = "encoding"
+        try:
+            document.decode("utf-8")
+        except UnicodeDecodeError as undecoded:
+            cause = f"byte 0x{document[undecoded.start]:02x} is not UTF-8, and no other encoding is declared"
+    line = error.lineno + lines_before
+    message = f"not XML: {cause} (line {line}, column {error.offset + 1})"
+    return BrokenXMLError(message, kind=kind, line=line)

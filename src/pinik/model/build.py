@@ -11,7 +11,7 @@ import pinocchio
 from ..description.reader import Description, JointTag
 from ..description.writer import UNLIMITED
 from ..errors import InputError, RobotLoadError
-from .joint import joints_of
+from .joint import Joint, joints_of
 from .order import leaders_first
 from .ranges import set_position_limits
 
@@ -67,7 +67,29 @@ def build_model(
         _restore_names(model, joints)
     else:
         model = _built(description, description.xml, root_joint, mimic=False)
-    return model, warnings + set_position_limits(model, joints_of(model, description))
+    movable = joints_of(model, description)
+    for joint in movable:
+        if joint.kind == "planar":
+            _turn_into_plane(model, joint)
+    return model, warnings + set_position_limits(model, movable)
+
+
+def _turn_into_plane(model: pinocchio.Model, joint: Joint) -> None:
+    """Let a planar joint move in the plane across its axis; Pinocchio's moves in the xy-plane of its frame.
+
+    The joint's frame is turned, and all that it carries is turned back, so that at the neutral configuration everything
+    stays where the file says.
+    """
+    to_plane = joint.to_plane
+    back = to_plane.inverse()
+    model.jointPlacements[joint.id] = model.jointPlacements[joint.id] * to_plane
+    model.inertias[joint.id] = back.act(model.inertias[joint.id])
+    for child in range(1, model.njoints):
+        if model.parents[child] == joint.id:
+            model.jointPlacements[child] = back * model.jointPlacements[child]
+    for frame in model.frames:
+        if frame.parentJoint == joint.id:
+            frame.placement = back * frame.placement
 
 
 def _check_names(description: Description, root: str) -> None:

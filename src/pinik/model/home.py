@@ -6,6 +6,7 @@ import numpy as np
 import pinocchio
 from numpy.typing import NDArray
 
+from ..errors import RobotLoadError
 from .chains import chain_of
 from .limits import Limits
 from .robot_model import RobotModel
@@ -20,8 +21,14 @@ _BEND = 0.4  # [rad] hinge angle for a robot without named poses, so that it is 
 
 
 def home_configuration(robot: RobotModel) -> Array:
-    """The default configuration (nq,), inside the limits: the resting pose, or slightly bent if there is no pose."""
-    poses = robot.poses
+    """The default configuration (nq,), inside the limits: the resting pose, or slightly bent if there is no pose.
+
+    An SRDF file with a fault counts as none.
+    """
+    try:
+        poses = robot.poses
+    except RobotLoadError:  # nobody asked for a pose
+        poses = {}
     limits = Limits.of(robot)
     for name in (*_HOME_POSES, *poses):
         if name in poses:

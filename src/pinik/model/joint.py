@@ -31,7 +31,7 @@ class Joint:
         id: Index in `pinocchio.Model.joints`.
         idx_q, nq: First entry and number of entries in q. A follower has nq = 0, and its leader's first entry.
         idx_v, nv: The same for tangent vectors.
-        axis: Unit axis (3,) in the joint's frame, for joints with one axis.
+        axis: Unit axis (3,) in the joint's frame, for joints with one axis; the normal of a planar joint's plane.
         lower, upper: Its own limits in the URDF [rad or m], infinite where there are none.
         leader: The name of the joint that it mimics, or None. It never mimics another joint itself.
         multiplier, offset: A follower's angle is multiplier · leader's angle + offset.
@@ -102,7 +102,8 @@ class Joint:
             return pinocchio.XYZQUATToSE3(q[self.idx_q : self.idx_q + 7])
         x, y, cosine, sine = q[self.idx_q : self.idx_q + 4]
         rotation = np.array([[cosine, -sine, 0.0], [sine, cosine, 0.0], [0.0, 0.0, 1.0]])
-        return pinocchio.SE3(rotation, np.array([x, y, 0.0]))
+        to_plane = self.to_plane
+        return to_plane * pinocchio.SE3(rotation, np.array([x, y, 0.0])) * to_plane.inverse()
 
     def set_placement(self, q: Array, placement: pinocchio.SE3) -> None:
         """Set the placement of a floating or planar joint in `q`, in place.
@@ -113,11 +114,31 @@ class Joint:
         if self.kind == "floating":
             q[self.idx_q : self.idx_q + 7] = pinocchio.SE3ToXYZQUAT(placement)
             return
-        out_of_plane = max(abs(placement.translation[2]), abs(placement.rotation[2, 2] - 1.0))
+        to_plane = self.to_plane
+        inside = to_plane.inverse() * placement * to_plane
+        out_of_plane = max(abs(inside.translation[2]), abs(inside.rotation[2, 2] - 1.0))
         if out_of_plane > 1e-9:
-            raise InputError(f"planar joint {self.name!r} moves only in its x-y plane and turns only about z")
-        cosine, sine = placement.rotation[0, 0], placement.rotation[1, 0]
-        q[self.idx_q : self.idx_q + 4] = (*placement.translation[:2], cosine, sine)
+            axis = tuple(round(value, 6) + 0.0 for value in self.axis)
+            plane = "x-y plane and turns only about z" if axis == (0.0, 0.0, 1.0) else f"plane across {axis}"
+            raise InputError(f"planar joint {self.name!r} moves only in its {plane}")
+        cosine, sine = inside.rotation[0, 0], inside.rotation[1, 0]
+        q[self.idx_q : self.idx_q + 4] = (*inside.translation[:2], cosine, sine)
+
+    @property
+    def to_plane(self) -> pinocchio.SE3:
+        """The turn that brings z onto the axis, as a placement without translation.
+
+        It leads from the frame in which Pinocchio's planar joint moves to that of the joint. It is the shortest one; if
+        the axis points to negative z, it is the shortest one from −z, after a half turn about x.
+        """
+        half_turn = np.diag([1.0, -1.0, -1.0]) if self.axis[2] < 0.0 else np.eye(3)
+        x, y, z = half_turn @ self.axis
+        # Rodrigues' formula for a turn about (-y, x, 0), whose sine is the length of that vector, and its cosine z.
+        slope = 1.0 / (1.0 + z)
+        turn = np.array(
+            [[1.0 - x * x * slope, -x * y * slope, x], [-x * y * slope, 1.0 - y * y * slope, y], [-x, -y, z]]
+        )
+        return pinocchio.SE3(half_turn @ turn, np.zeros(3))
 
     def circle(self, q: Array) -> tuple[Array, str] | None:
         """The entries of `q` that must have length 1, and their name in words; None if there are none."""

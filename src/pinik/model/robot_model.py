@@ -15,6 +15,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from ..checks import as_finite_number, as_se3
 from ..description import reader as urdf
+from ..description.packages import Surroundings
 from ..errors import InputError, UnknownNameError
 from .angles import set_angles
 from .build import build_model
@@ -46,6 +47,7 @@ class RobotModel:
         description: The checked URDF.
         root: How the root link is attached to the world: "fixed", "free_flyer" or "planar".
         package_dirs: The folders that are searched first for the packages of meshes.
+        allow_outside: Whether the URDF may open meshes outside its own folder, its packages and `package_dirs`.
         warnings: What was repaired or left out while loading.
         joints: All movable joints in the model's order, including followers and the root joint. Pinocchio reads the
             tree depth first and the joints of a link by name, except that leaders come before their followers.
@@ -70,11 +72,13 @@ class RobotModel:
         package_dirs: Sequence[str | os.PathLike[str]] = (),
         mimic: bool = True,
         srdf: Path | None = None,
+        allow_outside: bool = False,
     ) -> None:
         self.description = description
         self.name = name or description.name
         self.root = root
         self.package_dirs = tuple(Path(folder) for folder in package_dirs)
+        self.allow_outside = allow_outside
         self.model, model_warnings = build_model(description, root=root, mimic=mimic)
         self.warnings = (*description.warnings, *model_warnings)
         self._mimic = mimic
@@ -101,7 +105,8 @@ class RobotModel:
     def __reduce__(self) -> tuple[Any, ...]:
         # The model is built again, because Pinocchio 4.1.0 crashes when it uses a deserialised model with mimic joints.
         build = partial(type(self), name=self.name, root=self.root, package_dirs=self.package_dirs)
-        return partial(build, mimic=self._mimic, srdf=self._srdf), (self.description,), {"warnings": self.warnings}
+        build = partial(build, mimic=self._mimic, srdf=self._srdf, allow_outside=self.allow_outside)
+        return build, (self.description,), {"warnings": self.warnings}
 
     def with_root(self, root: str) -> Self:
         """The same robot with another root joint: "fixed", "free_flyer" or "planar".
@@ -110,7 +115,13 @@ class RobotModel:
             InputError: Another root than these.
         """
         settings: dict[str, Any] = {"package_dirs": self.package_dirs, "mimic": self._mimic, "srdf": self._srdf}
+        settings["allow_outside"] = self.allow_outside
         return type(self)(self.description, name=self.name, root=root, **settings)
+
+    @property
+    def surroundings(self) -> Surroundings:
+        """The files around the URDF, as they are now: what an address in it leads to."""
+        return Surroundings(self.description.path, self.package_dirs, self.allow_outside)
 
     @property
     def data(self) -> Any:
@@ -125,14 +136,20 @@ class RobotModel:
         return self._local
 
     @property
+    def urdf(self) -> str:
+        """The robot as URDF text, as Pinocchio reads it: checked and with plain numbers, without shapes."""
+        return self.description.xml
+
+    @property
     def poses(self) -> dict[str, Array]:
         """The named configurations in the SRDF file that belongs to the URDF: name → q (nq,).
 
         The arrays are read-only; copy one to change it. Joints that a pose does not mention are neutral. Without an
-        SRDF file there are no poses.
+        SRDF file there are no poses. The file is read when the poses are first asked for.
 
         Raises:
-            RobotLoadError: The SRDF file is faulty.
+            RobotLoadError: The SRDF file cannot be read, or a pose in it has no number for a joint, or one outside its
+                limits; the message names the pose and the joint.
         """
         poses = {name: q.copy() for name, q in self._poses.items()}
         for q in poses.values():
@@ -217,7 +234,8 @@ class RobotModel:
 
         Args:
             angles: Joint name → angle [rad], or position [m] for prismatic joints.
-            joint_placements: Name of a floating or planar joint → its placement in its parent, an SE3 or a 4×4 matrix.
+            joint_placements: Name of a floating or planar joint → how far it moved from where it is when neutral, along
+                the axes of its frame: an SE3 or a 4×4 matrix. A planar joint moves across its axis.
 
         Raises:
             UnknownNameError: No such joint; the message lists near names.
@@ -254,7 +272,9 @@ class RobotModel:
         return {joint.name: joint.angle(values) for joint in self.joints if joint.has_one_axis}
 
     def joint_placements(self, q: ArrayLike) -> dict[str, pinocchio.SE3]:
-        """The placements of all floating and planar joints at `q`, a free root included: name → SE3 in its parent.
+        """The placements of all floating and planar joints at `q`, a free root included: name → SE3.
+
+        Each is relative to where the joint is when it is neutral, along the axes of its frame.
 
         Raises:
             InputError: `q` is not a configuration of this robot.

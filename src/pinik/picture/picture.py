@@ -13,6 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from ..errors import InputError
 from ..extras import needed_by
+from ..files import write_whole
 from .arguments import SMALLEST, as_any_points, depth_of
 from .camera import Camera
 
@@ -61,7 +62,7 @@ class Picture:
         return np.asarray(found[0] if single else found)
 
     def save(self, path: str | os.PathLike[str]) -> None:
-        """Write the picture to a file; the suffix, such as .png or .jpg, gives the format.
+        """Write the picture to a file, whole or not at all; the suffix, such as .png or .jpg, gives the format.
 
         A format without opacity gets a white background.
 
@@ -82,7 +83,9 @@ class Picture:
             raise InputError(
                 f"path must end in .png, .jpg or another suffix that Pillow can write; got {os.fspath(path)!r}"
             )
-        image.save(path)
+        file = io.BytesIO()
+        image.save(file, kind)
+        write_whole(path, file.getvalue())
 
     def png(self, colors: int | None = None) -> bytes:
         """The bytes of a PNG file.

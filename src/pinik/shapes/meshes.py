@@ -6,7 +6,7 @@ Importing this module imports trimesh, which takes over a second; import it only
 from __future__ import annotations
 
 import os
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -17,15 +17,18 @@ from numpy.typing import NDArray
 
 from ..description import reader as urdf
 from ..description.flaw import Flaw
-from ..description.packages import resolve
-from ..description.xml import Element, parse
+from ..description.materials import Color
+from ..description.packages import Found, Surroundings
+from ..description.shape_tags import ShapeTag
+from ..description.source import RobotSource, is_source
 from ..errors import InputError
 from ..model.robot_model import RobotModel
 from . import triangles
-from .triangles import Color
+from .mesh_checks import MeshError
 
 __all__ = ["Color", "Shape", "load_shapes"]
 
+MOST_TRIANGLES = 20_000_000  # of all mesh files of a robot, each counted as often as it is used
 GREY: Color = (0.7, 0.7, 0.7, 1.0)
 
 
@@ -49,16 +52,17 @@ class Shape:
 
 
 def load_shapes(
-    robot_or_urdf: RobotModel | str | os.PathLike[str], package_dirs: Iterable[str | os.PathLike[str]] = ()
+    robot_or_urdf: RobotModel | RobotSource, package_dirs: Iterable[str | os.PathLike[str]] = ()
 ) -> tuple[list[Shape], list[Flaw]]:
     """Read the visual shapes of a robot.
 
     Args:
-        robot_or_urdf: A robot, a path to a .urdf file, or URDF text.
+        robot_or_urdf: A robot, a path to a .urdf file, URDF text or bytes, or an open file.
         package_dirs: Folders to search first for `package://` addresses; the robot's own come next.
 
     Returns:
-        The shapes in the order of the file, and one warning for each shape that could not be read.
+        The shapes in the order of the file, and one warning for each shape that could not be read. For a robot, the
+        shapes that its description left out are among the robot's own warnings instead.
 
     Raises:
         RobotLoadError: The file cannot be read, or is not a valid URDF.
@@ -70,105 +74,102 @@ def load_shapes(
     if isinstance(robot_or_urdf, RobotModel):
         description = robot_or_urdf.description
         folders.extend(robot_or_urdf.package_dirs)
-    elif isinstance(robot_or_urdf, (str, os.PathLike)):
-        description = urdf.read(robot_or_urdf)
+        allow_outside = robot_or_urdf.allow_outside
+    elif is_source(robot_or_urdf):
+        description, allow_outside = urdf.read(robot_or_urdf), False
     else:
-        raise InputError(f"robot_or_urdf must be a robot, a path or URDF text; got {robot_or_urdf!r}")
-    robot = parse(description.document, None if description.path else "utf-8")
-    named = {
-        material.attributes.get("name", ""): color
-        for material in robot.walk()
-        if material.tag == "material" and (color := _material_color(material)) is not None
-    }
+        raise InputError(
+            f"robot_or_urdf must be a robot, a path or URDF text, its bytes, or an open file; got {robot_or_urdf!r}"
+        )
+    known = isinstance(robot_or_urdf, RobotModel)
+    warnings = [] if known else [flaw for flaw in description.warnings if flaw.code == "dropped-shape"]
     shapes: list[Shape] = []
-    warnings: list[Flaw] = []
-    files: dict[str, list[triangles.Part]] = {}
-    for link in robot.named("link"):
-        link_name = link.attributes["name"]
-        for index, visual in enumerate(link.named("visual")):
+    files = _MeshFiles(Surroundings(description.path, folders, allow_outside))
+    for link in description.link_tags:
+        for visual in link.visuals:
             try:
-                placement, given = _origin(visual), _visual_color(visual, named)
-                parts = _parts(visual, description.path, folders, files)
+                parts = _parts(visual, files)
             except Exception as fault:  # a shape never stops kinematics, and trimesh may raise anything
-                missing = fault.address if isinstance(fault, _MeshNotFoundError) else None
-                cause = f"a shape is left out: {fault}"
-                code = "unreadable-shape" if missing is None else "missing-mesh"
-                warnings.append(Flaw(f"link {link_name!r}", cause, code=code, line=visual.line, mesh=missing))
+                warnings.append(_flaw(f"link {link.name!r}", visual.line, fault))
                 continue
             for part, (mesh, own) in enumerate(parts):
-                name = f"{link_name}/{index}" + (f"/{part}" if len(parts) > 1 else "")
-                shapes.append(Shape(link_name, name, placement, mesh, given or own or GREY))
+                name = f"{link.name}/{visual.index}" + (f"/{part}" if len(parts) > 1 else "")
+                shapes.append(Shape(link.name, name, _placement(visual), mesh, visual.color or own or GREY))
     return shapes, warnings
 
 
 class _MeshNotFoundError(Exception):
-    def __init__(self, address: str) -> None:
+    def __init__(self, address: str, found: Found) -> None:
         self.address = address
-        super().__init__(f"there is no mesh {address!r}")
+        self.found = found
+        said = f"the mesh {address!r} is not opened" if found.refused else f"there is no mesh {address!r}"
+        super().__init__(said if found.why == "there is no such file" else f"{said}: {found.why}")
 
 
-def _child(element: Element, tag: str) -> Element | None:
-    return next(iter(element.named(tag)), None)
+class _MeshFiles:
+    """The mesh files of one robot: each is read once, and their triangles together are bounded."""
+
+    def __init__(self, surroundings: Surroundings) -> None:
+        self._surroundings = surroundings
+        self._read: dict[str, list[triangles.Part] | Exception] = {}
+        self._left = MOST_TRIANGLES
+
+    def parts(self, address: str, scale: NDArray[np.float64]) -> list[triangles.Part]:
+        """The meshes in a file, scaled.
+
+        Raises:
+            MeshError: It cannot be used, or there would be too many triangles.
+            _MeshNotFoundError: There is no such file, or the URDF may not open it.
+        """
+        if address not in self._read:
+            try:
+                self._read[address] = self._new(address)
+            except (MeshError, _MeshNotFoundError) as fault:
+                self._read[address] = fault
+        parts = self._read[address]
+        if isinstance(parts, Exception):
+            raise parts
+        self._left -= sum(len(mesh.faces) for mesh, _ in parts)
+        if self._left < 0:
+            raise MeshError(f"all meshes together have more than {MOST_TRIANGLES:,} triangles", "mesh-too-large")
+        return [(triangles.scaled(mesh, scale), color) for mesh, color in parts]
+
+    def _new(self, address: str) -> list[triangles.Part]:
+        found = self._surroundings.find(address)
+        if found.path is None:
+            raise _MeshNotFoundError(address, found)
+        try:
+            return triangles.read_file(found.path)
+        except MeshError as fault:
+            raise MeshError(f"{found.path.name!r}: {fault}", fault.code) from None
 
 
-def _numbers(text: str) -> NDArray[np.float64]:
-    return np.array([float(word) for word in text.split()])
+def _flaw(element: str, line: int, fault: Exception) -> Flaw:
+    """A flaw of a shape that is left out."""
+    cause = f"a shape is left out: {fault}"
+    if isinstance(fault, _MeshNotFoundError):
+        found = fault.found
+        return Flaw(element, cause, code=found.code, line=line, mend=found.mend, mesh=fault.address)
+    code = fault.code if isinstance(fault, MeshError) else "unreadable-shape"
+    return Flaw(element, cause, code=code, line=line)
 
 
-def _origin(visual: Element) -> NDArray[np.float64]:
-    origin = _child(visual, "origin")
-    if origin is None:
-        return np.eye(4)
+def _placement(visual: ShapeTag) -> NDArray[np.float64]:
     placement = np.eye(4)
-    placement[:3, :3] = pinocchio.rpy.rpyToMatrix(_numbers(origin.attributes.get("rpy", "0 0 0")))
-    placement[:3, 3] = _numbers(origin.attributes.get("xyz", "0 0 0"))
+    placement[:3, :3] = pinocchio.rpy.rpyToMatrix(np.array(visual.rpy))
+    placement[:3, 3] = visual.xyz
     return placement
 
 
-def _material_color(material: Element) -> Color | None:
-    color = _child(material, "color")
-    if color is None or "rgba" not in color.attributes:
-        return None
-    r, g, b, a = _numbers(color.attributes["rgba"])
-    return (float(r), float(g), float(b), float(a))
-
-
-def _visual_color(visual: Element, named: dict[str, Color]) -> Color | None:
-    material = _child(visual, "material")
-    if material is None:
-        return None
-    return _material_color(material) or named.get(material.attributes.get("name", ""))
-
-
-def _parts(
-    visual: Element,
-    urdf_path: Path | None,
-    package_dirs: Sequence[Path],
-    files: dict[str, list[triangles.Part]],
-) -> list[triangles.Part]:
-    """The meshes of one visual element, each with its own colour if it has one."""
-    geometry = _child(visual, "geometry")
-    for element in geometry.children if geometry else ():
-        given = element.attributes
-        match element.tag:
-            case "box":
-                return [(triangles.box(_numbers(given["size"])), None)]
-            case "sphere":
-                return [(triangles.sphere(float(given["radius"])), None)]
-            case "cylinder" | "capsule":
-                make = triangles.cylinder if element.tag == "cylinder" else triangles.capsule
-                return [(make(float(given["radius"]), float(given["length"])), None)]
-            case "mesh":
-                address = given["filename"]
-                if address not in files:
-                    files[address] = _file(address, urdf_path, package_dirs)
-                scale = _numbers(given.get("scale", "1 1 1"))
-                return [(triangles.scaled(mesh, scale), color) for mesh, color in files[address]]
-    raise ValueError("it has no geometry of a known kind (box, sphere, cylinder, capsule or mesh)")
-
-
-def _file(address: str, urdf_path: Path | None, package_dirs: Sequence[Path]) -> list[triangles.Part]:
-    path = resolve(address, urdf_path=urdf_path, package_dirs=package_dirs)
-    if path is None:
-        raise _MeshNotFoundError(address)
-    return triangles.read_file(path)
+def _parts(visual: ShapeTag, files: _MeshFiles) -> list[triangles.Part]:
+    """The meshes of one visual shape, each with its own colour if it has one."""
+    match visual.kind, visual.size:
+        case "box", size:
+            return [(triangles.box(np.array(size)), None)]
+        case "sphere", (radius,):
+            return [(triangles.sphere(radius), None)]
+        case "cylinder", (radius, length):
+            return [(triangles.cylinder(radius, length), None)]
+        case "capsule", (radius, length):
+            return [(triangles.capsule(radius, length), None)]
+    return files.parts(visual.filename, np.array(visual.size))

@@ -73,7 +73,7 @@ class SecondOpinion:
         return f"yourdfpy {verdict}: {compared}, {apart}{unmoved}"
 
 
-def ask_yourdfpy(robot: RobotModel, path: str | Path) -> SecondOpinion:
+def ask_yourdfpy(robot: RobotModel, file: str | Path | bytes) -> SecondOpinion:
     """Compare a robot with yourdfpy's reading of its file.
 
     Placements are compared in the root link, at the neutral configuration and at two random ones, which are always the
@@ -84,7 +84,7 @@ def ask_yourdfpy(robot: RobotModel, path: str | Path) -> SecondOpinion:
 
     Args:
         robot: The robot, with any root joint.
-        path: The file that the robot was loaded from.
+        file: The file that the robot was loaded from, or its contents.
     """
     rng = np.random.default_rng(0)
     configurations = [
@@ -93,7 +93,7 @@ def ask_yourdfpy(robot: RobotModel, path: str | Path) -> SecondOpinion:
     ]
     try:
         with _silenced():
-            reader, mimics = _read(Path(path))
+            reader, mimics = _read(file if isinstance(file, bytes) else Path(file).read_bytes())
             theirs = [_their_links(reader, mimics, robot, q) for q in configurations]
     except Exception as fault:  # yourdfpy raises KeyError, TypeError, AttributeError, …
         cause = " ".join(str(fault).split())[:200]
@@ -130,14 +130,13 @@ def _silenced() -> Iterator[None]:
         logger.disabled = disabled
 
 
-def _read(path: Path) -> tuple[yourdfpy.URDF, dict[str, Any]]:
-    """yourdfpy's reading of the file, without shapes and mimic tags and with unit axes; and the mimic tags.
+def _read(document: bytes) -> tuple[yourdfpy.URDF, dict[str, Any]]:
+    """yourdfpy's reading of a URDF, without shapes and mimic tags and with unit axes; and the mimic tags.
 
     yourdfpy itself would place followers wrongly where they follow a follower, or a leader that comes after a floating
     or planar joint. Tags that name no joint with one axis are left out, as yourdfpy has nothing to follow there either.
     """
-    document = io.BytesIO(path.read_bytes())
-    read = yourdfpy.URDF.load(document, load_meshes=False, build_scene_graph=False).robot
+    read = yourdfpy.URDF.load(io.BytesIO(document), load_meshes=False, build_scene_graph=False).robot
     for link in read.links:
         link.visuals.clear()  # else it builds meshes for boxes and cylinders
     mimics = {}

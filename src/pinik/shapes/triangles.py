@@ -2,20 +2,28 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+import io
+import warnings
+from collections.abc import Iterable, Iterator
+from contextlib import contextmanager
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import trimesh
 from numpy.typing import NDArray
 
-__all__ = ["Color", "Part", "box", "capsule", "cylinder", "read_file", "scaled", "sphere"]
+from ..description.materials import Color
+from ..files import FileError, read_within
+from .mesh_checks import MOST_BYTES, MeshError, checked
+from .neighbours import Neighbours
 
-Color = tuple[float, float, float, float]
-"""Red, green, blue, opacity, each in 0..1."""
+__all__ = ["Part", "box", "capsule", "cylinder", "read_file", "scaled", "sphere"]
+
 Part = tuple[trimesh.Trimesh, Color | None]
 """A mesh, and its own colour if it has one."""
 
+MOST_TRIANGLES = 5_000_000  # of one file
 CREASE = np.deg2rad(40.0)  # edges sharper than this stay sharp when a mesh brings no normals
 
 
@@ -52,21 +60,75 @@ def scaled(mesh: trimesh.Trimesh, scale: NDArray[np.float64]) -> trimesh.Trimesh
 def read_file(path: Path) -> list[Part]:
     """Read a mesh file: one mesh for each colour in it, in the file's own frame [m].
 
+    The unit that a COLLADA file names counts. Its `<up_axis>` does not: RViz, Gazebo and MoveIt ignore it, and so the
+    robots' own files are made.
+
     Raises:
-        Exception: Whatever trimesh raises for a file that it cannot read; ValueError where there are no triangles.
+        MeshError: The file cannot be read, it is no mesh, or its triangles are too many or not finite.
     """
-    scene = trimesh.load_scene(path)
+    kind = path.suffix.lower().removeprefix(".")
+    try:
+        data = checked(read_within(path, MOST_BYTES, "a mesh file"), kind)
+    except FileError as fault:
+        raise MeshError(str(fault)) from None
     by_color: dict[Color | None, list[trimesh.Trimesh]] = {}
-    for mesh in scene.dump():
-        if isinstance(mesh, trimesh.Trimesh) and len(mesh.faces):
-            # COLLADA names its unit; an STL or OBJ file is taken to be in metres.
-            in_metres = trimesh.units.unit_conversion(mesh.units or "meters", "meters")
-            mesh.apply_transform(np.diag([in_metres, in_metres, in_metres, 1.0]))
-            by_color.setdefault(_own_color(mesh), []).append(mesh)
-    if not by_color:
-        raise ValueError(f"'{path.name}' holds no triangles")
-    keep = _brings_normals(path)
+    for mesh in _meshes(data, kind, Neighbours(path)):
+        by_color.setdefault(_own_color(mesh), []).append(mesh)
+    keep = kind == "dae" or (kind == "obj" and b"\nvn " in data)
     return [(_joined(meshes, keep_normals=keep), color) for color, meshes in by_color.items()]
+
+
+def _meshes(data: bytes, kind: str, neighbours: Neighbours) -> list[trimesh.Trimesh]:
+    """The meshes of a file with their triangles where the file's scene has them [m]."""
+    # The only material of a PLY file is a texture.
+    materials: dict[str, Any] = {"skip_materials": True} if kind == "ply" else {}
+    try:
+        with _silenced():
+            scene = trimesh.load_scene(io.BytesIO(data), kind, resolver=neighbours, process=False, **materials)
+            _check_size(scene)
+            for mesh in scene.geometry.values():
+                if isinstance(mesh, trimesh.Trimesh):
+                    _check_finite(mesh)  # first, because this drops what is not finite
+                    mesh.process()
+            meshes = [mesh for mesh in scene.dump() if isinstance(mesh, trimesh.Trimesh) and len(mesh.faces)]
+    except MeshError:
+        raise
+    except Exception as fault:  # trimesh and its readers raise anything
+        words = " ".join(str(fault).split())[:200]
+        raise MeshError(f"it cannot be read as .{kind}: {words or type(fault).__name__}") from None
+    if not meshes:
+        raise MeshError("it holds no triangles", "empty-mesh")
+    for mesh in meshes:
+        in_metres = trimesh.units.unit_conversion(mesh.units or "meters", "meters")
+        with np.errstate(all="ignore"):
+            mesh.apply_transform(np.diag([in_metres, in_metres, in_metres, 1.0]))
+        _check_finite(mesh)
+    return meshes
+
+
+def _check_finite(mesh: trimesh.Trimesh) -> None:
+    if not np.isfinite(mesh.vertices[mesh.faces]).all():
+        raise MeshError("it has corners that are not finite numbers (NaN or infinite)", "nan-in-mesh")
+
+
+def _check_size(scene: trimesh.Scene) -> None:
+    """Count the triangles of a scene before its shapes are copied to each of their places."""
+    counts = {name: len(getattr(mesh, "faces", ())) for name, mesh in scene.geometry.items()}
+    count = sum(counts[scene.graph[node][1]] for node in scene.graph.nodes_geometry)
+    if count > MOST_TRIANGLES:
+        raise MeshError(f"it has {count:,} triangles, and pinik draws at most {MOST_TRIANGLES:,}", "mesh-too-large")
+
+
+@contextmanager
+def _silenced() -> Iterator[None]:
+    """Suppress what the mesh readers log and warn about; what matters becomes an error."""
+    disabled, trimesh.util.log.disabled = trimesh.util.log.disabled, True
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            yield
+    finally:
+        trimesh.util.log.disabled = disabled
 
 
 def _own_color(mesh: trimesh.Trimesh) -> Color | None:
@@ -80,11 +142,6 @@ def _own_color(mesh: trimesh.Trimesh) -> Color | None:
         return None
     r, g, b, a = (float(value) for value in rgba)
     return (r, g, b, a)
-
-
-def _brings_normals(path: Path) -> bool:
-    suffix = path.suffix.lower()
-    return suffix == ".dae" or (suffix == ".obj" and b"\nvn " in path.read_bytes())
 
 
 def _joined(meshes: Iterable[trimesh.Trimesh], *, keep_normals: bool) -> trimesh.Trimesh:

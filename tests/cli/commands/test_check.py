@@ -150,7 +150,8 @@ def test_joints_with_the_same_flaw_share_a_line_whatever_their_names(run, urdf):
     )
     lines = run("check", urdf(f'<link name="base"/>{joints}')).out.splitlines()
     assert [line for line in lines if line.startswith("warning")] == [
-        """warning: joint "j'1", joint "j'2": it mimics a joint that does not exist; it is left free"""
+        """warning: joint "j'1", joint "j'2": it mimics a joint that does not exist; it is left free """
+        """(the first: it mimics 'gone1', which does not exist; it is left free)"""
     ]
 
 

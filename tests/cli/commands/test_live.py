@@ -52,9 +52,10 @@ def test_the_address_is_on_stdout_and_ctrl_c_ends_it(environment):
         shown = state(address)
         assert (shown["robot"], shown["running"], shown["motion"]) == ("arm", True, "curve")
         assert [one["method"] for one in shown["instances"]] == ["ccd", "jt", "pinv", "dls"]
+        assert process.stderr.readline() == "Press Ctrl-C to end the live view.\n"
         process.send_signal(signal.SIGINT)
         out, err = process.communicate(timeout=PATIENCE)
-    assert (process.returncode, out, err) == (130, "", "Press Ctrl-C to end the live view.\ninterrupted\n")
+    assert (process.returncode, out, err) == (130, "", "interrupted\n")
     with socket.socket() as listening:
         listening.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
         listening.bind(("127.0.0.1", port))

@@ -130,7 +130,7 @@ def test_a_server_that_cannot_start_leaves_nothing_behind(two_link, monkeypatch)
         raise pinik.EngineError("meshcat's viewer is missing")
 
     wait_until(lambda: not own_threads())
-    monkeypatch.setattr(live_view_module, "make_application", missing)
+    monkeypatch.setattr(live_view_module, "make_server", missing)
     before = open_files()
     with socket.socket() as free:
         free.bind(("127.0.0.1", 0))

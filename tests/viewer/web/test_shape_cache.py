@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import hashlib
 import os
 import subprocess
 import sys
 import threading
 
+import platformdirs
 import pytest
 import trimesh
 
@@ -178,6 +180,50 @@ def test_a_file_that_cannot_be_read_or_replaced_is_as_good_as_none():
     file.mkdir()
     assert shapes_of(model) == first
     assert files() == [file]  # and nothing unfinished beside it
+
+
+@pytest.mark.parametrize("kind", ["a pipe", "an endless device", "too large"])
+def test_an_entry_that_is_no_file_of_a_bounded_size_holds_nothing_up(tmp_path, monkeypatch, kind):
+    model = pinik.load(robot(link("base", BOX)))
+    first = shapes_of(model)
+    file = only_file()
+    file.unlink()
+    if kind == "a pipe":
+        os.mkfifo(file)
+    elif kind == "an endless device":
+        file.symlink_to("/dev/zero")
+    else:
+        file.write_bytes(b"\0" * 1_000_001)
+        monkeypatch.setattr(shape_cache, "LIMIT", 1_000_000)
+    assert shapes_of(model) == first
+
+
+def test_a_whole_entry_of_the_wrong_form_is_made_anew(conversions):
+    model = pinik.load(robot(link("base", BOX)))
+    first = shapes_of(model)
+    for body in (b"", b"\xc0", b"\x93\x01\x02\x03", b"\xc1", b"\x91" * 10_000):
+        only_file().write_bytes(hashlib.sha256(body).digest() + body)
+        assert shapes_of(model) == first
+    assert len(conversions) == 6
+
+
+def test_without_a_home_folder_nothing_is_cached_and_nothing_is_lost(tmp_path, monkeypatch):
+    monkeypatch.delenv("PINIK_CACHE_DIR")
+    monkeypatch.setattr(platformdirs, "user_cache_dir", lambda *_, **__: "~/.cache/pinik")  # as without a home folder
+    monkeypatch.chdir(tmp_path)
+    model = pinik.load(robot(link("base", BOX)))
+    assert shapes_of(model) == make_shapes(model)
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_meshes_that_cannot_be_looked_at_cost_only_the_cache(tmp_path, monkeypatch):
+    def fail(_):
+        raise OSError(5, "Input/output error")
+
+    monkeypatch.setattr(shape_cache, "_key", fail)
+    model = pinik.load(robot(link("base", BOX)))
+    assert shapes_of(model) == make_shapes(model)
+    assert files() == []
 
 
 def test_a_folder_that_cannot_be_written_is_no_error(folder):

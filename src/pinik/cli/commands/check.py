@@ -7,8 +7,8 @@ from typing import Annotated
 import typer
 
 from ...description.flaw import summarised
-from ..inputs.loading import check_folders
-from ..inputs.options import AsJson, PackageDirs
+from ..inputs.loading import check_folders, xacro_arguments
+from ..inputs.options import AllowOutside, AsJson, PackageDirs, XacroArgs
 from ..reports.inspection import Inspection, inspect
 from ..terminal import output
 from ..terminal.exits import ExitStatus
@@ -21,10 +21,14 @@ def check(
     file: Annotated[
         str,
         typer.Argument(
-            metavar="FILE.urdf", help="A URDF file, or the name of a robot in the catalogue.", show_default=False
+            metavar="FILE.urdf",
+            help="A URDF or xacro file, or the name of a robot in the catalogue.",
+            show_default=False,
         ),
     ],
     package_dir: PackageDirs = None,
+    xacro_arg: XacroArgs = None,
+    allow_outside: AllowOutside = False,
     as_json: AsJson = False,
 ) -> ExitStatus:
     """Check a URDF file for faults, doubtful parts and missing meshes, and compare pinik's reading with yourdfpy's.
@@ -36,7 +40,7 @@ def check(
       pinik check lion
     """
     check_folders(package_dir)
-    found = inspect(file, tuple(package_dir or ()))
+    found = inspect(file, tuple(package_dir or ()), xacro_arguments(xacro_arg), allow_outside)
     if as_json:
         output.emit_json(found.to_dict())
     else:
@@ -46,18 +50,18 @@ def check(
 
 def _emit(found: Inspection) -> None:
     verdict = "loads" if found.loads else "cannot be loaded"
-    output.emit(output.painted(f"{found.file}: {verdict}", "green" if found.loads else "red"))
+    output.emit_words(f"{found.file}: {verdict}", "green" if found.loads else "red")
     for fault in found.faults:
-        output.emit("fault: " + (f"{fault.element}: " if fault.element else "") + fault.message)
+        output.emit_words("fault: " + (f"{fault.element}: " if fault.element else "") + fault.message)
     for words in summarised(found.warnings):
-        output.emit(f"warning: {words}")
+        output.emit_words(f"warning: {words}")
     for address in found.missing_meshes:
-        output.emit(f"missing mesh: {address}")
+        output.emit_words(f"missing mesh: {address}")
     for words in found.mesh_faults:
-        output.emit(f"mesh: {words}")
+        output.emit_words(f"mesh: {words}")
     opinion = found.second_opinion
     if opinion is not None:
-        output.emit(str(opinion) if opinion.agrees else f"warning: {opinion}")
+        output.emit_words(str(opinion) if opinion.agrees else f"warning: {opinion}")
     if found.loads:
         counts = {"link": found.links, "joint": found.joints, "mesh": found.meshes, "shape": found.shapes}
-        output.emit(", ".join(counted(count, noun) for noun, count in counts.items()))
+        output.emit_words(", ".join(counted(count, noun) for noun, count in counts.items()))

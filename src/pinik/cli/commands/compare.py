@@ -17,7 +17,7 @@ from ...studies.comparison import compare as run_comparisons
 from ...studies.thesis import PRESETS, Contest, contest
 from ..inputs.assignments import solvers_with
 from ..inputs.loading import load_robot
-from ..inputs.options import AsJson, MethodParameters, PackageDirs
+from ..inputs.options import AllowOutside, AsJson, MethodParameters, PackageDirs, XacroArgs
 from ..reports.comparison_plot import draw_comparison
 from ..reports.comparison_report import comparison_fields, emit_comparison
 from ..reports.plots import check_plot, save_plot
@@ -64,6 +64,8 @@ def compare(
         Path | None, typer.Option(metavar="FILE", help="Draw grouped bars into this file (.png, .svg, .pdf).")
     ] = None,
     package_dir: PackageDirs = None,
+    xacro_arg: XacroArgs = None,
+    allow_outside: AllowOutside = False,
     as_json: AsJson = False,
 ) -> ExitStatus:
     """Compare the methods as Table 4.1 of the thesis does, next to the figures of the thesis.
@@ -79,7 +81,7 @@ def compare(
       pinik compare --robot panda --steps 5 --json
     """
     _check_options(steps, pieces, seed, plot)
-    machine = load_robot(robot, package_dirs=package_dir)
+    machine = load_robot(robot, package_dirs=package_dir, xacro_args=xacro_arg, allow_outside=allow_outside)
     chosen = contest(machine, frame or principal_frames(machine)[0], preset, reading, pieces)
     _check_engine(engine, chosen)
     chosen = _with_parameters(chosen, param)

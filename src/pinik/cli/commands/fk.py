@@ -9,7 +9,18 @@ import typer
 
 from ..inputs.assignments import configuration
 from ..inputs.loading import load_robot
-from ..inputs.options import AsJson, Degrees, JointAngles, PackageDirs, PoseName, RelativeTo, RobotSource, Root
+from ..inputs.options import (
+    AllowOutside,
+    AsJson,
+    Degrees,
+    JointAngles,
+    PackageDirs,
+    PoseName,
+    RelativeTo,
+    RobotSource,
+    Root,
+    XacroArgs,
+)
 from ..reports.configuration_json import configuration_fields
 from ..terminal import output
 from ..terminal.exits import ExitStatus
@@ -31,6 +42,8 @@ def fk(
     degrees: Degrees = False,
     root: Root = "fixed",
     package_dir: PackageDirs = None,
+    xacro_arg: XacroArgs = None,
+    allow_outside: AllowOutside = False,
     as_json: AsJson = False,
 ) -> ExitStatus:
     """Show the position and orientation of frames.
@@ -42,7 +55,7 @@ def fk(
       pinik fk arm --frame tip --set bone1_x=-30 --set bone2_z=15 --deg
     """
     units = Units(degrees)
-    machine = load_robot(robot, root=root, package_dirs=package_dir)
+    machine = load_robot(robot, root=root, package_dirs=package_dir, xacro_args=xacro_arg, allow_outside=allow_outside)
     q = configuration(machine, pose, joint_angles, "--set", units)
     placements = {name: machine.placement(name, q, relative_to) for name in frame or machine.frame_names}
     if as_json:

@@ -7,14 +7,17 @@ import sys
 import textwrap
 from typing import Any
 
+import numpy as np
 import pinocchio
+from numpy.typing import NDArray
 
+from ...errors import RobotLoadError
 from ...model.joint import Joint
 from ...robot import Robot
 from ...solving.native.module import why_not
 from ...version import __version__
 from ..inputs.loading import load_robot
-from ..inputs.options import AsJson, Degrees, PackageDirs, RobotSource, Root
+from ..inputs.options import AllowOutside, AsJson, Degrees, PackageDirs, RobotSource, Root, XacroArgs
 from ..terminal import output
 from ..terminal.exits import ExitStatus
 from ..terminal.tables import emit_table
@@ -28,6 +31,8 @@ def info(
     degrees: Degrees = False,
     root: Root = "fixed",
     package_dir: PackageDirs = None,
+    xacro_arg: XacroArgs = None,
+    allow_outside: AllowOutside = False,
     as_json: AsJson = False,
 ) -> ExitStatus:
     """Show a robot's joints with their limits, its frames and its named poses.
@@ -38,7 +43,7 @@ def info(
 
       pinik info panda
     """
-    machine = load_robot(robot, root=root, package_dirs=package_dir)
+    machine = load_robot(robot, root=root, package_dirs=package_dir, xacro_args=xacro_arg, allow_outside=allow_outside)
     if as_json:
         output.emit_json(_fields(machine))
     else:
@@ -61,13 +66,22 @@ def _fields(robot: Robot) -> dict[str, Any]:
             for follower, (leader, multiplier, offset) in robot.mimics.items()
         },
         "frames": list(robot.frame_names),
-        "poses": {name: {"angles": robot.angles(q), "q": q.tolist()} for name, q in robot.poses.items()},
+        "poses": {name: {"angles": robot.angles(q), "q": q.tolist()} for name, q in _poses(robot).items()},
         "warnings": list(robot.warnings),
         "engine": _engine(),
         "why_not_native": why_not(),
         "version": __version__,
         "pinocchio": pinocchio.__version__,
     }
+
+
+def _poses(robot: Robot) -> dict[str, NDArray[np.float64]]:
+    """The named configurations; none if the SRDF has a fault, which is a warning here."""
+    try:
+        return robot.poses
+    except RobotLoadError as error:
+        output.warn(str(error))
+        return {}
 
 
 def _engine() -> str:
@@ -116,7 +130,7 @@ def _emit(robot: Robot, units: Units) -> None:
         emit_table(("joint", "kind", "lower", "upper", "unit", ""), rows, numeric=("lower", "upper"))
         output.emit("")
     output.emit(_wrapped("frames", robot.frame_names))
-    poses = tuple(robot.poses)
+    poses = tuple(_poses(robot))
     output.emit(_wrapped("poses", poses or ("none",)))
 
 

@@ -9,7 +9,18 @@ import typer
 from ...robot import Robot
 from ..inputs.assignments import configuration
 from ..inputs.loading import load_robot
-from ..inputs.options import AsJson, Degrees, JointAngles, PackageDirs, PoseName, RelativeTo, RobotSource, Root
+from ..inputs.options import (
+    AllowOutside,
+    AsJson,
+    Degrees,
+    JointAngles,
+    PackageDirs,
+    PoseName,
+    RelativeTo,
+    RobotSource,
+    Root,
+    XacroArgs,
+)
 from ..reports.configuration_json import configuration_fields
 from ..terminal import output
 from ..terminal.exits import ExitStatus
@@ -38,6 +49,8 @@ def jacobian(
     degrees: Degrees = False,
     root: Root = "fixed",
     package_dir: PackageDirs = None,
+    xacro_arg: XacroArgs = None,
+    allow_outside: AllowOutside = False,
     as_json: AsJson = False,
 ) -> ExitStatus:
     """Show the Jacobian of a frame: its linear, then its angular velocity per joint velocity, in metres and radians.
@@ -48,7 +61,7 @@ def jacobian(
 
       pinik jacobian arm --frame tip --set bone1_x=0.3
     """
-    machine = load_robot(robot, root=root, package_dirs=package_dir)
+    machine = load_robot(robot, root=root, package_dirs=package_dir, xacro_args=xacro_arg, allow_outside=allow_outside)
     q = configuration(machine, pose, joint_angles, "--set", Units(degrees))
     matrix = machine.jacobian(frame, q, axes, relative_to)
     columns = _column_names(machine)

@@ -9,7 +9,7 @@ import typer
 from ...viewer.live import live as open_view
 from ..inputs.assignments import solver_with
 from ..inputs.loading import load_robot
-from ..inputs.options import PackageDirs, Root
+from ..inputs.options import AllowOutside, PackageDirs, Root, XacroArgs
 from ..terminal import output
 from ..terminal.exits import ExitStatus
 
@@ -53,6 +53,8 @@ def live(
         bool, typer.Option("--no-browser", help="Print the address of the page without opening it.")
     ] = False,
     package_dir: PackageDirs = None,
+    xacro_arg: XacroArgs = None,
+    allow_outside: AllowOutside = False,
 ) -> ExitStatus:
     """Open a page on which robots chase a ball side by side, each with its own method.
 
@@ -65,7 +67,7 @@ def live(
       pinik live path/to/robot.urdf --view 1 --methods pinv
     """
     solvers = [solver_with(name.strip(), None) for name in methods.split(",")]
-    machine = load_robot(robot, root=root, package_dirs=package_dir)
+    machine = load_robot(robot, root=root, package_dirs=package_dir, xacro_args=xacro_arg, allow_outside=allow_outside)
     with open_view(machine, solvers, view=view, motion=motion, port=port, host=host) as page:
         output.emit(page.url)
         output.say("Press Ctrl-C to end the live view.")

@@ -14,7 +14,7 @@ from ...solving.solution import Solution
 from ..inputs import solve_options as given
 from ..inputs.assignments import numbers_by_joint, origin, solver_with
 from ..inputs.loading import load_robot
-from ..inputs.options import AsJson, Degrees, PackageDirs, RobotSource, Root
+from ..inputs.options import AllowOutside, AsJson, Degrees, PackageDirs, RobotSource, Root, XacroArgs
 from ..inputs.targets import (
     check_frames,
     named_by_option,
@@ -62,6 +62,8 @@ def solve(
     no_limits: given.NoLimits = False,
     root: Root = "fixed",
     package_dir: PackageDirs = None,
+    xacro_arg: XacroArgs = None,
+    allow_outside: AllowOutside = False,
     as_json: AsJson = False,
 ) -> ExitStatus:
     """Find joint angles that put a frame where you want it.
@@ -81,7 +83,7 @@ def solve(
     wanted |= {"axis": axis, "direction": direction, "at": at, "tool": tool, "relative_to": relative_to}
     asked = _asked(frame, wanted, targets)
     solver = solver_with(method, param)
-    machine = load_robot(robot, root=root, package_dirs=package_dir)
+    machine = load_robot(robot, root=root, package_dirs=package_dir, xacro_args=xacro_arg, allow_outside=allow_outside)
     if targets is not None:
         check_frames(machine, asked, targets)
     options: dict[str, Any] = {"restarts": restarts, "max_iterations": max_iterations, "time_limit": time_limit}

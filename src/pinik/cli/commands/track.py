@@ -11,7 +11,7 @@ from ...solving.track import track as follow
 from ..inputs import solve_options as given
 from ..inputs.assignments import origin, solver_with
 from ..inputs.loading import load_robot
-from ..inputs.options import AsJson, Degrees, PackageDirs, RobotSource, Root
+from ..inputs.options import AllowOutside, AsJson, Degrees, PackageDirs, RobotSource, Root, XacroArgs
 from ..inputs.paths import read_path
 from ..inputs.targets import named_by_option
 from ..reports.track_report import check_output, emit_track
@@ -77,6 +77,8 @@ def track(
     no_limits: given.NoLimits = False,
     root: Root = "fixed",
     package_dir: PackageDirs = None,
+    xacro_arg: XacroArgs = None,
+    allow_outside: AllowOutside = False,
     as_json: AsJson = False,
 ) -> ExitStatus:
     """Follow a path with a frame, and write the joint angles of every point.
@@ -92,7 +94,7 @@ def track(
     units = Units(degrees)
     form = check_output(to_file, form)
     solver = solver_with(method, param)
-    machine = load_robot(robot, root=root, package_dirs=package_dir)
+    machine = load_robot(robot, root=root, package_dirs=package_dir, xacro_args=xacro_arg, allow_outside=allow_outside)
     points = read_path(path, frame, {"tool": tool, "relative_to": relative_to}, units, machine)
     options: dict[str, Any] = {"restarts": restarts, "max_iterations": max_iterations, "time_limit": time_limit}
     options |= {

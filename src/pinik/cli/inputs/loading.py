@@ -12,24 +12,52 @@ from ...robot import Robot
 from ..terminal import output
 from ..terminal.exits import CommandError, ExitStatus
 
-__all__ = ["check_folders", "load_robot"]
+__all__ = ["check_folders", "load_robot", "xacro_arguments"]
 
 
-def load_robot(source: str, *, root: str = "fixed", package_dirs: Sequence[Path] | None = None) -> Robot:
+def load_robot(
+    source: str,
+    *,
+    root: str = "fixed",
+    package_dirs: Sequence[Path] | None = None,
+    xacro_args: Sequence[str] | None = None,
+    allow_outside: bool = False,
+) -> Robot:
     """`pinik.load`, with one line on stderr for each sort of warning.
 
     Raises:
-        CommandError: The robot cannot be loaded (`ExitStatus.NO_ROBOT`), or a folder does not exist.
+        CommandError: The robot cannot be loaded (`ExitStatus.NO_ROBOT`), a folder does not exist, or an argument of
+            the xacro file is not "NAME:=VALUE".
         InputError: An unknown root.
     """
     check_folders(package_dirs)
+    given = xacro_arguments(xacro_args)
     try:
-        robot = load_in_silence(source, root=root, package_dirs=package_dirs or ())
+        robot = load_in_silence(
+            source, root=root, package_dirs=package_dirs or (), xacro_args=given, allow_outside=allow_outside
+        )
     except (RobotLoadError, UnknownNameError, OSError) as error:
         raise CommandError(str(error), ExitStatus.NO_ROBOT) from None
     for words in summarised(robot.warnings):
         output.warn(f"{robot.name}: {words}")
     return robot
+
+
+def xacro_arguments(texts: Iterable[str] | None) -> dict[str, str]:
+    """The arguments of --xacro-arg by name.
+
+    Raises:
+        CommandError: One is not "NAME:=VALUE", or a name comes twice.
+    """
+    arguments: dict[str, str] = {}
+    for text in texts or ():
+        name, separator, value = text.partition(":=")
+        if not separator or not name.strip():
+            raise CommandError(f"--xacro-arg must be NAME:=VALUE; got {text!r}")
+        if name.strip() in arguments:
+            raise CommandError(f"--xacro-arg {name.strip()} is given twice")
+        arguments[name.strip()] = value.strip()
+    return arguments
 
 
 def check_folders(package_dirs: Iterable[Path] | None) -> None:

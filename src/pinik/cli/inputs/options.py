@@ -8,6 +8,7 @@ from typing import Annotated
 import typer
 
 __all__ = [
+    "AllowOutside",
     "AsJson",
     "Degrees",
     "Engine",
@@ -18,13 +19,15 @@ __all__ = [
     "RelativeTo",
     "RobotSource",
     "Root",
+    "XacroArgs",
 ]
 
 RobotSource = Annotated[
     str,
     typer.Argument(
         metavar="ROBOT",
-        help="The name of a robot in the catalogue ('pinik robots' lists them), or the path of a URDF file.",
+        help="The name of a robot in the catalogue ('pinik robots' lists them), or of one that "
+        "robot_descriptions has downloaded, or the path of a URDF or xacro file.",
         show_default=False,
     ),
 ]
@@ -46,6 +49,17 @@ Root = Annotated[
 PackageDirs = Annotated[
     list[Path] | None,
     typer.Option("--package-dir", metavar="DIR", help="Search this folder first for package:// addresses; repeatable."),
+]
+XacroArgs = Annotated[
+    list[str] | None,
+    typer.Option("--xacro-arg", metavar="NAME:=VALUE", help="Set an argument of a xacro file; repeatable."),
+]
+AllowOutside = Annotated[
+    bool,
+    typer.Option(
+        "--allow-outside",
+        help="Let the URDF open meshes outside its own folder, its packages and the folders of --package-dir.",
+    ),
 ]
 PoseName = Annotated[
     str | None,

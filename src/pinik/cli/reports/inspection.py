@@ -4,17 +4,15 @@ from __future__ import annotations
 
 import logging
 import warnings
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from ...description import packages
-from ...description import reader as urdf
 from ...description.flaw import Flaw
 from ...errors import RobotLoadError, UnknownNameError
 from ...extras import needed_by
-from ...loading import locate
+from ...loading import Located, describe, locate
 from ...robot import Robot
 
 if TYPE_CHECKING:
@@ -74,28 +72,32 @@ class Inspection:
         return {"schema": 1, "loads": self.loads, **asdict(self), "second_opinion": opinion}
 
 
-def inspect(source: str, package_dirs: Sequence[Path]) -> Inspection:
+def inspect(
+    source: str,
+    package_dirs: Sequence[Path],
+    xacro_args: Mapping[str, str] | None = None,
+    allow_outside: bool = False,
+) -> Inspection:
     """Read a file and everything that it refers to.
 
     Args:
         source: A file, or the name of a robot in the catalogue.
         package_dirs: Folders that are searched first for packages.
+        xacro_args: The arguments of a xacro file.
+        allow_outside: Whether meshes may lie outside the folders that belong to the robot.
     """
-    package_dirs = tuple(folder.expanduser() for folder in package_dirs)
     try:
-        path = _path(source)
-        description = urdf.read(path)
-        robot = Robot(description, package_dirs=package_dirs)
+        located = _located(source)
+        folders = (*(folder.expanduser() for folder in package_dirs), *located.package_dirs)
+        description = describe(located, package_dirs=folders, xacro_args=xacro_args)
+        robot = Robot(description, package_dirs=folders, allow_outside=allow_outside)
     except RobotLoadError as error:
         return Inspection(error.source, faults=(Fault(error.element, error.cause),))
-    missing = tuple(
-        address
-        for address in description.meshes
-        if packages.resolve(address, urdf_path=description.path, package_dirs=package_dirs) is None
-    )
+    surroundings = robot.surroundings
+    missing = tuple(address for address in description.meshes if surroundings.find(address).path is None)
     shapes, flaws = _shapes(robot)
     return Inspection(
-        file=str(path),
+        file=str(located.source),
         robot=robot.name,
         warnings=tuple(dict.fromkeys(robot.warnings)),
         missing_meshes=missing,
@@ -104,16 +106,16 @@ def inspect(source: str, package_dirs: Sequence[Path]) -> Inspection:
         joints=len(robot.joints),
         meshes=len(description.meshes),
         shapes=shapes,
-        second_opinion=_second_opinion(robot, path),
+        second_opinion=_second_opinion(robot),
     )
 
 
-def _path(source: str) -> Path:
+def _located(source: str) -> Located:
     try:
-        _, _, path = locate(source)
+        located = locate(source)
     except UnknownNameError:
-        path = source
-    return Path(path)
+        located = Located(Path(source))
+    return located if isinstance(located.source, Path) else Located(Path(source))
 
 
 def _shapes(robot: Robot) -> tuple[int, list[Flaw]]:
@@ -131,8 +133,8 @@ def _shapes(robot: Robot) -> tuple[int, list[Flaw]]:
     return len(shapes), flaws
 
 
-def _second_opinion(robot: Robot, path: Path) -> SecondOpinion:
+def _second_opinion(robot: Robot) -> SecondOpinion:
     with needed_by("pinik check", "check"):
         from ...shapes.second_opinion import ask_yourdfpy
 
-    return ask_yourdfpy(robot, path)
+    return ask_yourdfpy(robot, robot.description.document)

@@ -2,16 +2,21 @@
 
 from __future__ import annotations
 
-import os
+import io
+import logging
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from ..inputs.files import check_file, write_file
 from ..terminal.exits import CommandError
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 __all__ = ["check_plot", "save_plot"]
+
+# Otherwise matplotlib tells on stderr how it gets on without a folder for its cache; programs can still listen to it.
+logging.getLogger("matplotlib").addHandler(logging.NullHandler())
 
 
 def check_plot(path: Path, option: str = "--plot") -> None:
@@ -27,12 +32,7 @@ def check_plot(path: Path, option: str = "--plot") -> None:
     kinds = Figure().canvas.get_supported_filetypes()
     if path.suffix.removeprefix(".").lower() not in kinds:
         raise CommandError(f"{option} {path}: the file name must end in one of {', '.join(sorted(kinds))}")
-    if not path.parent.is_dir():
-        raise CommandError(f"{option} {path}: no such folder")
-    if path.is_dir():
-        raise CommandError(f"{option} {path}: this is a folder")
-    if not os.access(path if path.exists() else path.parent, os.W_OK):
-        raise CommandError(f"{option} {path}: no permission to write it")
+    check_file(path, option)
 
 
 def save_plot(figure: Figure, path: Path, option: str = "--plot") -> None:
@@ -41,7 +41,6 @@ def save_plot(figure: Figure, path: Path, option: str = "--plot") -> None:
     Raises:
         CommandError: The file cannot be written.
     """
-    try:
-        figure.savefig(path, dpi=150)
-    except OSError as error:
-        raise CommandError(f"{option} {path}: cannot write it: {error.strerror}") from None
+    picture = io.BytesIO()
+    figure.savefig(picture, dpi=150, format=path.suffix.removeprefix(".").lower())
+    write_file(path, picture.getvalue(), option)

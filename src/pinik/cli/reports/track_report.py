@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import Any
 
 from ...solving.track import Track
+from ..inputs.files import check_file, write_file
 from ..terminal.exits import CommandError
 from ..terminal.output import emit
 from ..terminal.units import Units
@@ -25,7 +26,7 @@ def check_output(path: Path | None, form: str | None) -> str:
     """Return the format of the output, "csv" or "jsonl", and check that its file can be written.
 
     Raises:
-        CommandError: There is no such format or folder, or the ending of the file says no format.
+        CommandError: There is no such format, the ending of the file says none, or the file cannot be written.
     """
     ending = "" if path is None else path.suffix.lower()
     if form is None and ending not in _FORMAT_OF:
@@ -33,8 +34,8 @@ def check_output(path: Path | None, form: str | None) -> str:
     form = _FORMAT_OF[ending] if form is None else form
     if form not in FORMATS:
         raise CommandError(f"--format must be csv or jsonl; got {form!r}")
-    if path is not None and (not path.parent.is_dir() or path.is_dir()):
-        raise CommandError(f"--output {path}: {'this is a folder' if path.is_dir() else 'no such folder'}")
+    if path is not None:
+        check_file(path, "--output")
     return form
 
 
@@ -51,10 +52,7 @@ def emit_track(track: Track, form: str, path: Path | None, units: Units) -> None
     if path is None:
         emit(text)
         return
-    try:
-        path.write_text(text + "\n", encoding="utf-8")
-    except OSError as error:
-        raise CommandError(f"--output {path}: cannot write it: {error.strerror}") from None
+    write_file(path, (text + "\n").encode(), "--output")
 
 
 def _csv_lines(track: Track, units: Units) -> Iterator[str]:

@@ -15,10 +15,13 @@ class ExitStatus(IntEnum):
     MISSED = 1
     """A target was missed; the best answer is still printed."""
     WRONG_USAGE = 2
-    """Wrong usage or bad input."""
+    """Wrong usage, bad input, or an answer or a file that cannot be written."""
     NO_ROBOT = 3
     """The robot could not be loaded."""
     INTERRUPTED = 130
+    """Ctrl-C, or the signal SIGINT, ended the command."""
+    TERMINATED = 143
+    """The signal SIGTERM ended the command."""
 
 
 class CommandError(Exception):

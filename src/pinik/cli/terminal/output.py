@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import contextlib
+import errno
 import json
 import math
 import os
@@ -9,26 +11,40 @@ import sys
 from collections.abc import Mapping
 from typing import Any, TextIO
 
-import typer
-
+from ...echoes import one_line
 from .exits import CommandError, ExitStatus
 
 __all__ = [
-    "abandon_stdout",
+    "abandon",
     "emit",
     "emit_json",
+    "emit_words",
     "finish",
     "is_terminal",
     "painted",
     "prepare_streams",
+    "reason_of",
     "say",
     "say_error",
+    "stop_writing",
     "warn",
 ]
 
 
+_COLORS = {"red": 31, "green": 32, "yellow": 33}
+_STREAMS = (("stdin", 0, "r", os.O_WRONLY), ("stdout", 1, "w", os.O_RDONLY), ("stderr", 2, "w", os.O_RDONLY))
+
+
 def prepare_streams() -> None:
-    """Escape characters that a stream's encoding lacks, instead of failing."""
+    """Escape characters that a stream's encoding lacks, and replace each closed stream by one whose use is an OSError.
+
+    The latter also takes the descriptor, or the next file to be opened would get whatever libraries print.
+    """
+    for name, number, mode, wrong_way in _STREAMS:
+        if getattr(sys, name) is None:
+            descriptor = os.open(os.devnull, wrong_way)
+            stream = open(descriptor, mode, encoding="utf-8", closefd=descriptor != number)  # noqa: SIM115 - it stays open
+            setattr(sys, name, stream)
     for stream in (sys.stdout, sys.stderr):
         reconfigure = getattr(stream, "reconfigure", None)
         if reconfigure is not None:
@@ -41,32 +57,53 @@ def emit(text: str) -> None:
     Raises:
         CommandError: The data cannot be written for another reason.
     """
-    if sys.stdout is None:
-        return
     try:
         sys.stdout.write(text + "\n")
         sys.stdout.flush()
-    except BrokenPipeError:
-        abandon_stdout()
     except OSError as error:
-        abandon_stdout()
-        raise CommandError(f"cannot write the answer: {error.strerror}") from None
+        stop_writing(error)
 
 
 def finish() -> None:
-    """Flush stdout, to which the help writes directly; a reader that has gone is not an error."""
+    """Flush stdout, to which the help writes directly.
+
+    Raises:
+        CommandError: It cannot be written; a reader that has gone is not an error.
+    """
     try:
-        if sys.stdout is not None:
-            sys.stdout.flush()
-    except OSError:
-        abandon_stdout()
+        sys.stdout.flush()
+    except OSError as error:
+        stop_writing(error)
 
 
-def abandon_stdout() -> None:
-    """Discard what is still buffered, so that the interpreter's final flush does not fail."""
-    nowhere = os.open(os.devnull, os.O_WRONLY)
-    os.dup2(nowhere, sys.stdout.fileno())
-    os.close(nowhere)
+def stop_writing(error: OSError) -> None:
+    """Give up stdout after an error; if only its reader has gone, the command goes on silently.
+
+    Raises:
+        CommandError: The answer is lost for another reason.
+    """
+    abandon(sys.stdout)
+    if not isinstance(error, BrokenPipeError):
+        raise CommandError(f"cannot write the answer: {reason_of(error)}")
+
+
+def reason_of(error: OSError) -> str:
+    """Why a file or a stream cannot be read or written."""
+    return "the stream is closed" if error.errno == errno.EBADF else error.strerror or str(error)
+
+
+def abandon(stream: TextIO) -> None:
+    """Discard what a stream still buffers, so that the interpreter's final flush does not fail."""
+    with contextlib.suppress(OSError, ValueError, AttributeError):  # a stand-in without a descriptor has nothing left
+        nowhere = os.open(os.devnull, os.O_WRONLY)
+        os.dup2(nowhere, stream.fileno())
+        os.close(nowhere)
+
+
+def emit_words(text: str, color: str | None = None) -> None:
+    """Write a sentence to stdout that may echo long or odd names from a file, on one line."""
+    words = one_line(text)
+    emit(words if color is None else painted(words, color))
 
 
 def emit_json(value: Mapping[str, Any]) -> None:
@@ -85,28 +122,29 @@ def _finite(value: Any) -> Any:
     return value
 
 
-def say(words: str) -> None:
-    """Print a line to stderr."""
-    if sys.stderr is not None:
-        print(words, file=sys.stderr, flush=True)
+def say(words: str, title: str = "") -> None:
+    """Print a line to stderr. If nobody can read it there, it is lost, and the command goes on all the same."""
+    try:
+        print(title + one_line(words), file=sys.stderr, flush=True)
+    except (OSError, ValueError):
+        abandon(sys.stderr)
 
 
 def warn(words: str) -> None:
     """Print a warning to stderr."""
-    say(f"{painted('warning:', 'yellow', sys.stderr)} {words}")
+    say(words, painted("warning:", "yellow", sys.stderr) + " ")
 
 
 def say_error(words: str, status: ExitStatus) -> ExitStatus:
     """Print an error to stderr and return the exit status."""
-    say(f"{painted('error:', 'red', sys.stderr)} {words}")
+    say(words, painted("error:", "red", sys.stderr) + " ")
     return status
 
 
 def painted(text: str, color: str, stream: TextIO | None = None) -> str:
-    """`text` in a colour if `stream` (default: stdout) is a terminal and NO_COLOR is not set."""
-    stream = stream or sys.stdout
+    """`text` in red, green or yellow if `stream` (default: stdout) is a terminal and NO_COLOR is not set."""
     wanted = not os.environ.get("NO_COLOR") and os.environ.get("TERM") != "dumb"
-    return typer.style(text, fg=color, bold=True) if wanted and is_terminal(stream) else text
+    return f"\x1b[{_COLORS[color]}m\x1b[1m{text}\x1b[0m" if wanted and is_terminal(stream or sys.stdout) else text
 
 
 def is_terminal(stream: TextIO | None) -> bool:

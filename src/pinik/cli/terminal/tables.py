@@ -69,4 +69,7 @@ def _emit_rich(
         table.add_column(Text(title), justify="right" if title in numeric else "left", overflow="fold")
     for index, row in enumerate(cells):
         table.add_row(*map(Text, row), style="yellow" if index in marked else None)
-    Console().print(table)
+    console = Console()
+    with console.capture() as drawn:
+        console.print(table, end="")
+    emit(drawn.get().rstrip("\n"))

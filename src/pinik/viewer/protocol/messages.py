@@ -29,18 +29,19 @@ _DEEPEST = 8
 Check = Callable[[str, Any], Any]
 
 
-def parse(text: str) -> dict[str, Any]:
+def parse(written: str) -> dict[str, Any]:
     """Read a message: a JSON object with a `type`.
 
     Raises:
         InputError: The text is something else.
     """
     try:
-        message = read_json(text)
+        message = read_json(written)
     except ValueError as error:
         raise InputError(f"a message must be a JSON object: {error}") from None
     if not isinstance(message, dict) or not isinstance(message.get("type"), str):
         raise InputError('a message must be a JSON object with a "type"')
+    text("the type of a message", message["type"])
     return message
 
 

@@ -5,11 +5,25 @@ from __future__ import annotations
 import ipaddress
 import re
 import socket
-from urllib.parse import urlsplit
 
-__all__ = ["frame_ancestors", "is_own_host"]
+__all__ = ["frame_ancestors", "host_name", "is_own_host"]
 
 _LOOPBACK = ("localhost", "127.0.0.1", "::1")
+
+
+# A name or an IPv4 address, or an IPv6 address in brackets; then perhaps a port.
+_HOST = re.compile(r"(?:([A-Za-z0-9-]+(?:\.[A-Za-z0-9-]+)*)|\[([0-9A-Fa-f:.]{2,45})\])(?::[0-9]{1,5})?")
+_LONGEST = 260  # characters; a name has at most 253
+
+
+def host_name(host_header: str) -> str:
+    """Return the name in a Host header, in lower case and without brackets; "" if any part of the header is malformed.
+
+    Only letters, digits, dots, hyphens, colons and a pair of brackets may occur, so that the header can be quoted in a
+    content security policy.
+    """
+    match = _HOST.fullmatch(host_header) if len(host_header) <= _LONGEST else None
+    return (match[1] or match[2]).lower() if match else ""
 
 
 def is_own_host(host_header: str, served: str) -> bool:
@@ -17,14 +31,11 @@ def is_own_host(host_header: str, served: str) -> bool:
 
     Such names are localhost and the loopback addresses, with any port. If the server listens on another address, they
     are also any bare IP address, the machine's own name, and the name it was told to listen on.
-
-    Raises:
-        ValueError: The header is malformed.
     """
-    name = urlsplit(f"//{host_header}").hostname or ""
+    name = host_name(host_header)
     if name in _LOOPBACK:
         return True
-    if served in _LOOPBACK:
+    if served in _LOOPBACK or not name:
         return False
     return name in (served.lower(), socket.gethostname().lower()) or _is_address(name)
 
@@ -35,9 +46,8 @@ def frame_ancestors(host_header: str) -> str:
     Any other page could replace the session by a set-up in the frame's address. IPv6 addresses are left out because a
     content security policy cannot name them.
     """
-    hosts = dict.fromkeys(("localhost", "127.0.0.1", urlsplit(f"//{host_header}").hostname or ""))
-    named = [host for host in hosts if re.fullmatch(r"[a-z0-9-]+(\.[a-z0-9-]+)*", host)]
-    origins = [f"{scheme}://{host}:*" for host in named for scheme in ("http", "https")]
+    hosts = dict.fromkeys(("localhost", "127.0.0.1", host_name(host_header)))
+    origins = [f"{scheme}://{host}:*" for host in hosts if host and ":" not in host for scheme in ("http", "https")]
     return " ".join((*origins, "vscode-webview:", "vscode-file:"))
 
 

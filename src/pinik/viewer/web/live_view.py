@@ -13,23 +13,25 @@ import threading
 import webbrowser
 from collections.abc import Callable
 from concurrent.futures import Future, ThreadPoolExecutor
-from pathlib import Path
 from types import TracebackType
 from typing import Any, TypeVar
 
-import tornado.httpserver
 import tornado.ioloop
 from numpy.typing import ArrayLike, NDArray
 
 from ... import errors
+from ...files import write_whole
 from ...picture.camera import Camera
 from ...picture.picture import Picture
 from ...robot import Robot
 from ..simulation.method_menu import Methods
-from ..simulation.session import STEPS_PER_SECOND, Session
+from ..simulation.session import Session
+from .door import Door
+from .guests import Guests
+from .heartbeat import Heartbeat
 from .later import later_in_threads
 from .notebook import as_html, draw_beside
-from .server import make_application
+from .server import make_server
 from .show import Show
 from .sockets import addressed, listen
 
@@ -71,11 +73,11 @@ class LiveView:
         self._mark = secrets.token_hex(8)
         self._workers = ThreadPoolExecutor(2, thread_name_prefix="pinik-live-worker")
         self._closed = threading.Event()
-        ready: Future[tuple[tornado.ioloop.IOLoop, Show]] = Future()
+        ready: Future[tuple[tornado.ioloop.IOLoop, Show, Heartbeat]] = Future()
         arguments = (session, host, sockets, version, ready)
         self._thread = threading.Thread(target=self._serve, args=arguments, name="pinik-live", daemon=True)
         self._thread.start()
-        self._loop, self._show = ready.result()
+        self._loop, self._show, self._heartbeat = ready.result()
 
     def _serve(
         self, session: Session, host: str, sockets: list[socket.socket], version: str, ready: Future[Any]
@@ -85,7 +87,8 @@ class LiveView:
         loop = tornado.ioloop.IOLoop.current()
         try:
             show = Show(session, later_in_threads(loop, self._workers), version)
-            server = tornado.httpserver.HTTPServer(make_application(show, host, self._mark))
+            heartbeat, guests = Heartbeat(show.tick, show.is_watched), Guests()
+            server = make_server(show, heartbeat, guests, host, self._mark)
         except BaseException as error:
             for listening in sockets:
                 listening.close()
@@ -93,13 +96,11 @@ class LiveView:
             loop.close()
             ready.set_exception(error)
             return
-        server.add_sockets(sockets)
-        clock = tornado.ioloop.PeriodicCallback(show.tick, 1000.0 / STEPS_PER_SECOND)
-        clock.start()
-        loop.add_callback(ready.set_result, (loop, show))
+        door = Door(server, guests, sockets)
+        loop.add_callback(ready.set_result, (loop, show, heartbeat))
         loop.start()
-        clock.stop()
-        server.stop()
+        heartbeat.stop()
+        door.close()
         loop.run_sync(server.close_all_connections, timeout=2.0)
         loop.close(all_fds=True)
 
@@ -182,8 +183,12 @@ class LiveView:
         return self._do(lambda: [instance.q.copy() for instance in self._show.session.seen])
 
     def save_animation(self, path: str | os.PathLike[str]) -> None:
-        """Write the last 20 seconds as one HTML file that plays without a server."""
-        Path(path).write_text(self._do(self._show.animation), "utf-8")
+        """Write the last 20 seconds as one HTML file, whole or not at all, that plays without a server.
+
+        Raises:
+            OSError: The file cannot be written.
+        """
+        write_whole(path, self._do(self._show.animation).encode())
 
     def _do(self, work: Callable[[], T]) -> T:
         """Call `work` in the server's thread, between two steps, and return its result."""
@@ -194,6 +199,7 @@ class LiveView:
         done: Future[T] = Future()
 
         def run() -> None:
+            self._heartbeat.wake()
             try:
                 done.set_result(work())
             except BaseException as error:

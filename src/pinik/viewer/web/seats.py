@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Collection
 from typing import Protocol
+
+from .outbox import Message
 
 __all__ = ["Seats", "Tab"]
 
 _FRAMES_UNDER_WAY = 2  # unanswered frames per tab; more would only queue up in a slow one
-
-Message = str | bytes
 
 
 class Tab(Protocol):
@@ -17,6 +17,9 @@ class Tab(Protocol):
 
     def send(self, message: Message) -> None:
         """Send a message without waiting for it; messages arrive in order."""
+
+    def withdraw(self, messages: Collection[bytes]) -> None:
+        """Take back those of these messages that have not been sent yet."""
 
 
 class _Seat:
@@ -54,6 +57,11 @@ class Seats:
         """Send a message to every tab, late or not."""
         for tab in self._seats:
             tab.send(message)
+
+    def withdraw(self, messages: Collection[bytes]) -> None:
+        """Take back from every tab those of these messages that have not been sent yet."""
+        for tab in self._seats:
+            tab.withdraw(messages)
 
     def offer_frame(self, frame: Message) -> None:
         """Send a frame to every tab that is not late."""

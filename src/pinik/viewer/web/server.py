@@ -1,64 +1,95 @@
-"""The live view's web server: the page, one websocket per tab, and who may connect."""
+"""The live view's web server: the page and its files, the answers over HTTP, and who may ask for them."""
 
 from __future__ import annotations
 
+import asyncio
 import json
 import secrets
 from pathlib import Path
 from typing import Any
 
+import tornado.httpserver
 import tornado.web
-import tornado.websocket
 
+from .budget import Turns
+from .guests import Guests
+from .heartbeat import Heartbeat
 from .hosts import frame_ancestors, is_own_host
 from .scene import meshcat_script
 from .show import Show
 from .statistics_csv import statistics_csv
+from .tab import LARGEST_MESSAGE, WebSocket
 
-__all__ = ["make_application"]
+__all__ = ["make_server"]
 
 PAGE = Path(__file__).parents[1] / "page"
-_LARGEST_MESSAGE = 65_536  # bytes; about three times the longest set-up
+_LARGEST_BODY = 1024  # bytes; no request needs one
+_PATIENCE = 30.0  # [s] for a whole request, and between two requests of a connection
+_LONGEST_DELAY = 2.0  # [s]; a request that would have to wait longer is refused
+_DOWNLOADS = 4  # animations that are sent at one time; each takes some megabytes
+_PIECE = 65_536  # bytes
 
 
-def make_application(show: Show, host: str, mark: str = "") -> tornado.web.Application:
-    """Return the routes of one show.
+def make_server(
+    show: Show, heartbeat: Heartbeat, guests: Guests, host: str, mark: str
+) -> tornado.httpserver.HTTPServer:
+    """Return the server of one show.
 
     Args:
         show: The show.
+        heartbeat: What makes the show go on; requests wake it.
+        guests: Who is connected.
         host: The host that the server listens on; requests must address it.
         mark: Identifies this server to a notebook that embeds its page.
     """
-    common = {"show": show, "host": host}
-    return tornado.web.Application(
+    guard = {"guests": guests, "host": host}
+    common = {**guard, "show": show, "heartbeat": heartbeat}
+    downloads = asyncio.Semaphore(_DOWNLOADS)
+    application = tornado.web.Application(
         [
             (r"/", _Index, common),
-            (r"/page/([\w-]+\.(?:js|css|svg))", _File, {"path": str(PAGE), "host": host}),
-            (r"/meshcat/(main\.min\.js)", _File, {"path": str(meshcat_script().parent), "host": host}),
-            (r"/ws", _Socket, common),
+            (r"/page/([\w-]+\.(?:js|css|svg))", _File, {**guard, "path": str(PAGE)}),
+            (r"/meshcat/(main\.min\.js)", _File, {**guard, "path": str(meshcat_script().parent)}),
+            (r"/ws", _Socket, {**common, "turns": Turns()}),
             (rf"/api/alive/{mark}\.svg", _Alive, common),
             (r"/api/state", _State, common),
             (r"/api/statistics\.csv", _StatisticsTable, common),
-            (r"/api/animation\.html", _Animation, common),
+            (r"/api/animation\.html", _Animation, {**common, "downloads": downloads}),
         ],
+        default_handler_class=_Nothing,
+        default_handler_args=common,
         websocket_ping_interval=20,
-        websocket_max_message_size=_LARGEST_MESSAGE,
+        websocket_ping_timeout=20,
+        websocket_max_message_size=LARGEST_MESSAGE,
         log_function=lambda handler: None,
+    )
+    return tornado.httpserver.HTTPServer(
+        application, idle_connection_timeout=_PATIENCE, body_timeout=_PATIENCE, max_body_size=_LARGEST_BODY
     )
 
 
 class _Guarded(tornado.web.RequestHandler):
-    """Refuses requests that do not address this server by its own name."""
+    """Refuses requests that do not address this server by its own name, that other pages make, or that are too many."""
 
+    _guests: Guests
     _host: str
+    cost = 1.0
+    """How many requests it counts as in the budget of its address."""
+    open_to_pages = False
+    """Whether pages of other origins may load it."""
 
-    def prepare(self) -> None:
-        try:
-            own = is_own_host(self.request.host, self._host)
-        except ValueError:
-            own = False
-        if not own:
+    async def prepare(self) -> None:
+        if not is_own_host(self.request.host, self._host):
             raise tornado.web.HTTPError(403, reason="This server does not have that name")
+        if self.request.headers.get("Sec-Fetch-Site") == "cross-site" and not self.open_to_pages:
+            raise tornado.web.HTTPError(403, reason="Other pages may not load this")
+        budget = self._guests.budget(self.request.remote_ip or "")
+        delay = budget.delay
+        await asyncio.sleep(min(delay, _LONGEST_DELAY))
+        if delay > _LONGEST_DELAY:
+            self.set_header("Retry-After", "5")
+            raise tornado.web.HTTPError(429, reason="Too many requests from this address; try again in a few seconds")
+        budget.spend(self.cost)
 
     def set_default_headers(self) -> None:
         self.set_header("X-Content-Type-Options", "nosniff")
@@ -72,11 +103,19 @@ class _Guarded(tornado.web.RequestHandler):
 
 
 class _Handler(_Guarded):
-    def initialize(self, show: Show, host: str) -> None:
-        self.show, self._host = show, host
+    def initialize(self, show: Show, heartbeat: Heartbeat, guests: Guests, host: str) -> None:
+        self.show, self.heartbeat, self._guests, self._host = show, heartbeat, guests, host
+
+
+class _Nothing(_Handler):
+    async def prepare(self) -> None:
+        await super().prepare()
+        raise tornado.web.HTTPError(404)
 
 
 class _Index(_Handler):
+    open_to_pages = True  # a notebook shows it in a frame; its policy names the pages that may
+
     def get(self) -> None:
         nonce = secrets.token_urlsafe(16)
         here = self.request.host
@@ -96,13 +135,15 @@ class _Index(_Handler):
 
 
 class _File(_Guarded, tornado.web.StaticFileHandler):
-    def initialize(self, path: str, host: str) -> None:  # type: ignore[override]
+    def initialize(self, path: str, guests: Guests, host: str) -> None:  # type: ignore[override]
         tornado.web.StaticFileHandler.initialize(self, path)
-        self._host = host
+        self._guests, self._host = guests, host
 
 
 class _Alive(_Handler):
     """An empty image, by which a notebook finds out whether the view that it showed is still running."""
+
+    open_to_pages = True  # of those that know the mark
 
     def get(self) -> None:
         self.set_header("Content-Type", "image/svg+xml")
@@ -110,43 +151,54 @@ class _Alive(_Handler):
 
 
 class _State(_Handler):
+    cost = 5.0
+
     def get(self) -> None:
+        self.heartbeat.wake()
         self.set_header("Content-Type", "application/json")
         self.finish(json.dumps(self.show.state()))
 
 
-class _StatisticsTable(_Handler):
-    def get(self) -> None:
-        self._as_download(statistics_csv(self.show.session), "text/csv; charset=utf-8", "statistics.csv")
-
-    def _as_download(self, content: str, kind: str, name: str) -> None:
+class _Download(_Handler):
+    def name(self, kind: str, name: str) -> None:
+        """Say what is sent, and under which name it is to be kept."""
         self.set_header("Content-Type", kind)
         self.set_header("Content-Disposition", f'attachment; filename="pinik-{name}"')
-        self.finish(content)
 
 
-class _Animation(_StatisticsTable):
+class _StatisticsTable(_Download):
+    cost = 5.0
+
     def get(self) -> None:
-        self._as_download(self.show.animation(), "text/html; charset=utf-8", "animation.html")
+        self.heartbeat.wake()
+        self.name("text/csv; charset=utf-8", "statistics.csv")
+        self.finish(statistics_csv(self.show.session))
 
 
-class _Socket(_Handler, tornado.websocket.WebSocketHandler):
-    """One tab. Tornado checks that its page comes from this server: Origin and Host must agree."""
+class _Animation(_Download):
+    cost = 50.0
 
-    def open(self, *args: str, **kwargs: str) -> None:
-        self.set_nodelay(True)
-        self.show.join(self)
+    def initialize(self, downloads: asyncio.Semaphore, **common: Any) -> None:  # type: ignore[override]
+        super().initialize(**common)
+        self._downloads = downloads
 
-    def on_message(self, message: str | bytes) -> None:
-        self.show.receive(self, message if isinstance(message, str) else "")
+    async def get(self) -> None:
+        self.heartbeat.wake()
+        if self._downloads.locked():
+            self.set_header("Retry-After", "5")
+            raise tornado.web.HTTPError(503, reason=f"At most {_DOWNLOADS} animations are sent at one time")
+        async with self._downloads:
+            page = self.show.animation().encode()
+            self.name("text/html; charset=utf-8", "animation.html")
+            self.set_header("Content-Length", str(len(page)))
+            for start in range(0, len(page), _PIECE):  # piece by piece, so that a slow client has no copy of its own
+                self.write(page[start : start + _PIECE])
+                await self.flush()
 
-    def on_close(self) -> None:
-        self.show.leave(self)
 
-    def send(self, message: str | bytes) -> None:
-        """Send a message without waiting for it; one to a tab that has just closed is lost."""
-        try:
-            sent = self.write_message(message, binary=isinstance(message, bytes))
-        except tornado.websocket.WebSocketClosedError:
-            return
-        sent.add_done_callback(lambda future: future.exception())
+class _Socket(_Handler, WebSocket):
+    cost = 10.0
+
+    def initialize(self, turns: Turns, **common: Any) -> None:  # type: ignore[override]
+        super().initialize(**common)
+        self.turns = turns

@@ -5,14 +5,14 @@ from __future__ import annotations
 import contextlib
 import hashlib
 import os
-import tempfile
+import stat
 from collections.abc import Iterator
 from pathlib import Path
 
 import platformdirs
 import umsgpack
 
-from ...description.packages import resolve
+from ...files import FileError, read_within, write_whole
 from ...robot import Robot
 from .scene import Shapes, make_shapes
 
@@ -24,29 +24,54 @@ LIMIT = 500_000_000
 
 _DIGEST_SIZE = 32
 # The code that makes the shapes; changing it invalidates the cache.
-_MAKERS = [Path(__file__).with_name("scene.py"), Path(__file__).parents[2] / "shapes" / "meshes.py"]
+_MAKERS = [
+    Path(__file__).parents[2] / room / module
+    for room, module in (
+        ("description", "materials.py"),
+        ("description", "shape_tags.py"),
+        ("shapes", "meshes.py"),
+        ("shapes", "triangles.py"),
+        ("viewer/web", "scene.py"),
+    )
+]
 
 
 def shapes_of(robot: Robot) -> Shapes:
     """Return a robot's shapes from the cache, or make and cache them, which takes seconds for some robots.
 
-    This never raises. If the shapes cannot be made, the result has none, and a warning that says why.
+    This never raises. A cache that cannot be used only costs time. If the shapes cannot be made, the result has none,
+    and a warning that says why.
     """
     try:
-        path = cache_folder() / f"{_key(robot)}.shapes"
-        shapes = _read(path)
+        path = _path(robot)
+        shapes = None if path is None else _read(path)
         if shapes is None:
             shapes = make_shapes(robot)
-            _write(path, shapes)
+            if path is not None:
+                _write(path, shapes)
         return shapes
     except Exception as fault:
         return Shapes((), (), (f"the robot is drawn without shapes: {str(fault) or type(fault).__name__}",))
 
 
+def _path(robot: Robot) -> Path | None:
+    """The robot's file; None without a home folder, or if its meshes cannot be looked at."""
+    try:
+        folder = cache_folder()
+        return folder / f"{_key(robot)}.shapes" if folder.is_absolute() else None
+    except (OSError, ValueError):
+        return None
+
+
 def cache_folder() -> Path:
-    """Return the folder of the files: `shapes` in pinik's cache folder, or in PINIK_CACHE_DIR if that is set."""
-    chosen = os.environ.get("PINIK_CACHE_DIR") or platformdirs.user_cache_dir("pinik", appauthor=False)
-    return Path(chosen) / "shapes"
+    """Return the folder of the files: `shapes` in pinik's cache folder, or in PINIK_CACHE_DIR if that is set.
+
+    It is a relative one if the user has no home folder; then nothing is cached.
+    """
+    chosen = os.environ.get("PINIK_CACHE_DIR")
+    if chosen:
+        return Path(chosen).absolute() / "shapes"
+    return Path(platformdirs.user_cache_dir("pinik", appauthor=False)) / "shapes"
 
 
 def _key(robot: Robot) -> str:
@@ -61,8 +86,9 @@ def _key(robot: Robot) -> str:
 
 def _mesh_files(robot: Robot) -> Iterator[str]:
     """Yield path, size and modification time of each mesh file, and of the material files that an OBJ may use."""
+    surroundings = robot.surroundings
     for address in robot.description.meshes:
-        mesh = resolve(address, urdf_path=robot.description.path, package_dirs=robot.package_dirs)
+        mesh = surroundings.find(address).path
         yield address
         if mesh is not None:
             materials = sorted(mesh.parent.glob("*.mtl")) if mesh.suffix.lower() == ".obj" else []
@@ -74,32 +100,28 @@ def _mesh_files(robot: Robot) -> Iterator[str]:
 def _read(path: Path) -> Shapes | None:
     """Read the shapes from a file; None if it is missing or damaged. Reading counts as use."""
     try:
-        content = path.read_bytes()
+        content = read_within(path, LIMIT, "a file of shapes")
         body = memoryview(content)[_DIGEST_SIZE:]
         if hashlib.sha256(body).digest() != content[:_DIGEST_SIZE]:
             return None
         parts, commands, warnings = umsgpack.unpackb(bytes(body))
-    except OSError:
+        shapes = Shapes(tuple((link, where) for link, where in parts), tuple(commands), tuple(warnings))
+    except (FileError, ValueError, TypeError, RecursionError, umsgpack.UnpackException):
         return None
     with contextlib.suppress(OSError):
         os.utime(path)
-    return Shapes(tuple((link, where) for link, where in parts), tuple(commands), tuple(warnings))
+    return shapes
 
 
 def _write(path: Path, shapes: Shapes) -> None:
-    """Write shapes to a file in one atomic step, and make room. If that fails, the next start just takes longer."""
+    """Write shapes to a file, and make room. If that fails, the next start just takes longer."""
     # ValueError: a warning may quote a file name that is not valid Unicode.
     with contextlib.suppress(OSError, ValueError):
         body = umsgpack.packb([shapes.parts, shapes.commands, shapes.warnings])
         path.parent.mkdir(parents=True, exist_ok=True)
-        handle, unfinished = tempfile.mkstemp(suffix=".unfinished", dir=path.parent)
-        try:
-            with open(handle, "wb") as file:
-                file.write(hashlib.sha256(body).digest() + body)
-            os.replace(unfinished, path)
-        except BaseException:
-            os.unlink(unfinished)
-            raise
+        if os.path.lexists(path) and not stat.S_ISREG(path.lstat().st_mode):
+            path.unlink()  # for a pipe or a device would be written to, and a pipe would wait for a reader
+        write_whole(path, hashlib.sha256(body).digest() + body)
         _make_room(path.parent)
 
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 import time
-from collections import deque
 from collections.abc import Callable
 from typing import Any
 
@@ -20,6 +19,7 @@ from ..protocol.state import hello_message, session_state
 from ..simulation.session import Session
 from .animation import animation_page
 from .later import Later
+from .pace import Pace
 from .robot_loader import RobotLoader
 from .scene import Shapes
 from .seats import Seats, Tab
@@ -55,7 +55,8 @@ class Show:
         self._seats = Seats()
         self._hello = hello_message(version, session.methods, menu.own_names)
         self._generation = 0
-        self._ticks: deque[float] = deque(maxlen=61)
+        self._pace = Pace(clock)
+        self._shapes: Shapes | None = None
         self._change_session(session)
 
     def _change_session(self, session: Session) -> None:
@@ -63,7 +64,9 @@ class Show:
         self._generation += 1
         generation = self._generation
         self._robot = robot_message(session.robot, generation)
-        self._shapes: Shapes | None = None
+        if self._shapes is not None:
+            self._seats.withdraw(self._shapes.commands)  # else those of robot after robot would wait for a slow tab
+        self._shapes = None
         self._waits_for_shapes = True
         self._maker = FrameMaker(session.robot, generation)
         self._start_anew()
@@ -94,6 +97,10 @@ class Show:
         return [*self._shapes.commands, json.dumps(self._shapes.message(self._generation))]
 
     # Tabs
+
+    def is_watched(self) -> bool:
+        """Return whether there is any tab."""
+        return len(self._seats) > 0
 
     def join(self, tab: Tab) -> None:
         """Add a tab and send it everything."""
@@ -128,10 +135,10 @@ class Show:
         processors to itself; any request ends that wait.
         """
         if not (self._waits_for_shapes and self._seats) and self.session.tick():
-            self._ticks.append(self._clock())
+            self._pace.note_step()
             self._frame_due = True
         else:
-            self._ticks.clear()
+            self._pace.forget()
         if self._frame_due:
             self._send_frame()
         often_enough = self._clock() - self._state_sent >= 1.0 / _STATES_PER_SECOND
@@ -227,16 +234,10 @@ class Show:
         return {
             **session_state(self.session),
             "generation": self._generation,
-            "steps_per_second": self._pace(),
+            "steps_per_second": self._pace.value if self.session.running else None,
             "loading": self._loader.loading,
             "setup": write_setup(self.session),
         }
-
-    def _pace(self) -> float | None:
-        """Return the steps per second over the last sixty; None while the session is stopped."""
-        if not self.session.running or len(self._ticks) < 2 or self._ticks[-1] == self._ticks[0]:
-            return None
-        return (len(self._ticks) - 1) / (self._ticks[-1] - self._ticks[0])
 
     def animation(self) -> str:
         """Return the last seconds as one HTML file that plays without a server."""

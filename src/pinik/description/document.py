@@ -1,0 +1,115 @@
+"""The XML document of a robot description: its bytes, cleared of what does not belong to it, and its elements."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+
+from .flaw import Flaw
+from .xml import BrokenXMLError, DocumentError, Element, parse
+
+__all__ = ["Document", "declared_as_utf_8", "read_document"]
+
+_DECLARED = re.compile(rb"""(<\?xml[^>]*?\sencoding\s*=\s*["'])([^"'>]*)""")
+_COMMENT = re.compile(rb"<!--.*?-->", re.DOTALL)
+_UTF_16 = (b"\xff\xfe", b"\xfe\xff", b"<\0", b"\0<")
+_BEGINNINGS = (b"<?xml", b"<robot", b"<!--")
+
+
+@dataclass(frozen=True)
+class Document:
+    """A document that was read.
+
+    Attributes:
+        root: The root element.
+        content: The bytes that were parsed: those of the file, with spaces in place of what does not belong to it; in
+            UTF-8 if the declaration names another encoding than that of the file.
+        flaws: What had to be assumed.
+    """
+
+    root: Element
+    content: bytes
+    flaws: tuple[Flaw, ...]
+
+
+def read_document(given: bytes) -> Document:
+    """Parse a document that may have null bytes or other text around it, or bytes in an encoding that it does not name.
+
+    Raises:
+        DocumentError: It is not XML, or not safe to read (`xml.parse`).
+    """
+    flaws: list[Flaw] = []
+    content = _without_surroundings(given, flaws)
+    tried: set[bytes] = set()
+    while True:
+        tried.add(content)
+        try:
+            return Document(parse(content), content, tuple(flaws))
+        except BrokenXMLError as fault:
+            mended = _mended(content, fault, flaws)
+            if mended is None or mended in tried:
+                raise
+            content = mended
+
+
+def _without_surroundings(content: bytes, flaws: list[Flaw]) -> bytes:
+    """The document, with spaces for null bytes at its end and for text before it."""
+    if not content.startswith(_UTF_16):
+        whole = content.rstrip(b"\0 \t\r\n")
+        if b"\0" in content[len(whole) :]:
+            _note(flaws, "null bytes at its end are ignored", "junk-around", whole.count(b"\n") + 1)
+            content = whole + content[len(whole) :].replace(b"\0", b" ")
+    blank = len(content) - len(content.lstrip(b"\xef\xbb\xbf \t\r\n"))
+    if not content.startswith((b"<", *_UTF_16), blank):
+        begins = min((place for word in _BEGINNINGS if (place := content.find(word)) > 0), default=0)
+        if begins and b"\0" not in content[:begins]:
+            _note(flaws, "text before its first element is ignored", "junk-around", 1)
+            content = _blank(content, 0, begins)
+    return content
+
+
+def _mended(content: bytes, fault: BrokenXMLError, flaws: list[Flaw]) -> bytes | None:
+    """The document without what the parser found fault with; None if only one fault can be read in one way."""
+    if fault.kind == "junk":
+        begins = fault.start
+        if begins is None or b"<robot" in content[begins:]:
+            raise DocumentError(f"it holds two documents; the second begins on line {fault.line}") from None
+        _note(flaws, "text after its last element is ignored", "junk-around", fault.line)
+        return _blank(content, begins, len(content))
+    if fault.kind == "encoding":
+        return _in_utf_8(content, flaws)
+    if fault.kind == "token" and any(b"--" in comment[4:-3] for comment in _COMMENT.findall(content)):
+        _note(flaws, 'a comment contains "--", which XML forbids; comments are ignored', "bad-comment", fault.line)
+        return _COMMENT.sub(lambda comment: _blank(comment[0], 0, len(comment[0])), content)
+    return None
+
+
+def _in_utf_8(content: bytes, flaws: list[Flaw]) -> bytes | None:
+    """The document in UTF-8, decoded as it declares, else as UTF-8, else as Latin-1; None if it holds null bytes."""
+    declared = _DECLARED.search(content[:400])
+    name = declared[2].decode("latin-1") if declared else "utf-8"
+    if b"\0" in content:
+        return None
+    try:
+        text = content.decode(name)
+    except (UnicodeError, LookupError):
+        try:
+            text, taken = content.decode("utf-8"), "UTF-8"
+        except UnicodeDecodeError:
+            text, taken = content.decode("latin-1"), "Latin-1"
+        _note(flaws, f"its bytes are not {name[:40]!r}, as it declares; they are read as {taken}", "encoding")
+    return declared_as_utf_8(text.encode("utf-8"))
+
+
+def declared_as_utf_8(content: bytes) -> bytes:
+    """The document with "utf-8" in its declaration, if that names an encoding."""
+    return _DECLARED.sub(rb"\g<1>utf-8", content, count=1)
+
+
+def _blank(content: bytes, start: int, end: int) -> bytes:
+    """The bytes with spaces from `start` to `end`, except for line feeds, so that lines and offsets stay."""
+    return content[:start] + re.sub(rb"[^\n]", b" ", content[start:end]) + content[end:]
+
+
+def _note(flaws: list[Flaw], cause: str, code: str, line: int | None = None) -> None:
+    flaws.append(Flaw("the document", cause, code=code, line=line))

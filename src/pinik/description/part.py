@@ -1,0 +1,167 @@
+"""A part of a URDF that is being read: its children, texts, numbers and origin, and the flaws that are found in it."""
+
+from __future__ import annotations
+
+from collections.abc import Collection
+from dataclasses import dataclass
+
+from .flaw import Flaw
+from .numbers import FARTHEST, NumberError, Reading, in_words, read_numbers
+from .xml import DocumentError, Element
+
+__all__ = ["Part", "Vector", "required_name"]
+
+Vector = tuple[float, float, float]
+
+_ZERO: Vector = (0.0, 0.0, 0.0)
+
+
+@dataclass(frozen=True, slots=True)
+class Part:
+    """An element that is being read.
+
+    Attributes:
+        element: The element.
+        owner: What it belongs to, in the words of messages, such as "joint 'elbow'".
+        flaws: The list to which the flaws of the document are added.
+    """
+
+    element: Element
+    owner: str
+    flaws: list[Flaw]
+
+    @classmethod
+    def named(cls, element: Element, flaws: list[Flaw]) -> Part:
+        """A link or joint, which is its own owner.
+
+        Raises:
+            DocumentError: Its name is missing or empty.
+        """
+        return cls(element, f"{element.tag} {required_name(element)!r}", flaws)
+
+    @property
+    def name(self) -> str:
+        """The `name` of a link or joint that has one."""
+        return self.element.attributes["name"]
+
+    def flaw(self, cause: str, *, code: str, common: str | None = None, mend: str = "") -> None:
+        """Add a flaw of this element."""
+        flaw = Flaw(self.owner, cause, code=code, line=self.element.line, common=common, mend=mend)
+        self.flaws.append(flaw)
+
+    def fault(self, cause: str) -> DocumentError:
+        """An error about this element."""
+        return DocumentError(cause, owner=self.owner, line=self.element.line)
+
+    def bad_value(self, attribute: str, cause: str) -> DocumentError:
+        """An error that quotes an attribute and says what is wrong with it."""
+        return self.fault(f"{self._quoted(attribute)}: {cause}")
+
+    def of(self, element: Element, owner: str | None = None) -> Part:
+        """A part of this part."""
+        return Part(element, self.owner if owner is None else owner, self.flaws)
+
+    def only(self, tag: str) -> Part | None:
+        """The child with this tag, or None. Of several the first counts, as in urdfdom and yourdfpy."""
+        found = self.element.named(tag)
+        if len(found) > 1:
+            cause = f"has {len(found)} <{tag}> elements; the first is taken"
+            self.of(found[1]).flaw(cause, code="second-element", mend=f"remove all <{tag}> elements but one")
+        return self.of(found[0]) if found else None
+
+    def text(self, attribute: str) -> str:
+        """The text of a required attribute.
+
+        Raises:
+            DocumentError: The attribute is missing or empty.
+        """
+        text = self.element.attributes.get(attribute)
+        if text is None or not text.strip():
+            what = f"no {attribute}" if text is None else f"an empty {attribute}"
+            raise self.fault(f"<{self.element.tag}> has {what}")
+        return text
+
+    def number(self, attribute: str, quantity: str = "number", *, infinite: bool = False) -> float | None:
+        """One number, or None if the attribute is missing.
+
+        Raises:
+            DocumentError: It is not a number, not finite (unless it may be infinite), or larger than 1e12.
+        """
+        if attribute not in self.element.attributes:
+            return None
+        return self.numbers(attribute, (1,), quantity, infinite=infinite)[0]
+
+    def vector(self, attribute: str, quantity: str, default: Vector) -> Vector:
+        """Three numbers, or `default` if the attribute is missing.
+
+        Raises:
+            DocumentError: They are not three finite numbers of at most 1e12.
+        """
+        if attribute not in self.element.attributes:
+            return default
+        x, y, z = self.numbers(attribute, (3,), quantity)
+        return x, y, z
+
+    def numbers(
+        self, attribute: str, counts: Collection[int], quantity: str = "number", *, infinite: bool = False
+    ) -> tuple[float, ...]:
+        """The numbers of an attribute. A notation that can be read in one way only is a flaw.
+
+        Raises:
+            DocumentError: They are not numbers, not finite (unless they may be infinite), larger than 1e12, or too many
+                or too few; or they can be read in two ways.
+        """
+        try:
+            reading = read_numbers(self.element.attributes[attribute], counts, quantity, infinite=infinite)
+        except NumberError as fault:
+            raise self.bad_value(attribute, str(fault)) from None
+        if not infinite and quantity != "axis" and max(map(abs, reading.values)) > FARTHEST:
+            unit = {"length": " m", "angle": " rad", "mass": " kg"}.get(quantity, "")
+            raise self.bad_value(attribute, f"must be at most {FARTHEST:g}{unit}")
+        if reading.oddity:
+            self._note(attribute, reading)
+        return reading.values
+
+    def origin(self) -> tuple[Vector, Vector]:
+        """The `<origin>`: xyz [m] and rpy [rad], zero where missing or empty.
+
+        Raises:
+            DocumentError: A number is malformed, not finite or larger than 1e12.
+        """
+        origin = self.only("origin")
+        if origin is None:
+            return _ZERO, _ZERO
+        if "quat_xyzw" in origin.element.attributes:
+            raise origin.bad_value("quat_xyzw", "quaternions (URDF 1.1) are not supported; use rpy instead")
+        return origin._vector_of_origin("xyz", "length"), origin._vector_of_origin("rpy", "angle")
+
+    def _vector_of_origin(self, attribute: str, quantity: str) -> Vector:
+        if self.element.attributes.get(attribute, "0").strip():
+            return self.vector(attribute, quantity, _ZERO)
+        cause = f'<origin {attribute}=""> is empty, which is read as "0 0 0"'
+        self.flaw(cause, code="empty-origin", mend=f'write {attribute}="0 0 0"')
+        return _ZERO
+
+    def _quoted(self, attribute: str) -> str:
+        return f'<{self.element.tag} {attribute}="{in_words(self.element.attributes[attribute])}">'
+
+    def _note(self, attribute: str, reading: Reading) -> None:
+        self.flaw(
+            f'{self._quoted(attribute)} has {reading.oddity}; it is read as "{reading}"',
+            code="loose-number",
+            common=f"numbers have {reading.oddity}; they are read as plain numbers",
+            mend=f'write {attribute}="{reading}"',
+        )
+
+
+def required_name(element: Element) -> str:
+    """The `name` of a link or joint.
+
+    Raises:
+        DocumentError: The name is missing or empty.
+    """
+    name = element.attributes.get("name")
+    if name is None or not name.strip():
+        what = "has no name" if name is None else "has an empty name"
+        raise DocumentError(what, owner=f"<{element.tag}>", line=element.line)
+    return name

@@ -1,0 +1,116 @@
+"""Where a robot description comes from: a path, text, bytes, or an open file."""
+
+from __future__ import annotations
+
+import os
+from dataclasses import dataclass
+from pathlib import Path
+from typing import IO, Any
+
+from ..errors import RobotLoadError
+from ..files import FileError, read_within
+from .document import declared_as_utf_8
+from .xml import MAX_BYTES, DocumentError
+
+__all__ = ["RobotSource", "Source", "is_document", "is_source"]
+
+RobotSource = str | os.PathLike[str] | bytes | IO[str] | IO[bytes]
+"""A path, URDF text, the bytes of a URDF file, or an open file."""
+
+_TEXT = "<text>"
+
+
+@dataclass(frozen=True)
+class Source:
+    """A robot description that can be read.
+
+    Attributes:
+        given: A path, URDF text, the bytes of a URDF file, or an open file.
+        label: What messages call it: its path, or "<text>".
+        path: The file to which relative addresses refer; None if there is none.
+    """
+
+    given: Any
+    label: str
+    path: Path | None
+
+    @classmethod
+    def of(cls, given: RobotSource) -> Source:
+        """The source; a string is URDF text if it begins with "<" after any white space and byte-order mark."""
+        if isinstance(given, (bytes, bytearray, memoryview)) or is_document(given):
+            return cls(given, _TEXT, None)
+        if isinstance(given, (str, os.PathLike)):
+            return cls(given, _shown(os.fspath(given)), Path(given))
+        name = getattr(given, "name", None)
+        path = Path(name) if isinstance(name, str) and os.path.isfile(name) else None
+        return cls(given, _shown(name) if isinstance(name, str) else _TEXT, path)
+
+    def content(self) -> bytes:
+        """The bytes of the description, or more than `MAX_BYTES` of them.
+
+        Raises:
+            RobotLoadError: It cannot be read; the message says why.
+        """
+        try:
+            return self._read()
+        except DocumentError as fault:
+            raise RobotLoadError(fault.message, source=self.label) from None
+
+    def _read(self) -> bytes:
+        if isinstance(self.given, (bytes, bytearray, memoryview)):
+            return bytes(self.given)
+        if is_document(self.given):
+            return _encoded(self.given)
+        if isinstance(self.given, (str, os.PathLike)):
+            return _file_bytes(Path(self.given))
+        return _stream_bytes(self.given)
+
+
+def is_document(given: object) -> bool:
+    """Whether a string is URDF text instead of a name or path."""
+    return isinstance(given, str) and given.lstrip("\ufeff \t\r\n").startswith("<")
+
+
+def is_source(given: object) -> bool:
+    """Whether a robot description can be read from this."""
+    return isinstance(given, (str, os.PathLike, bytes, bytearray, memoryview)) or callable(getattr(given, "read", None))
+
+
+def _shown(path: str) -> str:
+    if len(path) > 200:
+        return repr(path[:60]) + "..."
+    return path if path and path.isprintable() else repr(path)
+
+
+def _encoded(text: str) -> bytes:
+    try:
+        return declared_as_utf_8(text.lstrip("\ufeff").encode("utf-8"))
+    except UnicodeEncodeError as error:
+        raise DocumentError(f"not XML: the text cannot be encoded ({error.reason})") from None
+
+
+def _stream_bytes(file: IO[Any]) -> bytes:
+    """What is left to read in an open file; an endless one must not fill up the memory."""
+    pieces: list[Any] = []
+    size = 0
+    try:
+        while size <= MAX_BYTES and (piece := file.read(MAX_BYTES + 1 - size)):
+            pieces.append(piece)
+            size += len(piece)
+    except UnicodeDecodeError as error:
+        raise DocumentError(f"the file cannot be read as text ({error}); open it in binary mode") from None
+    except (OSError, ValueError) as error:
+        raise DocumentError(f"the file cannot be read: {getattr(error, 'strerror', None) or error}") from None
+    if all(isinstance(piece, str) for piece in pieces):
+        return _encoded("".join(pieces))
+    if all(isinstance(piece, bytes) for piece in pieces):
+        return b"".join(pieces)
+    raise DocumentError(f"the file must give text or bytes; it gave {type(pieces[0]).__name__}")
+
+
+def _file_bytes(path: Path) -> bytes:
+    try:
+        return read_within(path, MAX_BYTES, "a URDF file", streams=True)
+    except FileError as fault:
+        remark = "" if os.path.lexists(path) else " (URDF text would begin with '<')"
+        raise DocumentError(f"{fault}{remark}") from None

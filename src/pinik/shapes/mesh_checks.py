@@ -1,0 +1,195 @@
+"""Refuse mesh files in words, before trimesh reads them: other files, cut-off ones, and small ones that become huge.
+
+pinik reads STL, OBJ, COLLADA (.dae), PLY, glTF (.gltf, .glb) and OFF files. It opens no archives.
+"""
+
+from __future__ import annotations
+
+import io
+import json
+import re
+import struct
+import zipfile
+from collections import Counter
+from typing import Any
+
+from ..description.xml import DocumentError, Element, parse
+
+__all__ = ["FORMATS", "MOST_BYTES", "MeshError", "checked"]
+
+FORMATS = ("stl", "obj", "dae", "ply", "gltf", "glb", "off")
+MOST_BYTES = 100 * 1024**2
+"""The largest mesh file that is read."""
+_MOST_COPIED = 5 * MOST_BYTES  # bytes that a COLLADA file may repeat, in all
+_MOST_NUMBERS = 50_000_000  # in the arrays of a glTF file, and vertices times materials of an OBJ file, times 20
+_ARCHIVES = (
+    b"PK\x03\x04",
+    b"PK\x05\x06",
+    b"\x1f\x8b",
+    b"BZh",
+    b"\xfd7zXZ",
+    b"7z\xbc\xaf",
+    b"\x28\xb5\x2f\xfd",
+    b"Rar!",
+)
+_PLY_SIZES = {"char": 1, "uchar": 1, "short": 2, "ushort": 2, "int": 4, "uint": 4, "float": 4, "double": 8}
+_PLY_ELEMENT = re.compile(rb"^\s*element\s+(\S+)\s+(\S+)", re.MULTILINE)
+
+
+class MeshError(ValueError):
+    """A mesh file cannot be used.
+
+    Attributes:
+        code: The sort of fault, as the code of a flaw.
+    """
+
+    def __init__(self, message: str, code: str = "unreadable-mesh") -> None:
+        self.code = code
+        super().__init__(message)
+
+
+def checked(data: bytes, kind: str) -> bytes:
+    """The contents of a mesh file, without what follows the last triangle of a binary STL file.
+
+    Args:
+        data: The contents.
+        kind: The file's ending without its dot, in lower case.
+
+    Raises:
+        MeshError: The file is no mesh of a known format, it is cut off, or it would become far larger than it is.
+    """
+    _refuse_other_files(data)
+    if kind not in FORMATS:
+        known = ", ".join(f".{one}" for one in FORMATS)
+        what = f"no .{kind} files" if kind else "no files without an ending"
+        raise MeshError(f"pinik reads {what} as meshes, but {known}", "unknown-mesh-format")
+    match kind:
+        case "stl":
+            return _checked_stl(data)
+        case "ply":
+            _check_ply(data)
+        case "obj":
+            _check_obj(data)
+        case "dae":
+            _check_collada(data)
+        case "glb" | "gltf":
+            _check_gltf(data, kind)
+    return data
+
+
+def _refuse_other_files(data: bytes) -> None:
+    start = data[:400].lstrip(b"\xef\xbb\xbf \t\r\n")
+    if not start:
+        raise MeshError("the file is empty", "empty-mesh")
+    if start.startswith(b"version https://git-lfs.github.com/spec"):
+        cause = "this is a Git LFS pointer and not the mesh itself; 'git lfs pull' in its repository fetches the mesh"
+        raise MeshError(cause, "lfs-pointer")
+    if start.startswith(b"ISO-10303-21"):
+        raise MeshError("this is a STEP file (CAD), not a mesh; export it as STL, OBJ or DAE", "not-a-mesh")
+    if start.startswith(_ARCHIVES):
+        raise MeshError("this is an archive, and pinik unpacks none; unpack the mesh beside the URDF", "mesh-archive")
+    if re.match(rb"<!doctype\s+html|<html", start, re.IGNORECASE):
+        raise MeshError("this is a web page, perhaps saved in place of the mesh", "not-a-mesh")
+
+
+def _checked_stl(data: bytes) -> bytes:
+    announced = struct.unpack_from("<I", data, 80)[0] if len(data) >= 84 else 0
+    needed = 84 + 50 * announced
+    if data.lstrip()[:5].lower() == b"solid" and needed != len(data):
+        if b"endsolid" not in data.lower():
+            raise MeshError("the file is cut off: it has no 'endsolid'", "truncated-mesh")
+        return data
+    if len(data) < max(needed, 84):
+        held = max(len(data) - 84, 0) // 50
+        raise MeshError(f"the file is cut off: it announces {announced:,} triangles and has {held:,}", "truncated-mesh")
+    return data[:needed]
+
+
+def _check_ply(data: bytes) -> None:
+    """Compare the counts in the header with what can stand in the file."""
+    header, end, body = data.partition(b"end_header")
+    if not header.lstrip().startswith(b"ply") or not end:
+        raise MeshError("this is no PLY file: its header is missing or cut off", "truncated-mesh")
+    binary = b"format binary" in header
+    needed = 0
+    sections = _PLY_ELEMENT.split(header)[1:]
+    for name, count, properties in zip(sections[::3], sections[1::3], sections[2::3], strict=True):
+        if not count.isdigit() or len(count) > 12:
+            raise MeshError(f"its number of {name.decode(errors='replace')[:40]} elements is no whole number")
+        words = [line.split() for line in properties.splitlines() if line.strip().startswith(b"property")]
+        sizes = [_PLY_SIZES.get(line[1].decode("ascii", "replace"), 1) for line in words if len(line) > 1]
+        needed += int(count) * max(sum(sizes) if binary else len(words), 1)
+    if needed > len(body):
+        cause = f"the file is cut off: its header announces at least {needed:,} bytes, and {len(body):,} follow"
+        raise MeshError(cause, "truncated-mesh")
+
+
+def _check_obj(data: bytes) -> None:
+    """Each material costs trimesh a walk through all vertices."""
+    materials = len(set(re.findall(rb"^usemtl[^\n]*", data, re.MULTILINE)))
+    vertices = data.count(b"\nv ")
+    if materials * vertices > 20 * _MOST_NUMBERS:
+        raise MeshError(f"{materials:,} materials for {vertices:,} vertices are too many", "mesh-too-large")
+
+
+def _check_gltf(data: bytes, kind: str) -> None:
+    """Arrays that are announced without data are filled with zeros, so their lengths are bounded."""
+    text = data
+    if kind == "glb":
+        if data[:4] != b"glTF" or len(data) < 20:
+            raise MeshError("this is no GLB file: its header is missing", "truncated-mesh")
+        announced, length = struct.unpack_from("<I", data, 8)[0], struct.unpack_from("<I", data, 12)[0]
+        if announced > len(data):
+            cause = f"the file is cut off: it announces {announced:,} bytes and has {len(data):,}"
+            raise MeshError(cause, "truncated-mesh")
+        text = data[20 : 20 + length]
+    try:
+        tree: Any = json.loads(text)
+        counts = [int(accessor["count"]) for accessor in tree.get("accessors", [])]
+    except (ValueError, KeyError, TypeError, AttributeError, OverflowError, RecursionError):
+        raise MeshError("its JSON cannot be read") from None
+    if min(counts, default=0) < 0 or sum(counts) > _MOST_NUMBERS // 2:
+        raise MeshError("it announces more numbers than pinik reads", "mesh-too-large")
+
+
+def _check_collada(data: bytes) -> None:
+    """Read the XML safely, and count how often parts are repeated: nodes that repeat nodes can make billions."""
+    if zipfile.is_zipfile(io.BytesIO(data)):
+        raise MeshError("this is an archive, and pinik unpacks none", "mesh-archive")
+    try:
+        root = parse(data, most_bytes=MOST_BYTES)
+    except DocumentError as fault:
+        where = f" (line {fault.line})" if fault.line else ""
+        raise MeshError(f"{fault.message}{where}") from None
+    nodes = {node.attributes.get("id"): node for node in root.walk() if node.tag.rpartition(":")[2] == "node"}
+    counts: dict[int, int] = {}
+    scenes = [element for element in root.walk() if element.tag.rpartition(":")[2] == "visual_scene"]
+    total = sum(_instances(scene, nodes, counts, set()) for scene in scenes)
+    used = Counter(
+        element.attributes.get("url")
+        for element in root.walk()
+        if element.tag.rpartition(":")[2] in ("instance_geometry", "instance_controller")
+    )
+    if (total - len(used)) * len(data) > _MOST_COPIED:
+        raise MeshError("it repeats its parts so often that it would become far larger than it is", "mesh-too-large")
+
+
+def _instances(element: Element, nodes: dict[str | None, Element], counts: dict[int, int], above: set[int]) -> int:
+    """How many shapes an element of a COLLADA scene becomes."""
+    if id(element) in counts:
+        return counts[id(element)]
+    if id(element) in above:
+        raise MeshError("a node of its scene contains itself")
+    count = 0
+    for child in element.children:
+        match child.tag.rpartition(":")[2]:
+            case "instance_geometry" | "instance_controller":
+                count += 1
+            case "instance_node":
+                target = nodes.get(child.attributes.get("url", "").removeprefix("#"))
+                if target is not None:
+                    count += _instances(target, nodes, counts, above | {id(element)})
+            case "node":
+                count += _instances(child, nodes, counts, above | {id(element)})
+    counts[id(element)] = count
+    return count

@@ -1,0 +1,58 @@
+"""The heartbeat: sixty ticks a second while somebody watches or asks, and none otherwise."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+
+from tornado.ioloop import PeriodicCallback
+
+from ..simulation.session import STEPS_PER_SECOND
+
+__all__ = ["Heartbeat"]
+
+_AWAKE = 10.0  # [s] after anybody has last watched or asked
+
+
+class Heartbeat:
+    """Calls `tick` sixty times a second; it rests when nobody has watched and nobody has asked for ten seconds."""
+
+    def __init__(
+        self,
+        tick: Callable[[], None],
+        watched: Callable[[], bool],
+        clock: Callable[[], float] = time.monotonic,
+    ) -> None:
+        """Start beating, in the loop of this thread.
+
+        Args:
+            tick: What to do sixty times a second.
+            watched: Returns whether somebody watches.
+            clock: A function that returns the time in seconds.
+        """
+        self._tick, self._watched, self._clock = tick, watched, clock
+        self._beats = PeriodicCallback(self._beat, 1000.0 / STEPS_PER_SECOND)
+        self.wake()
+
+    @property
+    def rests(self) -> bool:
+        """Whether nobody watches or has asked lately."""
+        return not self._beats.is_running()
+
+    def wake(self) -> None:
+        """Note that somebody asks for something, and beat on."""
+        self._used = self._clock()
+        if self.rests:
+            self._beats.start()
+
+    def stop(self) -> None:
+        """Beat no more."""
+        self._beats.stop()
+
+    def _beat(self) -> None:
+        if self._watched():
+            self._used = self._clock()
+        elif self._clock() - self._used > _AWAKE:
+            self._beats.stop()
+            return
+        self._tick()

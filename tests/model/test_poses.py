@@ -1,0 +1,115 @@
+"""Poses of an SRDF: numbers inside the limits, or an error that names pose and joint."""
+
+from __future__ import annotations
+
+import math
+import re
+
+import pytest
+
+import pinik
+from by_hand import axis, limit, mimic
+from pinik.description import catalog
+from robots import load_quietly
+from urdf_texts import joint, link, robot
+
+ROBOT = robot(
+    *map(link, "abcdef"),
+    joint("hinge", "a", "b", axis(0, 0, 1), limit=limit(-1, 1)),
+    joint("slide", "b", "c", axis(0, 0, 1), limit=limit(0, 2), kind="prismatic"),
+    joint("wheel", "c", "d", axis(0, 0, 1), kind="continuous", limit=""),
+    joint("wrist", "d", "e", axis(0, 0, 1), limit=limit(2, 6)),
+    joint("thumb", "e", "f", axis(0, 0, 1), mimic("hinge", 0.5), limit=limit(-1, 1)),
+)
+
+
+@pytest.fixture
+def posed(tmp_path):
+    """Loads the robot beside an SRDF with one pose."""
+
+    def load(*settings: tuple[str, str], pose: str = "home") -> pinik.Robot:
+        joints = "".join(f'<joint name="{name}" value="{value}"/>' for name, value in settings)
+        (tmp_path / "r.urdf").write_text(ROBOT)
+        (tmp_path / "r.srdf").write_text(
+            f'<robot name="r"><group_state name="calm" group="g"/>\n<group_state name="{pose}" group="g">{joints}'
+            "</group_state></robot>"
+        )
+        return pinik.load(tmp_path / "r.urdf", strict=True)
+
+    return load
+
+
+@pytest.mark.parametrize("value", ["nan", "1e400", "inf", "abc", "0,5", "", "0.1 0.2", "1_0", "0x1", "1e300"])
+@pytest.mark.parametrize("name", ["hinge", "slide", "wheel", "thumb"])
+def test_what_is_no_number_is_an_error_that_names_pose_and_joint(posed, name, value):
+    loaded = posed((name, value))
+    with pytest.raises(pinik.RobotLoadError) as caught:
+        _ = loaded.poses
+    assert caught.value.element == f"pose 'home', joint '{name}'"
+    assert re.search(
+        r"r\.srdf: pose 'home', joint '\w+': its value must be a number .*; got .* \(line 2\)$", str(caught.value)
+    )
+
+
+@pytest.mark.parametrize(
+    ("name", "value", "range_"),
+    [("hinge", "99", "-1..1"), ("hinge", "-1.002", "-1..1"), ("slide", "6.3", "0..2"), ("wrist", "0.5", "2..6")],
+)
+def test_a_number_outside_the_limits_is_an_error_that_names_them(posed, name, value, range_):
+    loaded = posed((name, value))
+    with pytest.raises(
+        pinik.RobotLoadError, match=f"pose 'home', joint '{name}'.*within its limits {range_}; got {value}"
+    ):
+        _ = loaded.poses
+
+
+@pytest.mark.parametrize(
+    ("name", "value", "angle"),
+    [
+        ("hinge", "0.25", 0.25),
+        ("hinge", "1.0009", 1.0),  # rounded
+        ("slide", "-0.0004", 0.0),
+        ("hinge", repr(0.5 + 2 * math.pi), 0.5),  # a whole turn
+        ("wrist", "-0.5", 2 * math.pi - 0.5),
+        ("wrist", repr(3.0 + 20 * math.pi), 3.0),
+        ("wheel", "7.5", 7.5 - 2 * math.pi),
+        ("absent", "nan", None),
+    ],
+)
+def test_a_number_that_is_rounded_or_whole_turns_away_is_taken_inside(posed, name, value, angle):
+    loaded = posed((name, value))
+    angles = loaded.angles(loaded.poses["home"])
+    expected = dict.fromkeys(angles, 0.0)
+    if angle is not None:
+        expected |= {name: angle} | ({"thumb": angle / 2} if name == "hinge" else {})
+    assert angles == pytest.approx(expected, abs=1e-12)
+
+
+def test_those_who_never_ask_for_poses_are_not_stopped(posed):
+    loaded = posed(("hinge", "nan"))
+    assert loaded.solve("b", rpy=[0, 0, 0.5]).success
+    assert pinik.draw(loaded, size=(40, 30)).size == (40, 30)
+
+
+BENT_TOO_FAR = {"simple_humanoid", "simple_humanoid_classical"}
+
+
+@pytest.mark.parametrize("name", sorted(set(catalog.catalog()) - {"ur3_empty"} - BENT_TOO_FAR))
+def test_the_catalogue_s_poses_are_inside_the_limits(name):
+    loaded = load_quietly(name)
+    for q in loaded.poses.values():
+        assert (q >= loaded.lower_q).all()
+        assert (q <= loaded.upper_q).all()
+
+
+@pytest.mark.parametrize("name", sorted(BENT_TOO_FAR))
+def test_the_catalogue_s_poses_beyond_the_file_s_own_limits_are_refused_by_name(name):
+    with pytest.raises(pinik.RobotLoadError, match=r"pose 'half_sitting', joint '.LEG_.*must be within its limits"):
+        _ = load_quietly(name).poses
+
+
+def test_a_name_of_any_length_is_shortened_in_the_error(posed):
+    loaded = posed(("hinge", "9" * 5000), pose="p" * 5000)
+    with pytest.raises(pinik.RobotLoadError) as caught:
+        _ = loaded.poses
+    assert len(str(caught.value)) < 600
