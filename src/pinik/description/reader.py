@@ -16,6 +16,7 @@ from ..errors import RobotLoadError
 from .joints import JointTag, Mimic, read_joint
 from .links import read_link
 from .tree import check_unique, resolved_mimics, root_link
+from .unknown import unknown_in_joints
 from .writer import written
 from .xml import MAX_BYTES, DocumentError, Element, parse
 
@@ -130,6 +131,7 @@ def _describe(robot: Element, source: str, path: Path | None, document: bytes) -
     joints = [read_joint(element, warnings) for element in robot.named("joint")]
     root = root_link([link.name for link in links], joints)
     joints = resolved_mimics(joints, warnings)
+    warnings.extend(unknown_in_joints(robot))
     name = robot.attributes.get("name")
     if name is None:
         name = path.stem if path else "robot"
