@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import io
 import warnings
 from collections.abc import Iterable, Iterator
@@ -29,18 +30,17 @@ CREASE = np.deg2rad(40.0)  # edges sharper than this stay sharp when a mesh brin
 
 def box(size: NDArray[np.float64]) -> trimesh.Trimesh:
     """A box about the origin with these edges (3,) [m]."""
-    return _creased(trimesh.creation.box(size))
+    return _stretched(_unit_box(), size)
 
 
 def sphere(radius: float) -> trimesh.Trimesh:
     """A sphere about the origin [m]."""
-    mesh: trimesh.Trimesh = trimesh.creation.icosphere(3, radius)
-    return mesh
+    return _stretched(_unit_sphere(), np.full(3, radius))
 
 
 def cylinder(radius: float, length: float) -> trimesh.Trimesh:
     """A cylinder about the origin, along z [m]."""
-    return _creased(trimesh.creation.cylinder(radius, length))
+    return _stretched(_unit_cylinder(), np.array([radius, radius, length]))
 
 
 def capsule(radius: float, length: float) -> trimesh.Trimesh:
@@ -55,6 +55,27 @@ def scaled(mesh: trimesh.Trimesh, scale: NDArray[np.float64]) -> trimesh.Trimesh
     copy = mesh.copy()
     copy.apply_transform(np.diag([*np.broadcast_to(scale, 3), 1.0]))
     return copy
+
+
+@functools.cache
+def _unit_box() -> trimesh.Trimesh:
+    return _creased(trimesh.creation.box(np.ones(3)))
+
+
+@functools.cache
+def _unit_sphere() -> trimesh.Trimesh:
+    mesh: trimesh.Trimesh = trimesh.creation.icosphere(3, 1.0)
+    return mesh
+
+
+@functools.cache
+def _unit_cylinder() -> trimesh.Trimesh:
+    return _creased(trimesh.creation.cylinder(1.0, 1.0))
+
+
+def _stretched(unit: trimesh.Trimesh, along: NDArray[np.float64]) -> trimesh.Trimesh:
+    """A new mesh with the faces of another one; making thousands of shapes anew would take seconds."""
+    return trimesh.Trimesh(unit.vertices * along, unit.faces.copy(), process=False)
 
 
 def read_file(path: Path) -> list[Part]:
