@@ -82,4 +82,4 @@ def test_a_shape_with_a_bad_colour_is_grey(rgba):
 def test_a_robot_with_a_bad_colour_is_drawn():
     with pytest.warns(pinik.UrdfWarning, match="material 'm'"):
         loaded = pinik.load(robot(color("red"), USES))
-    assert pinik.draw(loaded, size=(40, 30)).image.size == (40, 30)
+    assert pinik.draw(loaded, size=(40, 30)).size == (40, 30)

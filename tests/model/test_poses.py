@@ -88,7 +88,7 @@ def test_a_number_that_is_rounded_or_whole_turns_away_is_taken_inside(posed, nam
 def test_those_who_never_ask_for_poses_are_not_stopped(posed):
     loaded = posed(("hinge", "nan"))
     assert loaded.solve("b", rpy=[0, 0, 0.5]).success
-    assert pinik.draw(loaded, size=(40, 30)).image.size == (40, 30)
+    assert pinik.draw(loaded, size=(40, 30)).size == (40, 30)
 
 
 BENT_TOO_FAR = {"simple_humanoid", "simple_humanoid_classical"}

@@ -21,7 +21,7 @@ from .tree import check_unique, resolved_mimics, root_link
 from .writer import written
 from .xml import BrokenXMLError, DocumentError, Element
 
-__all__ = ["Description", "JointTag", "Mimic", "read"]
+__all__ = ["Description", "JointTag", "Mimic", "read", "read_source"]
 
 # What a document is if its root element is not <robot>.
 OTHER_FORMATS = {
@@ -77,9 +77,18 @@ def read(given: RobotSource) -> Description:
     Raises:
         RobotLoadError: The file cannot be read, or is not a valid URDF; the message names the element and the cause.
     """
-    source = Source.of(given)
+    return read_source(Source.of(given))
+
+
+def read_source(source: Source) -> Description:
+    """Read a URDF from its source and check it.
+
+    Raises:
+        RobotLoadError: It cannot be read, or is not a valid URDF; the message names the element and the cause.
+    """
+    content = source.content()
     try:
-        return _described(read_document(source.content()), source)
+        return _described(read_document(content), source)
     except DocumentError as fault:
         # The message of broken XML names line and column itself.
         line = f" (line {fault.line})" if fault.line and not isinstance(fault, BrokenXMLError) else ""

@@ -6,25 +6,28 @@ from collections.abc import Iterable, Sequence
 from pathlib import Path
 
 from ...description.flaw import summarised
+from ...description.xml import MAX_BYTES
 from ...errors import RobotLoadError, UnknownNameError
 from ...loading import load_in_silence
 from ...robot import Robot
 from ..terminal import output
 from ..terminal.exits import CommandError, ExitStatus
+from .files import read_bytes
 
 __all__ = ["check_folders", "load_robot"]
 
 
 def load_robot(source: str, *, root: str = "fixed", package_dirs: Sequence[Path] | None = None) -> Robot:
-    """`pinik.load`, with one line on stderr for each sort of warning.
+    """`pinik.load`, with one line on stderr for each sort of warning; "-" is a URDF on stdin.
 
     Raises:
         CommandError: The robot cannot be loaded (`ExitStatus.NO_ROBOT`), or a folder does not exist.
         InputError: An unknown root.
     """
     check_folders(package_dirs)
+    given = read_bytes(source, MAX_BYTES, "a robot description") if source == "-" else source
     try:
-        robot = load_in_silence(source, root=root, package_dirs=package_dirs or ())
+        robot = load_in_silence(given, root=root, package_dirs=package_dirs or ())
     except (RobotLoadError, UnknownNameError, OSError) as error:
         raise CommandError(str(error), ExitStatus.NO_ROBOT) from None
     for words in summarised(robot.warnings):

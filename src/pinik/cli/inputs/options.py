@@ -24,7 +24,8 @@ RobotSource = Annotated[
     str,
     typer.Argument(
         metavar="ROBOT",
-        help="The name of a robot in the catalogue ('pinik robots' lists them), or the path of a URDF file.",
+        help="The name of a robot in the catalogue ('pinik robots' lists them), the path of a URDF file, or - for a "
+        "URDF on stdin.",
         show_default=False,
     ),
 ]
