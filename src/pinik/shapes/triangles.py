@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import io
 import warnings
 from collections.abc import Iterable, Iterator
@@ -31,7 +32,13 @@ CREASE = np.deg2rad(40.0)  # edges sharper than this stay sharp when a mesh brin
 
 def box(size: NDArray[np.float64]) -> trimesh.Trimesh:
     """A box about the origin with these edges (3,) [m]."""
-    return _creased(trimesh.creation.box(size))
+    unit = _unit_box()
+    return trimesh.Trimesh(unit.vertices * size, unit.faces, process=False)
+
+
+@functools.cache
+def _unit_box() -> trimesh.Trimesh:
+    return _creased(trimesh.creation.box((1.0, 1.0, 1.0)))
 
 
 def sphere(radius: float) -> trimesh.Trimesh:
