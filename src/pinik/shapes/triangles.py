@@ -12,7 +12,8 @@ from typing import Any
 
 import numpy as np
 import trimesh
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
+from trimesh.exchange.load import mesh_loaders
 
 from ..description.materials import Color
 from ..files import FileError, read_within
@@ -103,14 +104,15 @@ def _meshes(data: bytes, kind: str, neighbours: Neighbours) -> list[trimesh.Trim
     """The meshes of a file with their triangles where the file's scene has them [m]."""
     # The only material of a PLY file is a texture.
     materials: dict[str, Any] = {"skip_materials": True} if kind == "ply" else {}
+    reader: Any = mesh_loaders[kind]
     try:
         with _silenced():
-            scene = trimesh.load_scene(io.BytesIO(data), kind, resolver=neighbours, process=False, **materials)
+            read = reader(file_obj=io.BytesIO(data), file_type=kind, resolver=neighbours, **materials)
+            for arrays in read.get("geometry", {"": read}).values():
+                # First, because trimesh drops what is not finite.
+                _check_finite(arrays.get("vertices", ()), arrays.get("faces", ()))
+            scene = trimesh.load_scene(read)
             _check_size(scene)
-            for mesh in scene.geometry.values():
-                if isinstance(mesh, trimesh.Trimesh):
-                    _check_finite(mesh)  # first, because this drops what is not finite
-                    mesh.process()
             meshes = [mesh for mesh in scene.dump() if isinstance(mesh, trimesh.Trimesh) and len(mesh.faces)]
     except MeshError:
         raise
@@ -123,12 +125,13 @@ def _meshes(data: bytes, kind: str, neighbours: Neighbours) -> list[trimesh.Trim
         in_metres = trimesh.units.unit_conversion(mesh.units or "meters", "meters")
         with np.errstate(all="ignore"):
             mesh.apply_transform(np.diag([in_metres, in_metres, in_metres, 1.0]))
-        _check_finite(mesh)
+        _check_finite(mesh.vertices, mesh.faces)
     return meshes
 
 
-def _check_finite(mesh: trimesh.Trimesh) -> None:
-    if not np.isfinite(mesh.vertices[mesh.faces]).all():
+def _check_finite(vertices: ArrayLike, faces: ArrayLike) -> None:
+    corners = np.asarray(vertices, dtype=float)[np.asarray(faces, dtype=np.int64).ravel()]
+    if not np.isfinite(corners).all():
         raise MeshError("it has corners that are not finite numbers (NaN or infinite)", "nan-in-mesh")
 
 
