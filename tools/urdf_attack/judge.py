@@ -19,6 +19,7 @@ import pinocchio
 import pinik
 from pinik.cli.reports.inspection import inspect
 from pinik.description.packages import example_robot_data
+from pinik.extras import MissingExtraError
 from pinik.robot import Robot
 from pinik.shapes.meshes import load_shapes
 from pinik.shapes.second_opinion import SecondOpinion, ask_yourdfpy
@@ -78,6 +79,8 @@ class Judge:
     def _loaded(self, source: str, case: Case) -> tuple[Outcome, Robot | None]:
         try:
             robot = pinik.load(source)
+        except MissingExtraError as error:  # a xacro file, whose reader is an extra
+            return Outcome("refused", str(error), "needs an extra"), None
         except pinik.RobotLoadError as error:
             words = str(error)
             if len(words) > LONGEST_MESSAGE or not error.cause.strip():
