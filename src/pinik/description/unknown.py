@@ -18,8 +18,9 @@ _WHY_KINEMATICS = "The joint or link is not where the file seems to say."
 _WHY = "What it says is lost, as readers of URDF ignore it without a word."
 _RESEMBLES = 0.7  # of 1: how much two names have in common
 _SURELY = 0.8  # so much that only a slip of the keyboard explains it
+_LETTERS = 4  # so many letters are needed for one of them to be wrong
 _LONGEST = 60
-_MANY = ("link", "joint", "visual", "collision")  # of these an element may hold several
+_MANY = frozenset({"link", "joint", "visual", "collision"})  # of these an element may hold several
 
 
 @dataclass(frozen=True, slots=True)
@@ -31,12 +32,14 @@ class _Place:
         word: What may stand in it.
         owner: What messages call the link or joint that it belongs to.
         document: The bytes of the document; None if nobody wants edits.
+        given: The names of those of its children that URDF knows.
     """
 
     element: Element
     word: Word
     owner: str
     document: bytes | None
+    given: frozenset[str]
 
 
 def unknown_parts(robot: Element, document: bytes) -> list[Flaw]:
@@ -91,7 +94,8 @@ def _within(part: Element) -> Iterator[tuple[Element, str]]:
 
 
 def _unknown(element: Element, owner: str, document: bytes | None) -> Iterator[Flaw]:
-    place = _Place(element, URDF[element.tag], owner, document)
+    word = URDF[element.tag]
+    place = _Place(element, word, owner, document, word.children.intersection(child.tag for child in element.children))
     for attribute in element.attributes:
         if attribute not in place.word.attributes and ":" not in attribute and attribute != "xmlns":
             yield from _unknown_attribute(place, attribute)
@@ -111,7 +115,7 @@ def _unknown_attribute(place: _Place, attribute: str) -> Iterator[Flaw]:
         cause = f"{held} is unknown to URDF and ignored; URDF has {attribute!r} in <{parents[0]}>"
         yield _flaw(place, cause, "misplaced-attribute", mend=f"Write it as <{parents[0]} {attribute}=…>.")
     elif meant is not None:
-        cause = f"{held} is unknown to URDF and ignored (near: {meant!r}){_loss(element, meant)}"
+        cause = f"{held} is unknown to URDF and ignored (near: {meant!r}){_loss(place, meant)}"
         edits: tuple[Edit, ...] = ()
         if place.document is not None and _is_sure(attribute, word.attributes) and meant not in element.attributes:
             edits = renamed_attribute(place.document, element, attribute, meant)
@@ -129,9 +133,9 @@ def _attribute_of_child(place: _Place, attribute: str, child: str) -> Flaw:
     element = place.element
     main = MAIN_ATTRIBUTES.get(child)
     written = f"<{child} {main}=…>" if main else f"<{child} …>"
-    cause = f"{attribute} is an attribute here and ignored; URDF has {written}{_loss(element, child)}"
+    cause = f"{attribute} is an attribute here and ignored; URDF has {written}{_loss(place, child)}"
     edits: tuple[Edit, ...] = ()
-    if place.document is not None and main and not element.named(child):
+    if place.document is not None and main and child not in place.given:
         edits = moved_to_child(place.document, element, attribute, child, main)
     text = element.attributes[attribute]
     example = f'<{child} {main}="{_short(text)}"/>' if main else written
@@ -142,13 +146,11 @@ def _attribute_of_child(place: _Place, attribute: str, child: str) -> Flaw:
 def _unknown_child(place: _Place, child: Element) -> Iterator[Flaw]:
     element, word = place.element, place.word
     tag = _short(child.tag)
-    meant = _meant(child.tag, word.children, [] if element.tag == "robot" else [one.tag for one in element.children])
+    meant = _meant(child.tag, word.children, place.given - _MANY)
     if meant is not None:
-        cause = (
-            f"<{tag}> is unknown to URDF and ignored with all that it holds (near: <{meant}>){_loss(element, meant)}"
-        )
+        cause = f"<{tag}> is unknown to URDF and ignored with all that it holds (near: <{meant}>){_loss(place, meant)}"
         edits: tuple[Edit, ...] = ()
-        is_free = meant in _MANY or not element.named(meant)
+        is_free = meant in _MANY or meant not in place.given
         if place.document is not None and _is_sure(child.tag, word.children) and is_free:
             edits = renamed_element(place.document, child, meant)
         yield _flaw(place, cause, "unknown-element", child, mend=f"Write <{meant}> instead of <{tag}>.", edits=edits)
@@ -180,10 +182,11 @@ def _flaw(
     return Flaw(owner, cause, code=code, line=element.line, why=why, mend=mend, edits=edits)
 
 
-def _loss(element: Element, meant: str) -> str:
+def _loss(place: _Place, meant: str) -> str:
     """What is assumed without the attribute or child that was meant, as the rest of a sentence."""
-    is_given = meant in element.attributes and meant in URDF[element.tag].attributes
-    if is_given or (element.named(meant) and meant not in _MANY):
+    element = place.element
+    is_given = meant in element.attributes and meant in place.word.attributes
+    if is_given or meant in place.given - _MANY:
         return ", and it is given too"
     assumed = ASSUMED.get((element.tag, meant))
     return f"; {assumed}" if assumed else ""
@@ -207,10 +210,12 @@ def _is_sure(name: str, known: Collection[str]) -> bool:
 
 
 def _likeness(name: str, known: str) -> float:
-    """From 0 to 1: how much two names have in common; 1 if they differ only in the case or the order of letters."""
+    """From 0 to 1: how much two names have in common; case, the order of letters and one wrong letter hardly count."""
     word = name[:_LONGEST].casefold()
     if sorted(word) == sorted(known):
         return 1.0
+    if len(word) == len(known) >= _LETTERS and sum(one != other for one, other in zip(word, known, strict=True)) == 1:
+        return _SURELY
     return SequenceMatcher(None, word, known).ratio()
 
 

@@ -153,11 +153,9 @@ def test_joints_with_the_same_flaw_share_a_line_whatever_their_names(run, urdf):
         for k in (1, 2)
     )
     lines = run("check", urdf(f'<link name="base"/>{joints}')).out.splitlines()
-    assert (
-        """  joint "j'1" (line 1), joint "j'2" (line 1): it mimics a joint that does not exist; it is left free"""
-        in lines
-    )
-    assert "warning: mimic-ignored, 2 times" in lines
+    (line,) = [line for line in lines if line.endswith(": it mimics a joint that does not exist; it is left free")]
+    assert "j'1" in line
+    assert "j'2" in line
 
 
 class TestFollowers:
