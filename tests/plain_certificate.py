@@ -1,4 +1,4 @@
-"""The errors of targets at a configuration as it stands, by Pinocchio's own functions on `robot.model` and nothing else.
+"""The errors of targets at a configuration as it stands, by Pinocchio's own functions on `robot.model` alone.
 
 The judge reads a robot's file himself and therefore rounds otherwise. Where a tolerance is as small as rounding, only
 the same model and the same q can decide; this is what a user of Pinocchio computes from `robot.model` and `solution.q`.
@@ -7,6 +7,7 @@ the same model and the same q can decide; this is what a user of Pinocchio compu
 from __future__ import annotations
 
 import math
+import weakref
 from collections.abc import Sequence
 from typing import Any
 
@@ -16,13 +17,16 @@ import pinocchio
 import pinik
 
 AT_THE_POINT = 1e-6  # [m]: docs/targets.md
+_DATA: weakref.WeakKeyDictionary[pinik.Robot, pinocchio.Data] = weakref.WeakKeyDictionary()
 
 
 def plain_errors(
     robot: pinik.Robot, targets: Sequence[pinik.Target], q: np.ndarray, tolerance: Any
 ) -> list[tuple[float | None, float | None, tuple[float, float, float] | None]]:
     """(metres, radians, errors along the axes of a box) of each target."""
-    data = robot.model.createData()
+    if robot not in _DATA:
+        _DATA[robot] = robot.model.createData()
+    data = _DATA[robot]
     pinocchio.framesForwardKinematics(robot.model, data, q)
     return [_errors(robot, data, target, target.tolerance or tolerance) for target in targets]
 

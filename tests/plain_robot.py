@@ -123,7 +123,7 @@ class PlainRobot:
     def _source(self, name: str, free: frozenset[str]) -> tuple[str, float, float]:
         """(joint, multiplier, offset): the free joint that gives a joint its angle, and how; or a joint at 0.
 
-        It is the joint itself, the nearest of its leaders, or else a joint that follows the same leader: two joints that
+        It is the joint itself, the nearest of its leaders, or else a joint that follows the same leader: joints that
         move together may change roles.
         """
         top, multiplier, offset = self._led_by(name, free)

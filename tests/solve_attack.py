@@ -41,7 +41,7 @@ class Question(NamedTuple):
     starts: list[np.ndarray]
 
 
-class Fault(AssertionError):
+class FaultyAnswerError(AssertionError):
     """An answer that must not be."""
 
 
@@ -49,7 +49,7 @@ def attack(seed: int, number: int) -> collections.Counter[str]:
     """Make robot `number` and ask it QUESTIONS questions, each SOLVES times; count what came of them.
 
     Raises:
-        Fault: An answer is not as it must be, or something but an answer came back.
+        FaultyAnswerError: An answer is not as it must be, or something but an answer came back.
     """
     rng = np.random.default_rng([seed, number])
     counts: collections.Counter[str] = collections.Counter()
@@ -64,9 +64,11 @@ def attack(seed: int, number: int) -> collections.Counter[str]:
                 question = random_question(robot, rng)
                 counts += answers(question)
             except PinikError as error:
-                raise Fault(f"{where}: {type(error).__name__}: {error}; {question}") from error
+                raise FaultyAnswerError(f"{where}: {type(error).__name__}: {error}; {question}") from error
             except Exception as error:
-                raise Fault(f"{where}: {type(error).__name__}: {error}; {question and question[1:5]}") from error
+                raise FaultyAnswerError(
+                    f"{where}: {type(error).__name__}: {error}; {question and question[1:5]}"
+                ) from error
     return counts
 
 
@@ -81,32 +83,34 @@ def answers(question: Question) -> collections.Counter[str]:
         counts.update([f"{method} {solution.engine} {'solved' if solution.success else 'missed'}", "solves"])
     again = pinik.prepare(robot, targets, method, **parameters, **options)(targets, starts[-1])
     if again.q.tobytes() != solution.q.tobytes() or again.status is not solution.status:
-        raise Fault(f"asked again, it answers {again!r} instead of {solution!r}")
+        raise FaultyAnswerError(f"asked again, it answers {again!r} instead of {solution!r}")
     many = pinik.solve_many(robot, [targets], method=method, q0=starts[-1], threads=1, **parameters, **options)
     if many.q[0].tobytes() != solution.q.tobytes() or many.status[0] is not solution.status:
-        raise Fault(f"solve_many answers {many.q[0]}, {many.status[0]} instead of {solution!r}")
+        raise FaultyAnswerError(f"solve_many answers {many.q[0]}, {many.status[0]} instead of {solution!r}")
     counts["solves"] += 2
     return counts
 
 
 def check(question: Question, solution: pinik.Solution, start: np.ndarray) -> None:
-    """Raise a Fault unless the answer is as it must be."""
+    """Raise a FaultyAnswerError unless the answer is as it must be."""
     robot, targets, *_, options, _ = question
     q = solution.q
     if q.shape != (robot.model.nq,) or not np.isfinite(q).all():
-        raise Fault(f"not finite: {q}")
+        raise FaultyAnswerError(f"not finite: {q}")
     tolerance = options["tolerance"]
     claimed = [pinik.TargetError(*error) for error in plain_errors(robot, targets, q, tolerance)]
     within = all(e.within(t.tolerance or pinik.Tolerance.of(tolerance)) for e, t in zip(claimed, targets, strict=True))
     if within is not solution.success:
-        raise Fault(f"it says {solution.status}, plain Pinocchio finds {claimed}, and {solution.errors} is said")
+        raise FaultyAnswerError(
+            f"it says {solution.status}, plain Pinocchio finds {claimed}, and {solution.errors} is said"
+        )
     check_by_the_judge(question, solution)
     untouched = [i for joint in robot.joints if joint.nq and not may_move(question, joint) for i in entries(joint)]
     if options["limits"]:  # a start outside them is moved inside
         untouched = [i for i in untouched if robot.lower_q[i] <= start[i] <= robot.upper_q[i]]
     moved = [i for i in untouched if q[i] != start[i]]
     if moved:
-        raise Fault(f"entries {moved} of q must stay at {start[moved]}, and are {q[moved]}")
+        raise FaultyAnswerError(f"entries {moved} of q must stay at {start[moved]}, and are {q[moved]}")
     str(solution)
 
 
@@ -115,17 +119,17 @@ def check_by_the_judge(question: Question, solution: pinik.Solution) -> None:
     robot, targets, *_, options, _ = question
     found = judge(robot, targets, solution.q)
     if options["limits"] and found.outside:
-        raise Fault(f"outside the limits: {found.outside}")
+        raise FaultyAnswerError(f"outside the limits: {found.outside}")
     circles = {name: off for name, off in found.outside.items() if name not in robot.joint_names}
     if circles:
-        raise Fault(f"not of unit length: {circles}")
+        raise FaultyAnswerError(f"not of unit length: {circles}")
     blur = 1e-12 * max(1.0, *(float(np.abs(M.translation).max()) for M in placements(robot, solution.q)))
     for said, miss, target in zip(solution.errors, found.each, targets, strict=True):
         if miss.position is not None and not math.isclose(said.position, miss.position, rel_tol=1e-9, abs_tol=blur):
-            raise Fault(f"it says {said}, the judge {miss}")
+            raise FaultyAnswerError(f"it says {said}, the judge {miss}")
         near = 1e-7 if target.at is None else 1e-7 + 100.0 * blur / 1e-6
         if miss.orientation is not None and not abs(said.orientation - miss.orientation) <= near:
-            raise Fault(f"it says {said}, the judge {miss}")
+            raise FaultyAnswerError(f"it says {said}, the judge {miss}")
 
 
 def placements(robot: pinik.Robot, q: np.ndarray) -> list[pinocchio.SE3]:

@@ -2,8 +2,8 @@
 
     python tools/attack_solves.py --count 1000000 --seed 0
 
-`tests/solve_attack.py` says what is asked and what must hold. Every fault is printed with the number of its robot, which
-`--robot NUMBER` makes again; the exit status is 1 if there was one.
+`tests/solve_attack.py` says what is asked and what must hold. Every fault is printed with the number of its robot, and
+`--robot NUMBER` makes that robot again; the exit status is 1 if there was a fault.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from pathlib import Path
 
 sys.path.append(str(Path(__file__).parents[1] / "tests"))
 
-from solve_attack import Fault, attack
+from solve_attack import FaultyAnswerError, attack
 
 MOST_FAULTS = 50
 LONGEST = 2000  # characters of one fault
@@ -38,7 +38,7 @@ def main() -> int:
     for number in numbers:
         try:
             counts += attack(asked.seed, number)
-        except Fault as fault:
+        except FaultyAnswerError as fault:
             faults += 1
             print(f"FAULT {str(fault)[:LONGEST]}", flush=True)
         counts["robots"] += 1

@@ -1,4 +1,4 @@
-"""Whatever looks like an array is read as the numbers that it shows, or refused in words, wherever numbers are taken."""
+"""Whatever looks like an array is read as the numbers that it shows, or refused in words."""
 
 from __future__ import annotations
 

@@ -15,18 +15,18 @@ from pinik import Status
 from plain_certificate import plain_errors
 from random_trees import random_tree
 from robots import load_quietly
-from solve_attack import Fault, Question, attack, check
+from solve_attack import FaultyAnswerError, Question, attack, check
 
 
 def test_answers_to_anything_asked_of_any_robot_are_as_they_must_be():
-    """60 robots of up to 60 joints, some 2,000 solves by all methods and both engines."""
+    """Robots of up to 60 joints, some 800 solves by all methods and both engines."""
     counts: collections.Counter[str] = collections.Counter()
-    for number in range(60):
+    for number in range(25):
         counts += attack(2026, number)
     print(dict(counts))
-    assert counts["solves"] >= 1900
+    assert counts["solves"] == 25 * solve_attack.QUESTIONS * (solve_attack.SOLVES + 2)
     for method in solve_attack.METHODS:
-        assert sum(count for name, count in counts.items() if name.startswith(method) and name.endswith("solved")) > 30
+        assert sum(count for name, count in counts.items() if name.startswith(method) and name.endswith("solved")) > 8
 
 
 def test_the_robots_are_of_every_kind_and_where_the_matrices_of_their_files_say():
@@ -35,6 +35,8 @@ def test_the_robots_are_of_every_kind_and_where_the_matrices_of_their_files_say(
         rng = np.random.default_rng([7, number])
         text = random_tree(rng)
         robot = load_quietly(text)
+        if len(robot.mimics) < text.count("<mimic"):
+            continue  # a follower is left free, with a warning
         kinds.update(joint.kind for joint in robot.joints)
         kinds["followers"] += len(robot.mimics)
         placements = {j.name: random_placement(rng, j.kind) for j in robot.joints if not j.has_one_axis}
@@ -73,7 +75,7 @@ class TestTheCheckRejects:
     def test_a_spoilt_answer(self, spoil, words, asked):
         question, solution, q0 = asked
         outcome = solution._came_to._replace(**spoil(solution._came_to))
-        with pytest.raises(Fault, match=words):
+        with pytest.raises(FaultyAnswerError, match=words):
             check(question, pinik.Solution(outcome, solution._question), q0)
 
 

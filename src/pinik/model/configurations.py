@@ -17,8 +17,8 @@ __all__ = ["checked", "checked_many", "random_configuration"]
 
 Array = NDArray[np.float64]
 
-# How far the squared length of a quaternion or (cos, sin) pair may be from 1: up to rounding it is left as it is, so that
-# an answer that is used as a start keeps its bits, and up to the largest error it is scaled.
+# How far the squared length of a quaternion or (cos, sin) pair may be from 1: up to rounding it is left as it is, so
+# that an answer that is used as a start keeps its bits, and up to the largest error it is scaled.
 UNIT_ROUNDING = 1e-14
 LARGEST_UNIT_ERROR = 1e-3
 

@@ -40,8 +40,8 @@ class Target:
         rotation: The orientation wanted (3, 3); None where it is free or given by `axis`.
         axis: A unit vector (3,) fixed in the frame (in `tool` where one is given).
         direction: The unit vector (3,) that `axis` should point along.
-        at: The point (3,) [m] that `axis` should point at. Within 1e-6 m of it there is no direction to it, and the axis
-            counts as pointing at it.
+        at: The point (3,) [m] that `axis` should point at. Within 1e-6 m of it there is no direction to it, and the
+            axis counts as pointing at it.
         relative_to: The frame, moving or not, in which all of the above is expressed; the world when None.
         weight: A factor on this target's residual in the step; it never changes the verdict.
         tolerance: The errors of this target that count as reached; those of the call when None.
