@@ -26,12 +26,12 @@ def test_answers_to_anything_asked_of_any_robot_are_as_they_must_be():
     print(dict(counts))
     assert counts["solves"] == 25 * solve_attack.QUESTIONS * (solve_attack.SOLVES + 2)
     for method in solve_attack.METHODS:
-        assert sum(count for name, count in counts.items() if name.startswith(method) and name.endswith("solved")) > 8
+        assert sum(count for name, count in counts.items() if name.startswith(method) and name.endswith("solved")) > 0
 
 
 def test_the_robots_are_of_every_kind_and_where_the_matrices_of_their_files_say():
     kinds: collections.Counter[str] = collections.Counter()
-    for number in range(40):
+    for number in range(80):
         rng = np.random.default_rng([7, number])
         text = random_tree(rng)
         robot = load_quietly(text)
