@@ -52,7 +52,7 @@ CASES = {
     "a bad colour": (robot('<material name="m"><color rgba="red"/></material>', link("a")), "its colour is left out"),
     "a missing mesh": (
         robot(link("a", '<visual><geometry><mesh filename="m.stl"/></geometry></visual>')),
-        "1 mesh was not found (m.stl)",
+        "mesh 'm.stl': not found: there is no such file",
     ),
     "a warning of the model": (
         robot(
