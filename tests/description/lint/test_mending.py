@@ -133,3 +133,9 @@ def test_many_mends_are_made_at_once():
     joints = [joint(f"j{i}", "l0", f"l{i}", '<origin xzy="0 0 1"/>', kind="fixed", limit="") for i in range(1, 2000)]
     result = mend(robot(*links, *joints))
     assert (len(result.done), result.left, b"xzy" in result.document) == (1999, (), False)
+
+
+def test_slips_that_are_the_same_word_for_word_are_all_mended():
+    shape = '<visual><orign xyz="0 0 1"/><geometry><sphere radius="1"/></geometry></visual>'
+    result = mend(robot(link("a", *[shape] * 30)))
+    assert (len(result.done), result.left, b"orign" in result.document) == (30, (), False)
