@@ -16,11 +16,14 @@ import pinik
 ROOT = Path(__file__).parents[2]
 DOCUMENT = ROOT / "docs" / "json.md"
 JUMP = ROOT / "examples" / "jump.csv"
+SLIP = """<robot name="r"><link name="a"/><link name="b"/><joint name="j" type="revolute"><parent link="a"/>
+<child link="b"/><origin xzy="1 2 3"/><limit lower="-90" upper="90" effort="1" velocity="1"/></joint></robot>"""
 PLACEHOLDERS = {
     "angles": "JOINT",
     "joint_placements": "JOINT",
     "mimics": "JOINT",
     "changes": "JOINT",
+    "counts": "CODE",
     "limits": "JOINT",
     "answers": "NAME",
     "parameters": "NAME",
@@ -43,7 +46,11 @@ RUNS = {
     "fk": [("fk", "panda", "--root", "free_flyer", "--json")],
     "jacobian": [("jacobian", "panda", "--frame", "panda_hand", "--root", "free_flyer", "--json")],
     "info": [("info", "panda", "--root", "free_flyer", "--json")],
-    "check": [("check", "ur3_empty", "--json"), ("check", "two_link", "--json")],
+    "check": [
+        ("check", "ur3_empty", "--json"),
+        ("check", "two_link", "--json"),
+        ("check", "{tmp}/slip.urdf", "--fix", "{tmp}/mended.urdf", "--json"),
+    ],
     "robots": [("robots", "--json")],
     "compare": [("compare", "--steps", "1", "--json")],
     "accuracy": [("accuracy", "--problems", "1", "--digits", "1", "--json")],
@@ -71,10 +78,12 @@ def fields(value: dict[str, Any], prefix: str = "", names: str = "") -> Iterator
 
 
 @pytest.mark.parametrize("command", RUNS)
-def test_every_field_is_documented_and_every_documented_field_exists(run, command):
+def test_every_field_is_documented_and_every_documented_field_exists(run, command, tmp_path):
+    (tmp_path / "slip.urdf").write_text(SLIP)
     found = set()
     for arguments in RUNS[command]:
-        answer = run(*arguments, stdin=json.dumps(TARGETS)).json
+        words = [str(argument).replace("{tmp}", str(tmp_path)) for argument in arguments]
+        answer = run(*words, stdin=json.dumps(TARGETS)).json
         assert answer["schema"] == 1
         found |= set(fields(answer))
     assert found == documented(f"`pinik {command}`")

@@ -113,19 +113,19 @@ def _unknown_attribute(place: _Place, attribute: str) -> Iterator[Flaw]:
         yield _attribute_of_child(place, attribute, child)
     elif meant is None and (parents := [child for child in sorted(word.children) if _holds(child, attribute)]):
         cause = f"{held} is unknown to URDF and ignored; URDF has {attribute!r} in <{parents[0]}>"
-        yield _flaw(place, cause, "misplaced-attribute", mend=f"Write it as <{parents[0]} {attribute}=…>.")
+        yield _flaw(place, cause, code="misplaced-attribute", mend=f"Write it as <{parents[0]} {attribute}=…>.")
     elif meant is not None:
         cause = f"{held} is unknown to URDF and ignored (near: {meant!r}){_loss(place, meant)}"
         edits: tuple[Edit, ...] = ()
         if place.document is not None and _is_sure(attribute, word.attributes) and meant not in element.attributes:
             edits = renamed_attribute(place.document, element, attribute, meant)
         yield _flaw(
-            place, cause, "unknown-attribute", mend=f"Write {meant}= instead of {_short(attribute)}=.", edits=edits
+            place, cause, code="unknown-attribute", mend=f"Write {meant}= instead of {_short(attribute)}=.", edits=edits
         )
     elif not word.is_open:
         known = ", ".join(sorted(word.attributes)) or "no attributes"
         cause = f"{held} is unknown to URDF and ignored"
-        yield _flaw(place, cause, "unknown-name", mend=f"Take it out; <{tag}> has {known}.")
+        yield _flaw(place, cause, code="unknown-name", mend=f"Take it out; <{tag}> has {known}.")
 
 
 def _attribute_of_child(place: _Place, attribute: str, child: str) -> Flaw:
@@ -140,7 +140,7 @@ def _attribute_of_child(place: _Place, attribute: str, child: str) -> Flaw:
     text = element.attributes[attribute]
     example = f'<{child} {main}="{_short(text)}"/>' if main else written
     mend = f"Write {example} inside <{element.tag}>."
-    return _flaw(place, cause, "misplaced-attribute", mend=mend, edits=edits)
+    return _flaw(place, cause, code="misplaced-attribute", mend=mend, edits=edits)
 
 
 def _unknown_child(place: _Place, child: Element) -> Iterator[Flaw]:
@@ -153,25 +153,27 @@ def _unknown_child(place: _Place, child: Element) -> Iterator[Flaw]:
         is_free = meant in _MANY or meant not in place.given
         if place.document is not None and _is_sure(child.tag, word.children) and is_free:
             edits = renamed_element(place.document, child, meant)
-        yield _flaw(place, cause, "unknown-element", child, mend=f"Write <{meant}> instead of <{tag}>.", edits=edits)
+        yield _flaw(
+            place, cause, child, code="unknown-element", mend=f"Write <{meant}> instead of <{tag}>.", edits=edits
+        )
     elif child.tag in URDF:
         homes = ", ".join(f"<{name}>" for name, known in URDF.items() if child.tag in known.children)
         cause = f"<{tag}> has no place in <{element.tag}> and is ignored with all that it holds"
         yield _flaw(
             place,
             cause,
-            "misplaced-element",
             child,
+            code="misplaced-element",
             mend=f"URDF has <{tag}> in {homes}; move it there, or take it out.",
         )
     elif not word.is_open:
         known = ", ".join(f"<{name}>" for name in sorted(word.children)) or "no elements"
         cause = f"<{tag}> in <{element.tag}> is unknown to URDF and ignored"
-        yield _flaw(place, cause, "unknown-name", child, mend=f"Take it out; <{element.tag}> holds {known}.")
+        yield _flaw(place, cause, child, code="unknown-name", mend=f"Take it out; <{element.tag}> holds {known}.")
 
 
 def _flaw(
-    place: _Place, cause: str, code: str, child: Element | None = None, *, mend: str, edits: tuple[Edit, ...] = ()
+    place: _Place, cause: str, child: Element | None = None, *, code: str, mend: str, edits: tuple[Edit, ...] = ()
 ) -> Flaw:
     element = place.element if child is None else child
     owner = place.owner

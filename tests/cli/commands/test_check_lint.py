@@ -192,20 +192,22 @@ class TestAttackers:
 
     def test_thousands_of_missing_meshes(self, run, write):
         meshes = "".join(
-            f'<visual><geometry><mesh filename="package://nope/m{i}.stl"/></geometry></visual>' for i in range(20_000)
+            f'<visual><geometry><mesh filename="package://nope/m{i}.stl"/></geometry></visual>' for i in range(5000)
         )
         found = self.checked(run, write(robot(link("a", meshes))))
-        assert found["counts"] == {"missing-mesh": 20_000}
+        assert found["counts"] == {"missing-mesh": 5000}
         assert len(found["missing_meshes"]) == len(found["flaws"]) == 1000
 
     def test_thousands_of_boxes(self, run, write):
-        boxes = "".join(f'<visual><geometry><box size="1 1 {1 + i}"/></geometry></visual>' for i in range(20_000))
-        assert self.checked(run, write(robot(link("a", boxes))))["shapes"] == 20_000
+        boxes = "".join(f'<visual><geometry><box size="1 1 {1 + i}"/></geometry></visual>' for i in range(5000))
+        assert self.checked(run, write(robot(link("a", boxes))))["shapes"] == 5000
 
     def test_thousands_of_slips(self, run, write):
-        slips = "".join(f'<visual><orign xyz="{i} 0 0"/></visual><Link{i} a="b"/>' for i in range(20_000))
+        slips = "".join(
+            f'<visual><orign xyz="{i} 0 0"/></visual><Link{i} a="b"/><visual><Origin/></visual>' for i in range(5000)
+        )
         found = self.checked(run, write(robot(link("a", slips))))
-        assert found["counts"]["unknown-element"] >= 20_000
+        assert found["counts"]["unknown-element"] == 10_000
 
     def test_names_of_megabytes(self, run, write):
         name = "n" * 1_000_000

@@ -5,9 +5,12 @@ from __future__ import annotations
 import numpy as np
 import pinocchio
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
 import pinik
 from pinik.description.lint.mending import Mending, mended
+from pinik.description.reader import read
 from pinik.description.xml import DocumentError
 from urdf_texts import joint, link, robot
 
@@ -133,3 +136,52 @@ def test_many_mends_are_made_at_once():
     joints = [joint(f"j{i}", "l0", f"l{i}", '<origin xzy="0 0 1"/>', kind="fixed", limit="") for i in range(1, 2000)]
     result = mend(robot(*links, *joints))
     assert (len(result.done), result.left, b"xzy" in result.document) == (1999, (), False)
+
+
+def test_slips_that_are_the_same_word_for_word_are_all_mended():
+    shape = '<visual><orign xyz="0 0 1"/><geometry><sphere radius="1"/></geometry></visual>'
+    result = mend(robot(link("a", *[shape] * 30)))
+    assert (len(result.done), result.left, b"orign" in result.document) == (30, (), False)
+
+
+SCRAPS = [
+    b"<",
+    b">",
+    b'"',
+    b"'",
+    b"&amp;",
+    b"link",
+    b"Link",
+    b"name",
+    b' axis="1 2 3"',
+    b"<origin/>",
+    b"</joint>",
+    b"nan",
+]
+SCRAPS += [
+    b"<Joint>",
+    b"1e400",
+    b"\0",
+    b"\xe9",
+    b"<!--",
+    b"-->",
+    b"/>",
+    b"=",
+    b'<?xml version="1.0" encoding="utf-16"?>',
+]
+
+
+@given(st.lists(st.tuples(st.integers(0, 400), st.integers(0, 8), st.sampled_from(SCRAPS)), min_size=1, max_size=4))
+def test_whatever_became_of_a_document_its_mending_ends_in_words(changes):
+    red = '<material name="red"><color rgba="1 0 0 1"/></material>'
+    shape = '<visual><geometry><sphere radius="1"/></geometry><material name="Red"/></visual>'
+    slip = joint("j", "a", "b", '<origin xzy="1 2 3"/><mimic joint="j" multiplyer="2"/>')
+    document = robot(red, link("a", shape), link("b"), slip).encode()
+    for start, length, scrap in changes:
+        document = document[:start] + scrap + document[start + length :]
+    try:
+        result = mended(document)
+    except DocumentError:
+        return
+    if not result.fault:
+        read(result.document.decode())

@@ -50,7 +50,7 @@ def check(
     Example:
 
       pinik check lion
-      pinik check robot.urdf --fix mended.urdf
+      pinik check lion --strict
     """
     check_folders(package_dir)
     if fix is not None:

@@ -147,7 +147,7 @@ def inspect(
     return Inspection(
         file=str(located.source),
         robot=robot.name,
-        flaws=_in_order([*robot.warnings, *found, *about_shapes, *collisions]),
+        flaws=_in_order(robot.warnings, [*found, *about_shapes, *collisions]),
         links=len(description.links),
         joints=len(robot.joints),
         meshes=len(description.meshes),
@@ -166,10 +166,12 @@ def _document(source: str) -> bytes | None:
     return None if is_xacro(Path(source), content) else content
 
 
-def _in_order(flaws: Iterable[str]) -> tuple[Flaw, ...]:
-    """The flaws by line, each once; the last one of several that say the same."""
-    each = {str(flaw): flaw if isinstance(flaw, Flaw) else Flaw("<robot>", flaw, code="other") for flaw in flaws}
-    return tuple(sorted(each.values(), key=lambda flaw: flaw.line or 0))
+def _in_order(warnings: Iterable[str], found: Sequence[Flaw]) -> tuple[Flaw, ...]:
+    """All flaws by line; warnings of the robot that were found here too, with more about them, are left out."""
+    said = set(map(str, found))
+    others = [words for words in dict.fromkeys(warnings) if str(words) not in said]
+    flaws = [words if isinstance(words, Flaw) else Flaw("<robot>", words, code="other") for words in others]
+    return tuple(sorted([*flaws, *found], key=lambda flaw: flaw.line or 0))
 
 
 def _listed(texts: Iterable[str]) -> list[str]:

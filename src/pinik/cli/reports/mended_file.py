@@ -18,7 +18,7 @@ from ..inputs.files import check_file, write_file
 from ..terminal import output
 from ..terminal.exits import CommandError
 from ..terminal.units import counted
-from .flaw_json import MOST_LISTED, flaw_fields, shortened
+from .flaw_json import MOST_LISTED, shortened
 from .inspection import Inspection
 
 __all__ = ["MendedFile", "check_target", "write_mended"]
@@ -51,8 +51,8 @@ class MendedFile:
             "file": str(self.file),
             "written": not self.fault,
             "fault": shortened(self.fault) or None,
-            "mended": [flaw_fields(flaw) for flaw in done[:MOST_LISTED]],
-            "left": [flaw_fields(one.flaw) | {"because": shortened(one.why)} for one in left[:MOST_LISTED]],
+            "mended": [_fields(flaw) for flaw in done[:MOST_LISTED]],
+            "left": [_fields(one.flaw) | {"because": shortened(one.why)} for one in left[:MOST_LISTED]],
         }
 
     def emit(self) -> None:
@@ -107,6 +107,10 @@ def write_mended(found: Inspection, target: Path) -> MendedFile:
 def _has_relative_addresses(document: bytes) -> bool:
     addresses = (element.attributes.get("filename", "") for element in parse(document).walk() if element.tag == "mesh")
     return any(address and "://" not in address and not address.startswith("/") for address in addresses)
+
+
+def _fields(flaw: Flaw) -> dict[str, Any]:
+    return {"code": flaw.code, "element": shortened(flaw.element), "line": flaw.line}
 
 
 def _by_code(flaws: Sequence[Flaw]) -> dict[str, list[Flaw]]:

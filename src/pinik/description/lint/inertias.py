@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
+from typing import NamedTuple
 
 import numpy as np
 
@@ -30,18 +31,32 @@ def inertias(robot: Element) -> Iterator[Flaw]:
                 continue
             fault = _fault(mass, moments, reach)
             if fault is not None:
-                code, cause, common, mend = fault
                 line = inertial.named("inertia")[0].line
-                yield Flaw(named(link), cause, code=code, line=line, common=common, why=_WHY, mend=mend)
+                yield Flaw(
+                    named(link),
+                    fault.cause,
+                    code=fault.code,
+                    line=line,
+                    common=fault.common or fault.cause,
+                    why=_WHY,
+                    mend=fault.mend,
+                )
 
 
-def _fault(mass: float, entries: list[float], reach: float) -> tuple[str, str, str, str] | None:
-    """Code, cause, common cause and mend of what is wrong with a mass [kg] and an inertia [kg m²]."""
+class _Fault(NamedTuple):
+    code: str
+    cause: str
+    mend: str
+    common: str = ""
+
+
+def _fault(mass: float, entries: list[float], reach: float) -> _Fault | None:
+    """What is wrong with a mass [kg] and an inertia [kg m²]; `reach` is the length of all links together [m]."""
     if mass == 0.0:
         if not any(entries):
             return None
         cause = "it has an inertia, but its mass is 0"
-        return "massless-inertia", cause, cause, "Give the mass, or remove <inertial>."
+        return _Fault(code="massless-inertia", cause=cause, mend="Give the mass, or remove <inertial>.")
     ixx, ixy, ixz, iyy, iyz, izz = entries
     with np.errstate(all="ignore"):
         least, middle, most = np.linalg.eigvalsh([[ixx, ixy, ixz], [ixy, iyy, iyz], [ixz, iyz, izz]]).tolist()
@@ -49,26 +64,27 @@ def _fault(mass: float, entries: list[float], reach: float) -> tuple[str, str, s
         return None
     if not any(entries):
         cause = "its inertia is 0, though its mass is not"
-        return "inertia-not-positive", cause, cause, "Give the inertia about the centre of mass."
+        return _Fault(code="inertia-not-positive", cause=cause, mend="Give the inertia about the centre of mass.")
     shown = f"{least:.3g}, {middle:.3g} and {most:.3g} kg m²"
     compute = "Compute the inertia about the centre of mass again."
     if least <= 0.0:
         common = "its inertia is not positive definite"
-        return "inertia-not-positive", f"{common}: its principal moments are {shown}", common, compute
+        cause = f"{common}: its principal moments are {shown}"
+        return _Fault(code="inertia-not-positive", cause=cause, mend=compute, common=common)
     if most > (least + middle) * (1.0 + _ROUNDING):
         common = "its inertia is that of no body, as one principal moment is larger than the sum of the others"
-        return "inertia-triangle", f"{common}: {shown}", common, compute
+        return _Fault(code="inertia-triangle", cause=f"{common}: {shown}", mend=compute, common=common)
     radius = math.sqrt((least + middle + most) / (2.0 * mass))  # of gyration [m]
     # The solid ball of the same mass and the same sum of moments.
     density = mass / (4.0 / 3.0 * math.pi * ((least + middle + most) / (1.2 * mass)) ** 1.5)
     if density > _DENSEST:
         common = f"its mass and inertia are those of a body of over {_DENSEST:g} kg/m³; osmium has 22,590"
         cause = f"its mass of {mass:g} kg and its inertia are those of a body of {density:.2g} kg/m³; osmium has 22,590"
-        return "density", cause, common, "Check the units: kg and kg m²."
+        return _Fault(code="density", cause=cause, mend="Check the units: kg and kg m².", common=common)
     if reach and radius > _FARTHER * reach:
         common = f"its mass and inertia are those of a body over {_FARTHER:g} times as large as the whole robot"
         cause = f"its mass of {mass:g} kg and its inertia are those of a body of about {2.0 * radius:.2g} m"
-        return "density", cause, common, "Check the units: kg and kg m²."
+        return _Fault(code="density", cause=cause, mend="Check the units: kg and kg m².", common=common)
     return None
 
 

@@ -109,9 +109,10 @@ class _Workshop:
 
     def _flaws(self) -> list[Flaw]:
         """The flaws that the reader and the lint find; those of the lint have edits."""
+        found = lint(self._content, self._description)
+        said = set(map(str, found))
         read_too = () if self._description is None else self._description.warnings
-        found = [*read_too, *lint(self._content, self._description)]
-        return list({str(flaw): flaw for flaw in found if isinstance(flaw, Flaw)}.values())
+        return [*(flaw for flaw in read_too if isinstance(flaw, Flaw) and str(flaw) not in said), *found]
 
     def _choice(self) -> list[Flaw]:
         """The flaws with edits that do not touch each other; the others wait for the next round."""
