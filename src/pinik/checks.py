@@ -50,6 +50,8 @@ Array = NDArray[np.float64]
 
 def as_finite_number(value: object, what: str) -> float:
     """`value` as a float; InputError unless it is one finite number."""
+    if type(value) is float and math.isfinite(value):
+        return value
     number = math.nan
     with contextlib.suppress(TypeError, ValueError, OverflowError):
         value = as_plain(value, what)
@@ -93,6 +95,8 @@ def as_plain(value: Any, what: str) -> Any:
     Raises:
         InputError: A masked entry, or a memoryview of bytes or of no numbers.
     """
+    if type(value) is np.ndarray and value.dtype.kind != "O":
+        return value
     if isinstance(value, np.ma.MaskedArray):
         if np.ma.is_masked(value) or value is np.ma.masked:
             raise InputError(f"must have no masked entries; got {value!r}", argument=what)
@@ -166,6 +170,8 @@ def _holds_no_number(values: object) -> bool:
 
 def _as_float64(numbers: NDArray[Any]) -> Array:
     """A new array; wider numbers beyond its range become infinite, which the checks of finiteness report."""
+    if numbers.dtype.itemsize <= 8 and numbers.dtype.kind != "O":
+        return np.array(numbers, dtype=np.float64, order="C")
     with np.errstate(over="ignore"):
         return np.array(numbers, dtype=np.float64, order="C")
 

@@ -127,8 +127,8 @@ def _read_places(places: Any, indices: NDArray[np.int64] | None = None) -> tuple
     if numbers.shape == (0,):
         return np.zeros((0, 3, 3)), np.zeros((0, 3))
     if numbers.ndim != 3:
-        return None, as_points(places, "places")
-    matrices = as_many(places, (4, 4), "places")
+        return None, as_points(numbers, "places")
+    matrices = as_many(numbers, (4, 4), "places")
     for k in np.flatnonzero((np.abs(matrices[:, 3] - (0.0, 0.0, 0.0, 1.0)) > 1e-9).any(axis=1))[:1]:
         as_se3(matrices[k], f"places[{k}]")
     return as_rotations(matrices[:, :3, :3], "places", indices), as_points(matrices[:, :3, 3], "places")
