@@ -1,4 +1,4 @@
-"""A robot as Pinocchio alone reads its file, with every joint free; limits and mimic joints come from the XML."""
+"""A robot as Pinocchio alone reads its file, with every joint free; limits, mimics and planes come from the XML."""
 
 from __future__ import annotations
 
@@ -16,6 +16,7 @@ Array = NDArray[np.float64]
 Entries = tuple[str, slice, bool]
 
 ROUNDING = 1e-12  # relative; for a follower's limit converted to its leader's
+BACK = " and back"  # ends the name of the joint that turns back what a planar joint carries
 ROOTS = {"free_flyer": pinocchio.JointModelFreeFlyer, "planar": pinocchio.JointModelPlanar}
 
 
@@ -43,6 +44,8 @@ class PlainRobot:
         for part in tree.findall("link"):
             for shape in [*part.findall("visual"), *part.findall("collision")]:
                 part.remove(shape)
+        for tag in [tag for tag in tree.findall("joint") if tag.attrib["type"] == "planar"]:
+            _turn_plane(tree, tag)
         words = (ElementTree.tostring(tree, encoding="unicode"), *([ROOTS[root]()] if root in ROOTS else []))
         self.model = pinocchio.buildModelFromXML(*words)
         self.joints = entries_of(self.model)
@@ -73,9 +76,11 @@ class PlainRobot:
 
     def _placement(self, data: pinocchio.Data, frame: str) -> Array:
         """The placement of the link of that name, or else of the joint."""
+        link = self.model.existFrame(frame, pinocchio.BODY)
+        if not link and self.model.existFrame(frame + BACK):
+            frame += BACK
         if not self.model.existFrame(frame):
             raise KeyError(frame)
-        link = self.model.existFrame(frame, pinocchio.BODY)
         number = self.model.getFrameId(frame, pinocchio.BODY) if link else self.model.getFrameId(frame)
         return np.array(pinocchio.updateFramePlacement(self.model, data, number).homogeneous)
 
@@ -143,6 +148,50 @@ class PlainRobot:
             name, its_multiplier, its_offset = mimics
             multiplier, offset = multiplier * its_multiplier, multiplier * its_offset + offset
         return name, multiplier, offset
+
+
+def _turn_plane(tree: ElementTree.Element, joint: ElementTree.Element) -> None:
+    """Write a planar joint with its axis as Pinocchio, which knows no other axis than z, needs it: between two turns.
+
+    By docs/loading.md the turn is the shortest one from z to the axis, or, if the axis points to negative z, the
+    shortest one from -z after a half turn about x.
+    """
+    name, child, axis, origin = joint.attrib["name"], joint.find("child"), joint.find("axis"), joint.find("origin")
+    normal = np.array([1.0, 0, 0] if axis is None else [float(word) for word in axis.attrib["xyz"].split()])
+    normal /= np.linalg.norm(normal)
+    half = np.diag([1.0, -1, -1]) if normal[2] < 0 else np.eye(3)
+    turn = pinocchio.Quaternion.FromTwoVectors(half @ [0, 0, 1], normal).toRotationMatrix() @ half
+    given = {} if origin is None else origin.attrib
+    place = [np.array([float(word) for word in given.get(key, "0 0 0").split()]) for key in ("xyz", "rpy")]
+    for number in (1, 2):
+        ElementTree.SubElement(tree, "link", name=f"{name} turned {number}")
+    parent = joint.find("parent")
+    _add_fixed(
+        tree,
+        name + " there",
+        parent.attrib["link"],
+        f"{name} turned 1",
+        place[0],
+        pinocchio.rpy.rpyToMatrix(place[1]) @ turn,
+    )
+    _add_fixed(tree, name + BACK, f"{name} turned 2", child.attrib["link"], np.zeros(3), turn.T)
+    parent.set("link", f"{name} turned 1")
+    child.set("link", f"{name} turned 2")
+    for element in (origin, axis):
+        if element is not None:
+            joint.remove(element)
+
+
+def _add_fixed(tree: ElementTree.Element, name: str, parent: str, child: str, xyz: Array, turn: Array) -> None:
+    joint = ElementTree.SubElement(tree, "joint", name=name, type="fixed")
+    rpy = pinocchio.rpy.matrixToRpy(turn)
+    ElementTree.SubElement(joint, "origin", xyz=_numbers(xyz), rpy=_numbers(rpy))
+    ElementTree.SubElement(joint, "parent", link=parent)
+    ElementTree.SubElement(joint, "child", link=child)
+
+
+def _numbers(values: Array) -> str:
+    return " ".join(repr(float(value)) for value in values)
 
 
 def _tag(tag: ElementTree.Element) -> Tag:

@@ -10,7 +10,7 @@ import pytest
 
 import pinik
 import solve_attack
-from by_hand import link_placements, random_placement
+from by_hand import joint_axes, link_placements, random_placement
 from pinik import Status
 from plain_certificate import plain_errors
 from random_trees import random_tree
@@ -39,7 +39,9 @@ def test_the_robots_are_of_every_kind_and_where_the_matrices_of_their_files_say(
             continue  # a follower is left free, with a warning
         kinds.update(joint.kind for joint in robot.joints)
         kinds["followers"] += len(robot.mimics)
-        placements = {j.name: random_placement(rng, j.kind) for j in robot.joints if not j.has_one_axis}
+        axes = joint_axes(text)
+        moved = [j for j in robot.joints if not j.has_one_axis]
+        placements = {j.name: random_placement(rng, j.kind, axes[j.name]) for j in moved}
         q = robot.configuration(robot.angles(robot.random(rng)), placements)
         expected = link_placements(text, robot.angles(q), placements)
         for link, placement in expected.items():
