@@ -380,3 +380,54 @@ def test_a_hinge_whose_axis_runs_through_the_effector_stays(engine):
         wanted = robot.placement("tip", robot.random(rng)).translation
         s = robot.solve("tip", position=wanted, method="ccd", q0=start, restarts=0, max_iterations=3, engine=engine)
         assert s.angles["spin"] == start[robot.joint_names.index("spin")]
+
+
+def swept(text, targets, start, **parameters):
+    """The angles after one sweep from `start`, inside the limits."""
+    robot = load_quietly(text)
+    q, _ = CCD(**parameters).sweep(robot.configuration(start), Kinematics(robot, targets), Limits.of(robot), NEVER)
+    return robot.angles(q)
+
+
+def test_a_slide_that_two_targets_pull_goes_where_the_squares_of_their_weighted_distances_are_least():
+    ends = [("left", -1.0), ("right", 1.0)]
+    text = robot_text(
+        *(link(name) for name in ("base", "hand", "left", "right")),
+        joint("slide", "base", "hand", '<axis xyz="1 0 0"/>', kind="prismatic", limit=limited(-5, 5)),
+        *(joint(f"to_{n}", "hand", n, f'<origin xyz="{x} 0 0"/>', kind="fixed", limit="") for n, x in ends),
+    )
+    wanted = [Target("left", [-0.9, 0.0, 0.0], weight=1.0), Target("right", [1.7, 0.0, 0.0], weight=3.0)]
+    places = np.linspace(-5.0, 5.0, 100_001)
+    squares = (1.0 * (places - 1.0 + 0.9)) ** 2 + (3.0 * (places + 1.0 - 1.7)) ** 2
+    assert swept(text, wanted, {})["slide"] == pytest.approx(places[squares.argmin()], abs=1e-4)
+
+
+def test_a_slide_that_carries_the_reference_brings_the_goal_to_the_effector():
+    text = robot_text(
+        *(link(name) for name in ("base", "table", "tip")),
+        joint("slide", "base", "table", '<axis xyz="1 0 0"/>', kind="prismatic", limit=limited(-5, 5)),
+        joint("end", "base", "tip", '<origin xyz="0.5 0 0"/>', kind="fixed", limit=""),
+    )
+    target = Target("tip", [0.2, 0.0, 0.0], relative_to="table")
+    assert swept(text, [target], {})["slide"] == pytest.approx(0.3, abs=1e-12)
+
+
+LED = (
+    *(link(name) for name in ("base", "upper", "lower", "tip")),
+    joint("z_follow", "upper", "lower", '<origin xyz="0.5 0 0"/><axis xyz="0 0 1"/>',
+          '<mimic joint="lead" multiplier="0.5"/>', limit=limited(-3, 3)),
+    joint("z_end", "lower", "tip", '<origin xyz="0.5 0 0"/>', kind="fixed", limit=""),
+)  # fmt: skip
+
+
+@pytest.mark.parametrize("side", [1.0, -1.0])
+def test_a_leader_turns_to_the_side_of_its_target_and_stops_at_its_limit_and_at_max_step(side):
+    text = robot_text(*LED, joint("lead", "base", "upper", '<axis xyz="0 0 1"/>', limit=limited(-0.2, 0.2)))
+    robot = load_quietly(text.replace("0.2", "1.5"))
+    target = Target("tip", robot.placement("tip", robot.configuration({"lead": 1.1 * side})).translation)
+    assert swept(text, [target], {})["lead"] == pytest.approx(0.2 * side, abs=1e-12)
+    assert swept(text, [target], {}, max_step=0.15)["lead"] == pytest.approx(0.15 * side, abs=1e-12)
+
+
+def test_the_joints_that_are_held_are_those_of_stiffness_zero():
+    assert CCD(stiffness={"a": 0.0, "b": 1.0, "c": 0.5, "d": 0.0}).held == ("a", "d")
