@@ -23,7 +23,7 @@ from plain_robot import Entries, PlainRobot, entries_of
 Array = NDArray[np.float64]
 
 TOLERANCE = (1e-4, 1e-3)  # [m], [rad]: pinik's default
-ON_TOP = 1e-9  # [m]: a frame this near to the point that it should look at looks at it
+ON_TOP = 1e-6  # [m]: nearer to the point that it should look at, a frame looks at it (docs/targets.md)
 AXES = {"x": (1, 0, 0), "y": (0, 1, 0), "z": (0, 0, 1), "-x": (-1, 0, 0), "-y": (0, -1, 0), "-z": (0, 0, -1)}
 
 

@@ -80,12 +80,9 @@ class PlainRobot:
         return np.array(pinocchio.updateFramePlacement(self.model, data, number).homogeneous)
 
     def angle(self, name: str, angles: Mapping[str, float]) -> float:
-        """A joint's own angle [rad or m], or else the one that its leader gives it, or else 0."""
-        mimics = self.tags[name].mimics
-        if name in angles or mimics is None:
-            return angles.get(name, 0.0)
-        leader, multiplier, offset = mimics
-        return multiplier * self.angle(leader, angles) + offset
+        """A joint's own angle [rad or m], or else the one that the file's mimic joints give it, or else 0."""
+        source, multiplier, offset = self._source(name, frozenset(angles))
+        return multiplier * angles.get(source, 0.0) + offset
 
     def limits(self, free: Iterable[str]) -> dict[str, tuple[float, float]]:
         """The limits [rad or m] of joints that do not follow others.
@@ -120,14 +117,32 @@ class PlainRobot:
 
     def _share(self, follower: str, leader: str, free: frozenset[str]) -> tuple[float, float]:
         """(multiplier, offset) of a follower, direct or indirect, with respect to a leader; (0, 0) for other joints."""
-        mimics = self.tags[follower].mimics
-        if mimics is None or follower in free or follower == leader:
-            return 0.0, 0.0
-        nearest, multiplier, offset = mimics
-        if nearest == leader:
-            return multiplier, offset
-        above = self._share(nearest, leader, free)
-        return (0.0, 0.0) if above[0] == 0.0 else (multiplier * above[0], multiplier * above[1] + offset)
+        source, multiplier, offset = self._source(follower, free)
+        return (multiplier, offset) if follower != leader == source else (0.0, 0.0)
+
+    def _source(self, name: str, free: frozenset[str]) -> tuple[str, float, float]:
+        """(joint, multiplier, offset): the free joint that gives a joint its angle, and how; or a joint at 0.
+
+        It is the joint itself, the nearest of its leaders, or else a joint that follows the same leader: joints that
+        move together may change roles.
+        """
+        top, multiplier, offset = self._led_by(name, free)
+        if top in free:
+            return top, multiplier, offset
+        for other in sorted(free & self.tags.keys()):
+            leader, its_multiplier, its_offset = self._led_by(other, frozenset())
+            if leader == top and its_multiplier != 0.0:
+                share = multiplier / its_multiplier
+                return other, share, offset - share * its_offset
+        return top, multiplier, offset
+
+    def _led_by(self, name: str, free: frozenset[str]) -> tuple[str, float, float]:
+        """(leader, multiplier, offset): up to the first leader that is free, or that follows no other joint."""
+        multiplier, offset = 1.0, 0.0
+        while name not in free and (mimics := self.tags[name].mimics) is not None:
+            name, its_multiplier, its_offset = mimics
+            multiplier, offset = multiplier * its_multiplier, multiplier * its_offset + offset
+        return name, multiplier, offset
 
 
 def _tag(tag: ElementTree.Element) -> Tag:

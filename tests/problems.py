@@ -140,7 +140,7 @@ def parameters_of(draw: st.DrawFn, method: str, robot: pinik.Robot) -> dict[str,
             "factorization": st.sampled_from(["ldlt", "svd"]),
         },
         "pinv": {
-            "cutoff": st.just(0.0) | powers(1e-5, 0.5),
+            "cutoff": st.just(0.0) | powers(1e-13, 0.5),
             "rest_posture": several.flatmap(lambda names: st.fixed_dictionaries({n: st.floats(-3, 3) for n in names})),
             "rest_gain": st.floats(0.0, 1.0),
         },

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import struct
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Collection, Iterable
 from dataclasses import dataclass
 from typing import Any
 
@@ -74,6 +74,9 @@ class Tab:
 
     def send(self, message: str | bytes) -> None:
         self.sent.append(message)
+
+    def withdraw(self, messages: Collection[bytes]) -> None:
+        """Whatever is sent here has arrived."""
 
     @property
     def kinds(self) -> list[str]:

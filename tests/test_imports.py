@@ -23,6 +23,9 @@ SOURCE = ROOT / "src" / "pinik"
 ONLY_THERE = {
     "yourdfpy": {"shapes.second_opinion"},
     "trimesh": {"shapes.meshes", "shapes.neighbours", "shapes.triangles"},
+    "robot_descriptions": {"description.downloads"},
+    "xacro": {"description.xacro_process"},
+    "xacrodoc": {"description.xacro_process"},
     "scipy": set(),
     "PIL": {"picture.picture"},
     "meshcat": set(),  # of meshcat the page takes the JavaScript; the Python package brings IPython and ZeroMQ

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 pinocchio_version: str = "4.1.0"
 
-abi: str = "f70131c835fc67c7"
+abi: str = "21af30ab1aed2c4a"
 
 class JointKind(enum.Enum):
     revolute = 0
@@ -39,6 +39,10 @@ class Constants:
     def largest_unit_error(self) -> float: ...
     @largest_unit_error.setter
     def largest_unit_error(self, arg: float, /) -> None: ...
+    @property
+    def unit_rounding(self) -> float: ...
+    @unit_rounding.setter
+    def unit_rounding(self, arg: float, /) -> None: ...
     @property
     def barely_outside(self) -> float: ...
     @barely_outside.setter
@@ -152,6 +156,10 @@ class Constants:
     @jump_damping.setter
     def jump_damping(self, arg: float, /) -> None: ...
     @property
+    def opposite(self) -> float: ...
+    @opposite.setter
+    def opposite(self, arg: float, /) -> None: ...
+    @property
     def creep_halvings(self) -> int: ...
     @creep_halvings.setter
     def creep_halvings(self, arg: int, /) -> None: ...
@@ -199,6 +207,9 @@ class Problem:
         frame_joint: int,
         frame_rotation: Annotated[NDArray[numpy.float64], dict(shape=(3, 3), order="F")],
         frame_translation: Annotated[NDArray[numpy.float64], dict(shape=(3), order="C")],
+        has_tool: bool,
+        tool_rotation: Annotated[NDArray[numpy.float64], dict(shape=(3, 3), order="F")],
+        tool_translation: Annotated[NDArray[numpy.float64], dict(shape=(3), order="C")],
         has_reference: bool,
         reference_joint: int,
         reference_rotation: Annotated[NDArray[numpy.float64], dict(shape=(3, 3), order="F")],
@@ -471,6 +482,7 @@ class FrameWalk:
         reference_joint: int,
         reference_rotation: Annotated[NDArray[numpy.float64], dict(shape=(3, 3), order="F")],
         reference_translation: Annotated[NDArray[numpy.float64], dict(shape=(3), order="C")],
+        unit_rounding: float,
         largest_unit_error: float,
     ) -> None: ...
     def placements(self, q: object, threads: int) -> NDArray[numpy.float64] | None: ...

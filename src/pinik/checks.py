@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import math
 import sys
 import warnings
@@ -22,6 +23,7 @@ __all__ = [
     "as_many",
     "as_names",
     "as_numbers",
+    "as_plain",
     "as_point",
     "as_points",
     "as_positive_number",
@@ -40,20 +42,20 @@ _UNSAID_CHANGE = 1e-6  # replaced in silence up to here, such as numbers in sing
 _FARTHEST_ROTATION = 1e-3  # refused from here on; numbers rounded to three digits are nearer
 
 _IDENTITY = np.eye(3)
-_NO_NUMBERS = (str, bytes, bool, np.bool_)
+_NUMBERS_IN_MEMORY = frozenset("bhilqnHILQNefdg")  # formats of memoryviews; bytes have "B"
+_NO_NUMBERS = (str, bytes, bytearray, bool, np.bool_, complex, np.complexfloating)
 
 Array = NDArray[np.float64]
 
 
 def as_finite_number(value: object, what: str) -> float:
     """`value` as a float; InputError unless it is one finite number."""
-    try:
-        if isinstance(value, (complex, np.complexfloating)):
-            raise TypeError
-        number = float(value)  # type: ignore[arg-type]
-    except (TypeError, ValueError, OverflowError):
-        raise InputError(f"must be a finite number; got {value!r}", argument=what) from None
-    if isinstance(value, _NO_NUMBERS) or not math.isfinite(number):
+    number = math.nan
+    with contextlib.suppress(TypeError, ValueError, OverflowError):
+        value = as_plain(value, what)
+        if not isinstance(value, _NO_NUMBERS) and np.ndim(value) == 0:  # type: ignore[arg-type]
+            number = float(value)  # type: ignore[arg-type]
+    if not math.isfinite(number):
         raise InputError(f"must be a finite number; got {value!r}", argument=what)
     return number
 
@@ -83,10 +85,36 @@ def as_length(value: object, what: str) -> float:
     return length
 
 
+def as_plain(value: Any, what: str) -> Any:
+    """`value` with the memoryviews in it as arrays, and with masked arrays that mask nothing as plain ones.
+
+    Numpy reads masked arrays without their masks, and some memoryviews not at all. Anything else stays as it is.
+
+    Raises:
+        InputError: A masked entry, or a memoryview of bytes or of no numbers.
+    """
+    if isinstance(value, np.ma.MaskedArray):
+        if np.ma.is_masked(value) or value is np.ma.masked:
+            raise InputError(f"must have no masked entries; got {value!r}", argument=what)
+        return value.data
+    if isinstance(value, (memoryview, bytearray)):
+        own = memoryview(value)
+        if own.format not in _NUMBERS_IN_MEMORY:
+            raise InputError(f"must be numbers; got a {type(value).__name__} of format {own.format!r}", argument=what)
+        return np.asarray(own)
+    if isinstance(value, np.ndarray) and value.dtype.kind == "O":
+        for item in value.flat:
+            as_plain(item, what)
+    if type(value) in (list, tuple):
+        return [item if type(item) in (float, int) else as_plain(item, what) for item in value]
+    return value
+
+
 def as_array(value: ArrayLike, shape: tuple[int, ...], what: str, of: str = "") -> Array:
     """A new float64 array of that shape; InputError for other shapes or types, NaN and infinities."""
     size = "×".join(map(str, shape))
     expected = f"{size} finite numbers" + (f" ({of})" if of else "")
+    value = as_plain(value, what)
     try:
         numbers = np.asarray(value)
         items = (
@@ -94,7 +122,7 @@ def as_array(value: ArrayLike, shape: tuple[int, ...], what: str, of: str = "") 
         )
         if numbers.dtype.kind not in "iufO" or any(isinstance(item, _NO_NUMBERS) for item in items):
             raise TypeError  # such as strings and booleans, which numpy would convert
-        array = np.array(numbers, dtype=np.float64)
+        array = _as_float64(numbers)
     except (TypeError, ValueError, OverflowError):
         raise InputError(f"must be {expected}; got {value!r}", argument=what) from None
     if array.shape != shape:
@@ -114,18 +142,32 @@ def as_many(values: ArrayLike, shape: tuple[int, ...], what: str) -> Array:
     if not finite.all():
         k = int(np.argmin(finite.all(axis=tuple(range(1, array.ndim)))))
         raise InputError(f"must be {size} finite numbers; got {array[k].tolist()}", argument=f"{what}[{k}]")
-    return array.astype(np.float64)
+    return array
 
 
-def as_numbers(values: ArrayLike, what: str) -> NDArray[Any]:
-    """`values` as an array of real numbers of any shape."""
+def as_numbers(values: ArrayLike, what: str) -> Array:
+    """`values` as a new float64 array of any shape; InputError for other types."""
+    values = as_plain(values, what)
     try:
         array = np.asarray(values)
     except ValueError:
         raise InputError("must be an array of numbers; got rows of different lengths", argument=what) from None
-    if array.dtype.kind not in "iuf":
+    if array.dtype.kind not in "iuf" or _holds_no_number(values):
         raise InputError(f"must be an array of numbers; got {values!r}", argument=what)
-    return array
+    return _as_float64(array)
+
+
+def _holds_no_number(values: object) -> bool:
+    """Whether nested lists hold something, such as a boolean, that numpy would convert."""
+    if type(values) is list:
+        return any([type(item) not in (float, int) and _holds_no_number(item) for item in values])
+    return isinstance(values, _NO_NUMBERS)
+
+
+def _as_float64(numbers: NDArray[Any]) -> Array:
+    """A new array; wider numbers beyond its range become infinite, which the checks of finiteness report."""
+    with np.errstate(over="ignore"):
+        return np.array(numbers, dtype=np.float64, order="C")
 
 
 def as_vector(value: ArrayLike, size: int, what: str, of: str = "") -> Array:

@@ -115,10 +115,11 @@ def write_whole(path: str | os.PathLike[str], content: bytes) -> None:
 
 def _target(path: Path) -> Path:
     """The file itself, where the path is a link to it."""
-    try:
-        return path.resolve() if path.is_symlink() else path
-    except RuntimeError as loop:  # Python 3.11 and 3.12
-        raise OSError(errno.ELOOP, os.strerror(errno.ELOOP), str(path)) from loop
+    if not path.is_symlink():
+        return path
+    with contextlib.suppress(FileNotFoundError):  # a link to a file that is still to be made
+        path.stat()  # a link to itself is an OSError
+    return path.resolve()
 
 
 def _is_special(path: Path) -> bool:

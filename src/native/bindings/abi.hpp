@@ -5,6 +5,6 @@ namespace pinik {
 
 // Identifies the signatures of the module: the digest of its stub, as tests/solving/test_native.py computes it. It must
 // equal ABI in pinik/solving/native/module.py, which refuses a module from another build.
-constexpr const char* abi = "f70131c835fc67c7";
+constexpr const char* abi = "21af30ab1aed2c4a";
 
 }  // namespace pinik

@@ -25,6 +25,8 @@ void add_joint(Robot& robot, JointKind kind, int parent, const Mat3& R, const Ve
   joint.kind = kind;
   joint.parent = parent;
   if (joint.has_one_axis()) joint.to_line = Eigen::Quaterniond::FromTwoVectors(Vec3::UnitZ(), axis).toRotationMatrix();
+  joint.unturned = {R, p};
+  joint.line = axis;
   const Mat3 from_parent = robot.joint(parent).to_line.transpose();
   joint.placement = Placement{from_parent * R * joint.to_line, from_parent * p};
   joint.idx_q = idx_q;
@@ -42,13 +44,17 @@ void add_joint(Robot& robot, JointKind kind, int parent, const Mat3& R, const Ve
 }
 
 void add_term(Problem& problem, const Robot& robot, int frame_joint, const Mat3& frame_R, const Vec3& frame_p,
-              bool has_reference, int reference_joint, const Mat3& reference_R, const Vec3& reference_p,
+              bool has_tool, const Mat3& tool_R, const Vec3& tool_p, bool has_reference, int reference_joint, const Mat3& reference_R, const Vec3& reference_p,
               bool asks_position, bool asks_rotation, bool asks_axis, bool asks_at, const Vec3& along,
               const Tolerance& tolerance, const Vec3& axis, double weight,
               bool has_bounds, const Vec3& base, std::array<double, 2> reach, std::array<double, 2> hole) {
   Term term;
   term.frame_joint = frame_joint;
-  term.frame = robot.in_joint(frame_joint, frame_R, frame_p);
+  term.unturned_frame = {frame_R, frame_p};
+  term.has_tool = has_tool;
+  term.tool = {tool_R, tool_p};
+  term.unturned_reference = {reference_R, reference_p};
+  term.frame = robot.in_joint(frame_joint, frame_R, frame_p) * term.tool;
   term.has_reference = has_reference;
   term.reference_joint = reference_joint;
   term.reference = robot.in_joint(reference_joint, reference_R, reference_p);
@@ -88,6 +94,7 @@ void register_constants(nb::module_& m) {
       .def_rw("farthest", &Constants::farthest)
       .def_rw("widest_range", &Constants::widest_range)
       .def_rw("largest_unit_error", &Constants::largest_unit_error)
+      .def_rw("unit_rounding", &Constants::unit_rounding)
       .def_rw("barely_outside", &Constants::barely_outside)
       .def_rw("radian", &Constants::radian)
       .def_rw("no_direction", &Constants::no_direction)
@@ -116,6 +123,7 @@ void register_constants(nb::module_& m) {
       .def_rw("jump_floor", &Constants::jump_floor)
       .def_rw("jump_factor", &Constants::jump_factor)
       .def_rw("jump_damping", &Constants::jump_damping)
+      .def_rw("opposite", &Constants::opposite)
       .def_rw("creep_halvings", &Constants::creep_halvings)
       .def_rw("tick_iterations", &Constants::tick_iterations);
 }
@@ -152,7 +160,7 @@ void register_descriptions(nb::module_& m) {
            },
            nb::keep_alive<1, 2>(), "robot"_a, "constants"_a)
       .def("add_term", &add_term, "robot"_a, "frame_joint"_a, "frame_rotation"_a, "frame_translation"_a,
-           "has_reference"_a, "reference_joint"_a, "reference_rotation"_a, "reference_translation"_a,
+           "has_tool"_a, "tool_rotation"_a, "tool_translation"_a, "has_reference"_a, "reference_joint"_a, "reference_rotation"_a, "reference_translation"_a,
            "asks_position"_a, "asks_rotation"_a, "asks_axis"_a, "asks_at"_a, "along"_a, "tolerance"_a, "axis"_a, "weight"_a, "has_bounds"_a,
            "base"_a, "reach"_a, "hole"_a)
       .def("add_coordinate", &add_coordinate, "joint"_a, "index"_a, "entry"_a, "movers"_a, "moved"_a)

@@ -49,7 +49,8 @@ std::optional<Answer> solve_at(Engine& engine, nb::handle place, nb::handle star
   if (problem.terms.size() != 1 || !numbers) return std::nullopt;
   const std::optional<Goal> goal = goal_at(problem.terms.front(), place, problem.constants.farthest);
   Vector q = Eigen::Map<const Vector>(numbers, nq);
-  if (!goal || !engine.mechanism().normalize(q, problem.constants.largest_unit_error)) return std::nullopt;
+  const UnitLength unit{problem.constants.unit_rounding, problem.constants.largest_unit_error};
+  if (!goal || !engine.mechanism().normalize(q, unit)) return std::nullopt;
   return solve(engine, std::move(q), {*goal}, nearest);
 }
 

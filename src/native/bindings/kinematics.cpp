@@ -23,8 +23,8 @@ struct RobotFrameWalk {
   FrameWalk walk;
 
   RobotFrameWalk(std::shared_ptr<const Robot> robot, const FrameWalk::Place& frame, const FrameWalk::Place& reference,
-                 double unit_error)
-      : robot(std::move(robot)), walk(this->robot->mechanism, frame, reference, unit_error) {}
+                 const UnitLength& unit)
+      : robot(std::move(robot)), walk(this->robot->mechanism, frame, reference, unit) {}
 };
 
 nb::object placements(const RobotFrameWalk& self, nb::handle q, int threads) {
@@ -67,13 +67,13 @@ void register_kinematics(nb::module_& m) {
       .def("__init__",
            [](RobotFrameWalk* self, std::shared_ptr<const Robot> robot, int frame_joint, const Mat3& frame_R,
               const Vec3& frame_p, int reference_joint, const Mat3& reference_R, const Vec3& reference_p,
-              double largest_unit_error) {
+              double unit_rounding, double largest_unit_error) {
              const FrameWalk::Place frame{frame_joint, robot->in_joint(frame_joint, frame_R, frame_p)};
              const FrameWalk::Place reference{reference_joint, robot->in_joint(reference_joint, reference_R, reference_p)};
-             new (self) RobotFrameWalk(std::move(robot), frame, reference, largest_unit_error);
+             new (self) RobotFrameWalk(std::move(robot), frame, reference, {unit_rounding, largest_unit_error});
            },
            "robot"_a, "frame_joint"_a, "frame_rotation"_a, "frame_translation"_a, "reference_joint"_a,
-           "reference_rotation"_a, "reference_translation"_a, "largest_unit_error"_a)
+           "reference_rotation"_a, "reference_translation"_a, "unit_rounding"_a, "largest_unit_error"_a)
       .def("placements", &placements, "q"_a.none(), "threads"_a,
            nb::sig("def placements(self, q: object, threads: int) -> NDArray[numpy.float64] | None"))
       .def("jacobians", &jacobians, "q"_a.none(), "axes"_a, "threads"_a,

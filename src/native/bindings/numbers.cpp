@@ -47,13 +47,13 @@ nb::object as_array(const Goal& goal) {
 }
 
 const double* numbers_of(nb::handle array, std::initializer_list<std::ptrdiff_t> shape) {
-  if (!PyArray_Check(array.ptr())) return nullptr;
+  if (!PyArray_CheckExact(array.ptr())) return nullptr;
   auto* own = reinterpret_cast<PyArrayObject*>(array.ptr());
   return has_shape(own, shape, 0) ? static_cast<const double*>(PyArray_DATA(own)) : nullptr;
 }
 
 const double* blocks_of(nb::handle array, std::initializer_list<std::ptrdiff_t> shape, std::size_t& count) {
-  if (!PyArray_Check(array.ptr())) return nullptr;
+  if (!PyArray_CheckExact(array.ptr())) return nullptr;
   auto* own = reinterpret_cast<PyArrayObject*>(array.ptr());
   if (!has_shape(own, shape, 1)) return nullptr;
   count = static_cast<std::size_t>(PyArray_DIM(own, 0));

@@ -29,7 +29,7 @@ nb::object as_array(const Goal& goal);
 // Write the row of a goal that has no direction; the rotation is zero if it is not asked for.
 void write_goal(const Goal& goal, bool asks_rotation, double* row);
 
-// The numbers of a contiguous float64 array of this shape; null for anything else.
+// The numbers of a contiguous float64 array of this shape; null for anything else, such as a masked array.
 const double* numbers_of(nb::handle array, std::initializer_list<std::ptrdiff_t> shape);
 
 // The numbers of a contiguous float64 array (count, *shape), whose `count` is set; null for anything else.

@@ -89,9 +89,8 @@ class FrameWalk {
     Placement placement;
   };
 
-  // Squared lengths of (cos, sin) pairs and quaternions may differ from 1 by at most `largest_unit_error`.
-  FrameWalk(const Mechanism& mechanism, const Place& frame, const Place& reference, double largest_unit_error)
-      : FrameWalk(mechanism, frame, reference, largest_unit_error, meeting(mechanism, frame.joint, reference.joint)) {}
+  FrameWalk(const Mechanism& mechanism, const Place& frame, const Place& reference, const UnitLength& unit)
+      : FrameWalk(mechanism, frame, reference, unit, meeting(mechanism, frame.joint, reference.joint)) {}
 
   int entries() const { return mechanism_.nq; }
 
@@ -129,15 +128,15 @@ class FrameWalk {
   const Mechanism& mechanism_;
   Branch frame_, reference_;
   bool has_reference_;
-  double largest_unit_error_;
+  UnitLength unit_;
   int columns_ = 0;
   Vector q_;
 
-  FrameWalk(const Mechanism& mechanism, const Place& frame, const Place& reference, double largest_unit_error, int meeting)
+  FrameWalk(const Mechanism& mechanism, const Place& frame, const Place& reference, const UnitLength& unit, int meeting)
       : mechanism_(mechanism), frame_(mechanism, meeting, frame.joint, frame.placement),
         reference_(mechanism, meeting, reference.joint, reference.placement),
         has_reference_(reference.joint != 0 || !reference.placement.R.isIdentity(0.0) || !reference.placement.p.isZero(0.0)),
-        largest_unit_error_(largest_unit_error) {
+        unit_(unit) {
     for (const Joint& joint : mechanism.joints) columns_ += joint.nv;
   }
 
@@ -152,7 +151,7 @@ class FrameWalk {
 
   bool check(const double* q) {
     q_ = Eigen::Map<const Vector>(q, mechanism_.nq);
-    return mechanism_.normalize(q_, largest_unit_error_);
+    return mechanism_.normalize(q_, unit_);
   }
 
   // Add what the joints of one branch contribute to the velocity of a point.

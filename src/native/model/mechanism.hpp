@@ -15,6 +15,8 @@ struct Joint {
   int parent = 0;
   Placement placement;         // in the parent joint; both are turned so that their axes become z
   Mat3 to_line = Mat3::Identity();  // the rotation that turns z onto the joint's axis
+  Placement unturned;               // in the parent joint, as in Pinocchio's model
+  Vec3 line = Vec3::UnitZ();        // the axis in the joint's own frame, as in Pinocchio's model
   int idx_q = 0, nq = 0;       // a follower has nq = 0 and the idx_q of its leader
   int idx_v = 0, nv = 0;
   bool follows = false;
@@ -32,6 +34,12 @@ struct Joint {
 
   // The joint axis along or about which a tangent coordinate moves: 0, 1 or 2.
   int axis(int coordinate) const { return has_one_axis() ? 2 : coordinate % 3; }
+};
+
+// How much the squared length of a (cos, sin) pair or a quaternion may differ from 1: it is left as it is up to
+// `rounding`, scaled up to `largest_error`, and refused beyond that.
+struct UnitLength {
+  double rounding, largest_error;
 };
 
 // Apply a tangent step to the entries of a floating or planar joint, in place.
@@ -104,17 +112,16 @@ class Mechanism {
       difference_free(joint.kind, from, to, step);
   }
 
-  // Scale (cos, sin) pairs and quaternions to unit length. Returns false if a squared length differs from 1 by more than
-  // `largest_error`, or if a number is not finite.
-  bool normalize(Vector& q, double largest_error) const {
+  // Scale (cos, sin) pairs and quaternions to unit length. Returns false if one is refused, or if a number is not finite.
+  bool normalize(Vector& q, const UnitLength& unit) const {
     if (q.size() != nq || !q.allFinite()) return false;
     for (const Joint& joint : joints) {
       const int size = joint.kind == JointKind::floating ? 4 : joint.kind == JointKind::planar || joint.nq == 2 ? 2 : 0;
       if (size == 0) continue;
       auto circle = q.segment(joint.idx_q + joint.nq - size, size);
       const double squared = circle.squaredNorm();
-      if (std::abs(squared - 1.0) > largest_error) return false;
-      circle /= std::sqrt(squared);
+      if (std::abs(squared - 1.0) > unit.largest_error) return false;
+      if (std::abs(squared - 1.0) > unit.rounding) circle /= std::sqrt(squared);
     }
     return true;
   }

@@ -20,6 +20,7 @@ struct Constants {
   double farthest = not_given;
   double widest_range = not_given;
   double largest_unit_error = not_given;
+  double unit_rounding = not_given;
   double barely_outside = not_given;
   // pinik.problem
   double radian = not_given;
@@ -51,6 +52,7 @@ struct Constants {
   double jump_floor = not_given;
   double jump_factor = not_given;
   double jump_damping = not_given;
+  double opposite = not_given;
   int creep_halvings = 0;
   std::int64_t tick_iterations = 0;
 };

@@ -12,7 +12,10 @@ namespace pinik {
 // One target: its frame and what it constrains, without the numbers that change from solve to solve.
 struct Term {
   int frame_joint = 0, reference_joint = 0;
-  Placement frame, reference;  // in their joints
+  Placement frame, reference;  // in their joints, in the joints' turned axes; the frame's includes the tool
+  Placement unturned_frame, unturned_reference;  // in their joints, as in Pinocchio's model
+  Placement tool;                                // in the frame
+  bool has_tool = false;
   bool has_reference = false;
   bool asks_position = false, asks_rotation = false, asks_axis = false, asks_at = false;
   bool has_free_axes = false;

@@ -12,60 +12,77 @@ namespace {
 
 pinocchio::SE3 se3(const Placement& placement) { return {placement.R, placement.p}; }
 
-template <class JointModel>
-void add_one_axis(pinocchio::Model& model, const Mechanism& mechanism, const Joint& joint, const JointModel& own,
-                  const pinocchio::SE3& placement, const std::string& name) {
-  const auto parent = static_cast<pinocchio::JointIndex>(joint.parent);
-  if (!joint.follows) {
-    model.addJoint(parent, own, placement, name);
-    return;
-  }
-  for (std::size_t j = 1; j < model.joints.size(); ++j)
-    if (!mechanism.joints[j].follows && mechanism.joints[j].idx_q == joint.idx_q) {
-      const pinocchio::JointModelMimic mimic(own, model.joints[j], joint.multiplier, joint.offset);
-      model.addJoint(parent, mimic, placement, name);
-      return;
-    }
+// The model of a joint with one axis: as in Pinocchio's reader of URDF, one of three for an axis of the frame, or else one
+// for any axis.
+template <class X, class Y, class Z, class Unaligned>
+pinocchio::JointModel along(const Vec3& line) {
+  if (line.isApprox(Vec3::UnitX())) return X();
+  if (line.isApprox(Vec3::UnitY())) return Y();
+  if (line.isApprox(Vec3::UnitZ())) return Z();
+  return Unaligned(line.normalized());
+}
+
+pinocchio::JointModel model_of(const Joint& joint) {
+  using namespace pinocchio;
+  if (joint.kind == JointKind::floating) return JointModelFreeFlyer();
+  if (joint.kind == JointKind::planar) return JointModelPlanar();
+  if (joint.kind == JointKind::prismatic)
+    return along<JointModelPX, JointModelPY, JointModelPZ, JointModelPrismaticUnaligned>(joint.line);
+  if (joint.nq == 2)
+    return along<JointModelRUBX, JointModelRUBY, JointModelRUBZ, JointModelRevoluteUnboundedUnaligned>(joint.line);
+  return along<JointModelRX, JointModelRY, JointModelRZ, JointModelRevoluteUnaligned>(joint.line);
+}
+
+// The number of the joint that a joint follows.
+std::size_t leader_of(const Mechanism& mechanism, const Joint& joint, std::size_t known) {
+  for (std::size_t j = 1; j < known; ++j)
+    if (!mechanism.joints[j].follows && mechanism.joints[j].idx_q == joint.idx_q) return j;
   throw std::invalid_argument("a mimic joint must come after the joint that it follows");
 }
 
 void add(pinocchio::Model& model, const Mechanism& mechanism, std::size_t number) {
   const Joint& joint = mechanism.joints[number];
-  const std::string name = std::to_string(number);
-  const auto parent = static_cast<pinocchio::JointIndex>(joint.parent);
-  const pinocchio::SE3 placement = se3(joint.placement);
-  if (joint.kind == JointKind::floating)
-    model.addJoint(parent, pinocchio::JointModelFreeFlyer(), placement, name);
-  else if (joint.kind == JointKind::planar)
-    model.addJoint(parent, pinocchio::JointModelPlanar(), placement, name);
-  else if (joint.kind == JointKind::prismatic)
-    add_one_axis(model, mechanism, joint, pinocchio::JointModelPZ(), placement, name);
-  else if (joint.nq == 2)
-    model.addJoint(parent, pinocchio::JointModelRUBZ(), placement, name);
-  else
-    add_one_axis(model, mechanism, joint, pinocchio::JointModelRZ(), placement, name);
+  pinocchio::JointModel own = model_of(joint);
+  if (joint.follows) {
+    const pinocchio::JointModel& leader = model.joints[leader_of(mechanism, joint, model.joints.size())];
+    own = pinocchio::JointModelMimic(own, leader, joint.multiplier, joint.offset);
+  }
+  model.addJoint(static_cast<pinocchio::JointIndex>(joint.parent), own, se3(joint.unturned), std::to_string(number));
 }
 
 pinocchio::SE3 in_world(int joint, const Placement& placement, const pinocchio::Data& data) {
   return data.oMi[static_cast<std::size_t>(joint)] * se3(placement);
 }
 
+// These three sum from left to right, as pinik.solving.verdict does.
+double length(const Vec3& v) { return std::sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]); }
+
+double dot(const Vec3& a, const Vec3& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
+
+Vec3 cross(const Vec3& a, const Vec3& b) {
+  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
+}
+
+pinocchio::SE3 turn(const Mat3& R) { return {R, Vec3::Zero()}; }
+
+// Every product is one of Pinocchio's, in the order of pinik.solving.verdict, so that both round alike.
 TargetError error_of(const Term& term, const Goal& goal, double no_direction, const pinocchio::Data& data) {
-  pinocchio::SE3 at = in_world(term.frame_joint, term.frame, data);
-  if (term.has_reference) at = in_world(term.reference_joint, term.reference, data).actInv(at);
+  pinocchio::SE3 at = in_world(term.frame_joint, term.unturned_frame, data);
+  if (term.has_reference) at = in_world(term.reference_joint, term.unturned_reference, data).actInv(at);
+  if (term.has_tool) at = at * se3(term.tool);
   TargetError error;
   if (term.asks_position) {
     const Vec3 left = term.along.cwiseProduct(goal.position - at.translation());
-    error.position = left.norm();
-    if (term.tolerance.is_box) error.offset = term.asks_rotation ? Vec3(goal.rotation.transpose() * left) : left;
+    error.position = length(left);
+    if (term.tolerance.is_box) error.offset = term.asks_rotation ? turn(goal.rotation).actInv(left) : left;
   }
   if (term.asks_rotation) {
-    error.orientation = pinocchio::log3(Mat3(goal.rotation * at.rotation().transpose())).norm();
+    error.orientation = length(pinocchio::log3((turn(goal.rotation) * turn(at.rotation()).inverse()).rotation()));
   } else if (term.asks_axis) {
-    const Vec3 axis = at.rotation() * term.axis;
-    const Vec3 direction = term.asks_at ? Vec3(goal.at - at.translation()) : goal.direction;
-    const bool there = term.asks_at && direction.norm() < no_direction;
-    error.orientation = there ? 0.0 : std::atan2(axis.cross(direction).norm(), axis.dot(direction));
+    const Vec3 axis = turn(at.rotation()).act(term.axis);
+    const Vec3 line = term.asks_at ? Vec3(goal.at - at.translation()) : goal.direction;
+    const bool there = term.asks_at && length(line) < no_direction;
+    error.orientation = there ? 0.0 : std::atan2(length(cross(axis, line)), dot(axis, line));
   }
   // An error that cannot be computed counts as a miss.
   if (term.asks_position && !std::isfinite(error.position)) error.position = infinity;

@@ -1,5 +1,5 @@
-// Measures an answer's errors by Pinocchio's own forward kinematics, which the solvers do not use; follows
-// pinik.solving.state.measure_errors.
+// Measures an answer's errors by Pinocchio's own forward kinematics, which the solvers do not use, on the same model as in
+// Python; follows pinik.solving.verdict.measure_errors, and rounds as it does.
 #pragma once
 
 #include <memory>

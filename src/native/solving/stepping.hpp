@@ -54,17 +54,17 @@ class Stepping {
 
   void step(const Linearization<Rows>& at, double scale, Vector& q) {
     const Problem& problem = kinematics_.problem;
+    q = at.q;
+    if (!std::isfinite(at.residual) || at.J.cols() == 0) return;  // no step; the loop will report that it stalled
     directions_.step(at, held_, dq_);
+    if (!dq_.allFinite()) return;
     for (std::size_t c = 0; c < held_.size(); ++c)
       if (held_[c]) dq_[static_cast<Eigen::Index>(c)] = 0.0;
-    q = at.q;
-    const double length = dq_.norm();
-    if (!std::isfinite(length)) return;  // no step; the loop will report that it stalled
-    if (length > solver_.max_step) {
-      const double largest = dq_.cwiseAbs().maxCoeff();
-      if (largest > solver_.max_step) dq_ *= solver_.max_step / largest;
-    }
-    dq_ *= scale * solver_.step_size;
+    const double largest = dq_.cwiseAbs().maxCoeff();
+    scale *= solver_.step_size;
+    if (std::min(largest, solver_.max_step) * scale > problem.constants.farthest) return;
+    if (largest > solver_.max_step) scale *= solver_.max_step / largest;
+    if (scale != 1.0) dq_ *= scale;
     if (problem.is_plain) {
       for (std::size_t c = 0; c < held_.size(); ++c) q[problem.coordinates[c].entry] += dq_[static_cast<Eigen::Index>(c)];
       return;

@@ -281,7 +281,7 @@ class Walk {
       if (term.asks_axis && !term.asks_at) {
         const Vec3 direction = origin.direction + part * (target.direction - origin.direction);
         const double length = direction.norm();
-        goal.direction = length < problem_.constants.no_direction ? target.direction : Vec3(direction / length);
+        goal.direction = length < problem_.constants.opposite ? target.direction : Vec3(direction / length);
       }
     }
   }

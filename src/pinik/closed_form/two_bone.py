@@ -8,7 +8,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..checks import as_finite_number, as_many
+from ..checks import as_finite_number, as_many, as_numbers, as_plain
 from ..errors import InputError
 
 __all__ = ["ELBOWS", "TwoBoneAnswers", "elbow_angles", "two_bone"]
@@ -119,7 +119,7 @@ def two_bone(l1: ArrayLike, l2: ArrayLike, targets: ArrayLike, pole: ArrayLike |
         InputError: A wrong shape; a number that is not finite or exceeds 1e150; a negative length; a zero pole; a pole
             in the plane, or none in space. The message gives the index of the first wrong entry.
     """
-    shape = _shape(targets)
+    shape = _shape(targets, "targets")
     size = shape[1] if len(shape) == 2 else 2
     if size not in (2, 3):
         raise InputError(f"targets must be N times 2 or 3 numbers; got an array of shape {shape}")
@@ -223,7 +223,8 @@ def _largest(vectors: Array) -> Array:
     return sizes
 
 
-def _shape(value: ArrayLike) -> tuple[int, ...]:
+def _shape(value: ArrayLike, what: str) -> tuple[int, ...]:
+    value = as_plain(value, what)
     try:
         return np.shape(value)
     except ValueError:  # rows of different lengths; the check of the numbers reports them
@@ -232,7 +233,7 @@ def _shape(value: ArrayLike) -> tuple[int, ...]:
 
 def _lengths(value: ArrayLike, count: int, what: str) -> Array:
     """The lengths of a bone (count,), checked; a single number is repeated."""
-    shape = _shape(value)
+    shape = _shape(value, what)
     if shape == ():
         lengths = np.full(1, as_finite_number(value, what))
     else:
@@ -254,8 +255,8 @@ def _poles(pole: ArrayLike | None, count: int, size: int) -> Array | None:
         return None
     if pole is None:
         raise InputError("pole must be given for targets in space (N, 3): the direction towards which the elbow bends")
-    single = len(_shape(pole)) == 1
-    poles = as_many(np.asarray(pole)[np.newaxis] if single else pole, (3,), "pole")
+    single = len(_shape(pole, "pole")) == 1
+    poles = as_many(as_numbers(pole, "pole")[np.newaxis] if single else pole, (3,), "pole")
     if not single and len(poles) != count:
         raise InputError(f"pole must be one direction, or one for each of the {count} targets; got {len(poles)}")
     _refuse_the_first(_largest(poles) < 1e-300, poles, "pole", "a direction, not zero")

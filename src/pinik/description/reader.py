@@ -19,6 +19,7 @@ from .links import LinkTag, read_link
 from .materials import named_colors
 from .source import RobotSource, Source
 from .tree import check_unique, resolved_mimics, root_link
+from .unknown import unknown_in_joints
 from .writer import written
 from .xml import BrokenXMLError, DocumentError, Element
 
@@ -112,6 +113,7 @@ def _described(document: Document, source: Source) -> Description:
     joints = [read_joint(element, flaws) for element in robot.named("joint")]
     root = root_link([link.name for link in links], joints)
     joints = resolved_mimics(joints, flaws)
+    flaws.extend(unknown_in_joints(robot))
     name = robot.attributes.get("name")
     if name is None:
         name = source.path.stem if source.path else "robot"

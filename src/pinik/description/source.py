@@ -46,24 +46,21 @@ class Source:
         return cls(given, _shown(name) if isinstance(name, str) else _TEXT, path)
 
     def content(self) -> bytes:
-        """The bytes of the description, or more than `MAX_BYTES` of them.
+        """The bytes of the description, or more than `MAX_BYTES` of them. An open file is read to its end.
 
         Raises:
             RobotLoadError: It cannot be read; the message says why.
         """
         try:
-            return self._read()
+            if isinstance(self.given, (bytes, bytearray, memoryview)):
+                return bytes(self.given)
+            if is_document(self.given):
+                return _encoded(self.given)
+            if isinstance(self.given, (str, os.PathLike)):
+                return _file_bytes(Path(self.given))
+            return _stream_bytes(self.given)
         except DocumentError as fault:
             raise RobotLoadError(fault.message, source=self.label) from None
-
-    def _read(self) -> bytes:
-        if isinstance(self.given, (bytes, bytearray, memoryview)):
-            return bytes(self.given)
-        if is_document(self.given):
-            return _encoded(self.given)
-        if isinstance(self.given, (str, os.PathLike)):
-            return _file_bytes(Path(self.given))
-        return _stream_bytes(self.given)
 
 
 def is_document(given: object) -> bool:

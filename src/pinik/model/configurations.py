@@ -17,7 +17,10 @@ __all__ = ["checked", "checked_many", "random_configuration"]
 
 Array = NDArray[np.float64]
 
-LARGEST_UNIT_ERROR = 1e-3  # how far the squared length of a quaternion or (cos, sin) pair may be from 1
+# How far the squared length of a quaternion or (cos, sin) pair may be from 1: up to rounding it is left as it is, so
+# that an answer that is used as a start keeps its bits, and up to the largest error it is scaled.
+UNIT_ROUNDING = 1e-14
+LARGEST_UNIT_ERROR = 1e-3
 
 
 def checked(model: pinocchio.Model, joints: Iterable[Joint], q: ArrayLike, what: str, of: str = "") -> Array:
@@ -39,12 +42,17 @@ def checked(model: pinocchio.Model, joints: Iterable[Joint], q: ArrayLike, what:
         return values
     for joint in joints:
         circle = joint.circle(values)
-        if circle is not None and abs(float(circle[0] @ circle[0]) - 1.0) > LARGEST_UNIT_ERROR:
-            got, words = circle
+        if circle is None:
+            continue
+        own, words = circle
+        squared = float(own @ own)
+        if not abs(squared - 1.0) <= LARGEST_UNIT_ERROR:
             raise InputError(
-                f"{what}: {words} of {joint.kind} joint {joint.name!r} must be of unit length; got {got.tolist()}"
+                f"{what}: {words} of {joint.kind} joint {joint.name!r} must be of unit length; got {own.tolist()}"
             )
-    return np.array(pinocchio.normalize(model, values))
+        if abs(squared - 1.0) > UNIT_ROUNDING:
+            own /= math.sqrt(squared)
+    return values
 
 
 def checked_many(model: pinocchio.Model, joints: Iterable[Joint], q: ArrayLike, what: str) -> Array:
@@ -53,10 +61,10 @@ def checked_many(model: pinocchio.Model, joints: Iterable[Joint], q: ArrayLike, 
     for joint in joints:
         circle = joint.circle(values.T)
         if circle is not None:
-            lengths = np.linalg.norm(circle[0], axis=0)
-            for k in np.flatnonzero(np.abs(lengths**2 - 1.0) > LARGEST_UNIT_ERROR)[:1]:
+            squared = (circle[0] * circle[0]).sum(axis=0)
+            for k in np.flatnonzero(np.abs(squared - 1.0) > LARGEST_UNIT_ERROR)[:1]:
                 checked(model, [joint], values[k], f"{what}[{k}]")
-            circle[0][:] /= lengths
+            circle[0][:] /= np.where(np.abs(squared - 1.0) > UNIT_ROUNDING, np.sqrt(squared), 1.0)
     return values
 
 

@@ -65,4 +65,5 @@ class Coordinate:
             return
         step = np.zeros(model.nv)
         step[joint.idx_v + self.index] = change
-        q[:] = pinocchio.integrate(model, q, step)
+        own = slice(joint.idx_q, joint.idx_q + joint.nq)
+        q[own] = pinocchio.integrate(model, q, step)[own]  # the others would change by rounding

@@ -187,7 +187,7 @@ class Rows:
             return e, J_angular - np.outer(axis, axis.dot(J_angular)), angle
         line = at - self.p
         distance = math.sqrt(line.dot(line))
-        if distance < NO_DIRECTION:  # the frame sits on the point that it should look at: every direction is right
+        if distance < NO_DIRECTION:  # every direction is right
             return np.zeros(3), np.zeros_like(J_angular), 0.0
         direction = line / distance
         e, angle = shortest_rotation(axis, direction)

@@ -8,7 +8,7 @@ import numpy as np
 import pinocchio
 from numpy.typing import ArrayLike, NDArray
 
-from ..checks import as_length, as_point, as_rotation, as_se3, as_unit_vector, as_vector
+from ..checks import as_length, as_plain, as_point, as_rotation, as_se3, as_unit_vector, as_vector
 from ..errors import InputError
 
 __all__ = ["Position", "as_axis", "as_position", "as_tool", "check_combination", "named", "rotation_of"]
@@ -82,6 +82,7 @@ def rotation_of(
 
 def as_position(position: Position, what: str) -> Array:
     """A point (3,) [m], with NaN for coordinates of None."""
+    position = as_plain(position, what)
     parts = position.tolist() if isinstance(position, np.ndarray) and position.dtype == object else position
     if not isinstance(parts, (list, tuple)) or len(parts) != 3 or not any(part is None for part in parts):
         return as_point(position, what)  # type: ignore[arg-type]
@@ -101,6 +102,7 @@ def as_axis(axis: str | ArrayLike, what: str) -> Array:
 
 def as_tool(tool: pinocchio.SE3 | ArrayLike, what: str) -> pinocchio.SE3:
     """The placement of a tool in its frame, from a placement or a point (3,) [m]."""
-    if isinstance(tool, (list, tuple, np.ndarray)) and len(tool) == 3:
+    tool = as_plain(tool, what)
+    if isinstance(tool, (list, tuple, np.ndarray)) and np.ndim(tool) and len(tool) == 3:
         return pinocchio.SE3(np.eye(3), as_point(tool, what))
     return as_se3(tool, what)

@@ -11,7 +11,7 @@ import numpy as np
 import pinocchio
 from numpy.typing import ArrayLike, NDArray
 
-from ..checks import as_finite_number, as_point, as_se3, as_unit_vector
+from ..checks import as_finite_number, as_plain, as_point, as_se3, as_unit_vector
 from ..errors import InputError, UnknownNameError
 from .target_values import Position, as_axis, as_position, as_tool, check_combination, named, rotation_of
 from .tolerance import Tolerance
@@ -20,8 +20,9 @@ __all__ = ["NO_DIRECTION", "TARGET_KEYWORDS", "Target", "as_targets"]
 
 Array = NDArray[np.float64]
 
-NO_DIRECTION = 1e-9
-"""[m] A frame nearer than this to the point that it should look at counts as looking at it."""
+NO_DIRECTION = 1e-6
+"""[m] A frame nearer than this to the point that its axis should point at counts as pointing at it. From there the
+direction is mostly rounding: coordinates of 1 m are rounded to 1e-16 m, those of 1 km to 1e-13 m."""
 _LIGHTEST, _HEAVIEST = 1e-3, 1e3
 
 
@@ -39,7 +40,8 @@ class Target:
         rotation: The orientation wanted (3, 3); None where it is free or given by `axis`.
         axis: A unit vector (3,) fixed in the frame (in `tool` where one is given).
         direction: The unit vector (3,) that `axis` should point along.
-        at: The point (3,) [m] that `axis` should point at.
+        at: The point (3,) [m] that `axis` should point at. Within 1e-6 m of it there is no direction to it, and the
+            axis counts as pointing at it.
         relative_to: The frame, moving or not, in which all of the above is expressed; the world when None.
         weight: A factor on this target's residual in the step; it never changes the verdict.
         tolerance: The errors of this target that count as reached; those of the call when None.
@@ -126,9 +128,10 @@ class Target:
         )
 
     def _keep(self, **fields: Any) -> None:
-        for value in fields.values():
+        for name, value in fields.items():
             if isinstance(value, np.ndarray):
-                value.setflags(write=False)
+                fields[name] = np.ascontiguousarray(value)  # products of other layouts would round otherwise
+                fields[name].setflags(write=False)
         vars(self).update(fields)
 
     @property
@@ -182,7 +185,8 @@ class Target:
         what = f"target {self.frame!r}"
         if self.axis is not None:
             raise InputError(f"{what} asks for an axis's direction; give a Target")
-        if not isinstance(place, pinocchio.SE3) and np.shape(place) == (3,):
+        place = as_plain(place, f"{what}: place")
+        if not isinstance(place, pinocchio.SE3) and _is_a_point(place):
             if self.rotation is not None:
                 raise InputError(f"{what} asks for an orientation too; give an SE3 or a 4×4 matrix")
             position = as_position(place, f"{what}: position")
@@ -276,7 +280,7 @@ def as_targets(targets: Target | Iterable[Target]) -> tuple[Target, ...]:
     """
     if isinstance(targets, Target):
         return (targets,)
-    if isinstance(targets, str) or not isinstance(targets, Iterable):
+    if isinstance(targets, (str, memoryview)) or not isinstance(targets, Iterable):
         raise InputError(f"targets must be Target objects; got {targets!r}")
     checked = tuple(targets)
     for target in checked:
@@ -299,6 +303,13 @@ def _restored(fields: dict[str, Any]) -> Target:
     target = object.__new__(Target)
     target._keep(**fields)
     return target
+
+
+def _is_a_point(place: ArrayLike) -> bool:
+    try:
+        return np.shape(place) == (3,)
+    except ValueError:  # rows of different lengths
+        return False
 
 
 def _known(numbers: Array) -> list[float | None]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import io
 import warnings
 from collections.abc import Iterable, Iterator
@@ -11,7 +12,8 @@ from typing import Any
 
 import numpy as np
 import trimesh
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
+from trimesh.exchange.load import mesh_loaders
 
 from ..description.materials import Color
 from ..files import FileError, read_within
@@ -29,18 +31,17 @@ CREASE = np.deg2rad(40.0)  # edges sharper than this stay sharp when a mesh brin
 
 def box(size: NDArray[np.float64]) -> trimesh.Trimesh:
     """A box about the origin with these edges (3,) [m]."""
-    return _creased(trimesh.creation.box(size))
+    return _stretched(_unit_box(), size)
 
 
 def sphere(radius: float) -> trimesh.Trimesh:
     """A sphere about the origin [m]."""
-    mesh: trimesh.Trimesh = trimesh.creation.icosphere(3, radius)
-    return mesh
+    return _stretched(_unit_sphere(), np.full(3, radius))
 
 
 def cylinder(radius: float, length: float) -> trimesh.Trimesh:
     """A cylinder about the origin, along z [m]."""
-    return _creased(trimesh.creation.cylinder(radius, length))
+    return _stretched(_unit_cylinder(), np.array([radius, radius, length]))
 
 
 def capsule(radius: float, length: float) -> trimesh.Trimesh:
@@ -55,6 +56,27 @@ def scaled(mesh: trimesh.Trimesh, scale: NDArray[np.float64]) -> trimesh.Trimesh
     copy = mesh.copy()
     copy.apply_transform(np.diag([*np.broadcast_to(scale, 3), 1.0]))
     return copy
+
+
+@functools.cache
+def _unit_box() -> trimesh.Trimesh:
+    return _creased(trimesh.creation.box(np.ones(3)))
+
+
+@functools.cache
+def _unit_sphere() -> trimesh.Trimesh:
+    mesh: trimesh.Trimesh = trimesh.creation.icosphere(3, 1.0)
+    return mesh
+
+
+@functools.cache
+def _unit_cylinder() -> trimesh.Trimesh:
+    return _creased(trimesh.creation.cylinder(1.0, 1.0))
+
+
+def _stretched(unit: trimesh.Trimesh, along: NDArray[np.float64]) -> trimesh.Trimesh:
+    """A new mesh with the faces of another one; making thousands of shapes anew would take seconds."""
+    return trimesh.Trimesh(unit.vertices * along, unit.faces.copy(), process=False)
 
 
 def read_file(path: Path) -> list[Part]:
@@ -82,14 +104,15 @@ def _meshes(data: bytes, kind: str, neighbours: Neighbours) -> list[trimesh.Trim
     """The meshes of a file with their triangles where the file's scene has them [m]."""
     # The only material of a PLY file is a texture.
     materials: dict[str, Any] = {"skip_materials": True} if kind == "ply" else {}
+    reader: Any = mesh_loaders[kind]
     try:
         with _silenced():
-            scene = trimesh.load_scene(io.BytesIO(data), kind, resolver=neighbours, process=False, **materials)
+            read = reader(file_obj=io.BytesIO(data), file_type=kind, resolver=neighbours, **materials)
+            for arrays in read.get("geometry", {"": read}).values():
+                # First, because trimesh drops what is not finite.
+                _check_finite(arrays.get("vertices", ()), arrays.get("faces", ()))
+            scene = trimesh.load_scene(read)
             _check_size(scene)
-            for mesh in scene.geometry.values():
-                if isinstance(mesh, trimesh.Trimesh):
-                    _check_finite(mesh)  # first, because this drops what is not finite
-                    mesh.process()
             meshes = [mesh for mesh in scene.dump() if isinstance(mesh, trimesh.Trimesh) and len(mesh.faces)]
     except MeshError:
         raise
@@ -102,12 +125,13 @@ def _meshes(data: bytes, kind: str, neighbours: Neighbours) -> list[trimesh.Trim
         in_metres = trimesh.units.unit_conversion(mesh.units or "meters", "meters")
         with np.errstate(all="ignore"):
             mesh.apply_transform(np.diag([in_metres, in_metres, in_metres, 1.0]))
-        _check_finite(mesh)
+        _check_finite(mesh.vertices, mesh.faces)
     return meshes
 
 
-def _check_finite(mesh: trimesh.Trimesh) -> None:
-    if not np.isfinite(mesh.vertices[mesh.faces]).all():
+def _check_finite(vertices: ArrayLike, faces: ArrayLike) -> None:
+    corners = np.asarray(vertices, dtype=float)[np.asarray(faces, dtype=np.int64).ravel()]
+    if not np.isfinite(corners).all():
         raise MeshError("it has corners that are not finite numbers (NaN or infinite)", "nan-in-mesh")
 
 

@@ -17,8 +17,9 @@ if TYPE_CHECKING:
 
 __all__ = ["SMALLEST_CUTOFF", "PseudoInverse"]
 
-SMALLEST_CUTOFF = 1e-12
-"""Relative to the largest singular value; anything smaller is rounding."""
+SMALLEST_CUTOFF = 1e-9
+"""The smallest cutoff that counts, relative to the largest singular value. The rounding of J, some 1e-15 of it, changes
+smaller singular values by a millionth and more, and steps along them can be a billion times as long as the residual."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -26,7 +27,8 @@ class PseudoInverse(JacobianSolver):
     r"""$\Delta q = J^\dagger e + (I - J^\dagger J)\,\varphi$ with
     $J^\dagger = \sum_{\sigma_i > \tau} \sigma_i^{-1} v_i u_i^\top$.
 
-    This is the shortest step that minimises the linearised residual. Singular values below τ = cutoff · σ₁ are dropped.
+    This is the shortest step that minimises the linearised residual. Singular values below τ = cutoff · σ₁ are dropped,
+    and those below 1e-9 · σ₁ whatever the cutoff, because they are mostly rounding.
     φ pulls towards a rest posture in the null space, without moving the effector.
 
     Source: thesis, §3.2, eqs. 3.2.2 and 3.4.5 (Whitney 1969; Liégeois 1977).

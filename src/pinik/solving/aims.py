@@ -7,11 +7,14 @@ import pinocchio
 from numpy.typing import NDArray
 
 from ..problem.kinematics import Kinematics
-from ..problem.targets import NO_DIRECTION, Target
+from ..problem.targets import Target
 
-__all__ = ["between", "present"]
+__all__ = ["OPPOSITE", "between", "present"]
 
 Array = NDArray[np.float64]
+
+OPPOSITE = 1e-9
+"""The length of the mean of two unit vectors below which they count as opposite, so that it has no direction."""
 
 
 def present(kinematics: Kinematics, targets: tuple[Target, ...], q: Array) -> tuple[Target, ...]:
@@ -42,7 +45,7 @@ def _one_between(origin: Target, target: Target, part: float) -> Target:
         rotation = pinocchio.exp3(part * whole) @ origin.rotation
     direction = line(origin.direction, target.direction)
     length = float(np.linalg.norm(direction))
-    if target.direction is not None and length < NO_DIRECTION:  # the two directions are opposite
+    if target.direction is not None and length < OPPOSITE:
         direction, length = target.direction, 1.0
     return target.with_numbers(
         line(origin.position, target.position), rotation, direction / (length or 1.0), line(origin.at, target.at)

@@ -23,7 +23,7 @@ from .attempts import Outcome, Outcomes
 from .native.codec import targets_of
 from .native.outcomes import attempt_many
 from .options import OPTION_NAMES, Options
-from .origin import Origin, is_nearest, unwound_rows
+from .origin import Origin, as_start, is_nearest, unwound_rows
 from .places import read_questions
 from .prepared import Prepared
 from .processors import processors
@@ -213,7 +213,7 @@ def _starts(robot: RobotModel, q0: Any, count: int) -> tuple[Array, Mapping[str,
     if q0 is None or isinstance(q0, Mapping) or is_nearest(q0) or as_numbers(q0, "q0").ndim != 2:
         origin = Origin.of(robot, q0)
         return origin.q[np.newaxis], origin.turned
-    starts = robot.check_configurations(q0, "q0")
+    starts = as_start(robot.check_configurations(q0, "q0"))
     if len(starts) != count:
         raise InputError(f"q0 must be one start, or one for each of the {count} targets; got {len(starts)}")
     return starts, {}

@@ -9,10 +9,11 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from ..checks import FARTHEST
 from ..errors import InputError
 from ..model.robot_model import RobotModel
 
-__all__ = ["Origin", "is_nearest", "turned_near", "unwound", "unwound_rows"]
+__all__ = ["Origin", "as_start", "is_nearest", "turned_near", "unwound", "unwound_rows"]
 
 Array = NDArray[np.float64]
 
@@ -58,9 +59,16 @@ class Origin(NamedTuple):
         if q0 is None or is_nearest(q0):
             return cls(robot.neutral(), q0 is not None)
         if isinstance(q0, Mapping):
-            q = robot.configuration(q0)
+            q = as_start(robot.configuration(q0))
             return cls(q, turned={name: float(angle) for name, angle in q0.items() if robot.joint(name).nq == 2})
-        return cls(robot.check_configuration(q0, "q0"))
+        return cls(as_start(robot.check_configuration(q0, "q0")))
+
+
+def as_start(q: Array) -> Array:
+    """One or many configurations (…, nq) as starts; InputError where a joint is farther away than 1e9 rad or m."""
+    if np.abs(q).max(initial=0.0) > FARTHEST:
+        raise InputError(f"must be within ±{FARTHEST:g} rad or m in each entry; got {q.tolist()}", argument="q0")
+    return q
 
 
 def is_nearest(q0: object) -> bool:

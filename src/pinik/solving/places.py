@@ -9,7 +9,7 @@ import numpy as np
 import pinocchio
 from numpy.typing import NDArray
 
-from ..checks import as_array, as_many, as_numbers, as_points, as_rotations, as_se3
+from ..checks import as_array, as_many, as_numbers, as_plain, as_points, as_rotations, as_se3
 from ..errors import InputError
 from ..problem.target_values import as_position
 from ..problem.targets import Target, as_targets
@@ -45,7 +45,7 @@ def read_questions(
         )
     if places is None:
         return _listed(targets)
-    places, along = _with_free_axes(places)
+    places, along = _with_free_axes(as_plain(places, "places"))
     goals, turned = _goals_at(places, threads)
     pattern = _pattern(targets, turned, along, tool, relative_to)
     if pattern.position is None:
@@ -59,7 +59,7 @@ def _listed(targets: Any) -> tuple[tuple[Target, ...], Array]:
     """Problems given as Target objects."""
     if isinstance(targets, (str, Target)):
         raise InputError("places must say where the frame should be: (N, 4, 4) matrices, N SE3, or positions (N, 3)")
-    if not isinstance(targets, Iterable):
+    if not isinstance(targets, Iterable) or isinstance(targets, memoryview):
         raise InputError(f"targets must be a frame's name, a Target, or a sequence of them; got {targets!r}")
     asked = [as_targets(each) for each in targets]
     if not asked:

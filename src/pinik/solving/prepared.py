@@ -151,6 +151,8 @@ class Prepared:
 
 
 def _are_targets(value: object) -> bool:
+    if isinstance(value, memoryview):
+        return False  # iterating over some raises an error
     return isinstance(value, Target) or (isinstance(value, Sequence) and any(isinstance(v, Target) for v in value))
 
 

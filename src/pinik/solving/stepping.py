@@ -8,6 +8,7 @@ import numpy as np
 import pinocchio
 from numpy.typing import NDArray
 
+from ..checks import FARTHEST
 from ..errors import InputError
 from ..model.limits import Limits
 from ..problem.kinematics import Kinematics, Linearization
@@ -41,21 +42,24 @@ def advance(
 
 
 def _stepped(solver: JacobianSolver, kinematics: Kinematics, at: Linearization, scale: float) -> Array:
-    """The configuration after the step, clamped and scaled. Joints that are not free keep their exact values."""
+    """The configuration after the step, clamped and scaled. Joints that are not free keep their exact values.
+
+    There is no step where residual or step are not finite, or where a joint would move by more than 1e9 [rad or m].
+    """
     problem = kinematics.problem
     roots = solver.roots(problem)
     dq = solver.step(at if roots is None else at._replace(J=at.J * roots), kinematics)
     if np.shape(dq) != at.free.shape:
         raise InputError(f"{solver.name}.direction must return dq of shape {at.free.shape}; got {np.shape(dq)}")
-    dq = dq * (at.free if roots is None else at.free * roots)
-    length = math.sqrt(dq.dot(dq))
-    if not math.isfinite(length):
+    if not np.isfinite(dq).all():
         return at.q  # without a step, the run ends as stalled
-    if length > solver.max_step:
-        largest = float(np.abs(dq).max())
-        if largest > solver.max_step:
-            dq = dq * (solver.max_step / largest)
+    dq = dq * (at.free if roots is None else at.free * roots)
+    largest = float(np.abs(dq).max(initial=0.0))
     scale *= solver.step_size
+    if min(largest, solver.max_step) * scale > FARTHEST:
+        return at.q
+    if largest > solver.max_step:
+        scale *= solver.max_step / largest
     if scale != 1.0:
         dq = dq * scale
     q: Array = pinocchio.integrate(kinematics.model, at.q, dq)

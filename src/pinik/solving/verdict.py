@@ -90,7 +90,8 @@ def measure_errors(
         q: The configuration (nq,).
         tolerance: The tolerance of the targets that have none of their own.
     """
-    return tuple(_measure(robot, target, q, target.tolerance or tolerance) for target in targets)
+    pinocchio.forwardKinematics(robot.model, robot.data, q)
+    return tuple(_measure(robot, target, target.tolerance or tolerance) for target in targets)
 
 
 def measure_positions(robot: RobotModel, target: Target, q: Array) -> Array:
@@ -108,24 +109,48 @@ def measure_positions(robot: RobotModel, target: Target, q: Array) -> Array:
     return positions
 
 
-def _measure(robot: RobotModel, target: Target, q: Array, tolerance: Tolerance) -> TargetError:
-    placement = robot.placement(target.frame, q, target.relative_to)
-    if target.tool is not None:
-        placement = placement * target.tool
+def _measure(robot: RobotModel, target: Target, tolerance: Tolerance) -> TargetError:
+    """The error of a target after `forwardKinematics`.
+
+    Near the smallest tolerances rounding decides. So that the compiled engine rounds alike, every product is one of
+    Pinocchio's, and sums run from left to right (src/native/solving/certifier.cpp).
+    """
+    model, data = robot.model, robot.data
+    at = pinocchio.updateFramePlacement(model, data, robot.frame_id(target.frame))
+    if target.relative_to is not None:
+        at = pinocchio.updateFramePlacement(model, data, robot.frame_id(target.relative_to)).actInv(at)
+    tool = target.tool
+    if tool is not None:
+        at = at * tool
     position, orientation, offset = None, None, None
     if target.position is not None:
-        left = np.where(target.along, target.position - placement.translation, 0.0)
-        position = float(np.linalg.norm(left))
+        left = np.where(target.along, target.position - at.translation, 0.0)
+        position = _length(left)
         if tolerance.box is not None:
-            x, y, z = (left if target.rotation is None else target.rotation.T @ left).tolist()
+            x, y, z = (left if target.rotation is None else _turn(target.rotation).actInv(left)).tolist()
             offset = (x, y, z)
     if target.rotation is not None:
-        orientation = float(np.linalg.norm(pinocchio.log3(target.rotation @ placement.rotation.T)))
+        orientation = _length(pinocchio.log3((_turn(target.rotation) * _turn(at.rotation).inverse()).rotation))
     elif target.axis is not None:
-        axis = placement.rotation @ target.axis
-        direction = target.direction if target.at is None else target.at - placement.translation
-        assert direction is not None
-        if target.at is not None and np.linalg.norm(direction) < NO_DIRECTION:
-            return TargetError(position, 0.0, offset)
-        orientation = math.atan2(float(np.linalg.norm(np.cross(axis, direction))), float(axis @ direction))
+        axis = _turn(at.rotation).act(target.axis)
+        line = target.direction if target.at is None else target.at - at.translation
+        assert line is not None
+        there = target.at is not None and _length(line) < NO_DIRECTION
+        orientation = 0.0 if there else _angle(axis, line)
     return TargetError(position, orientation, offset)
+
+
+def _turn(rotation: Array) -> pinocchio.SE3:
+    return pinocchio.SE3(rotation, np.zeros(3))
+
+
+def _length(vector: Array) -> float:
+    x, y, z = vector.tolist()
+    return math.sqrt(x * x + y * y + z * z)
+
+
+def _angle(a: Array, b: Array) -> float:
+    """The angle between two vectors [rad], precise near 0 and π too."""
+    (ax, ay, az), (bx, by, bz) = a.tolist(), b.tolist()
+    cross = np.array([ay * bz - az * by, az * bx - ax * bz, ax * by - ay * bx])
+    return math.atan2(_length(cross), ax * bx + ay * by + az * bz)

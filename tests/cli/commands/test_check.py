@@ -70,7 +70,9 @@ def test_missing_and_unreadable_meshes_are_named(run, urdf, tmp_path):
     assert answer.json["missing_meshes"] == ["gone.stl"]
     assert len(answer.json["mesh_faults"]) == 1
     assert (answer.json["meshes"], answer.json["shapes"]) == (2, 0)
-    assert "missing mesh: gone.stl" in run("check", file).out.splitlines()
+    lines = run("check", file).out.splitlines()
+    assert "warning: missing-mesh" in lines
+    assert any("'gone.stl'" in line for line in lines)
 
 
 def test_package_dirs_are_searched(run, urdf, tmp_path):
@@ -90,7 +92,9 @@ def test_what_was_mended_is_a_warning(run, urdf):
     answer = run("check", urdf(body), "--json")
     assert answer.status == 0
     assert any("j" in words and "limit" in words for words in answer.json["warnings"])
-    assert any(line.startswith("warning: joint 'j'") for line in run("check", urdf(body)).out.splitlines())
+    lines = run("check", urdf(body)).out.splitlines()
+    assert "warning: absent-limit" in lines
+    assert any(line.startswith("  joint 'j' (line 1): <limit> has no lower") for line in lines)
 
 
 def test_yourdfpy_gives_a_second_opinion(run):
@@ -149,10 +153,9 @@ def test_joints_with_the_same_flaw_share_a_line_whatever_their_names(run, urdf):
         for k in (1, 2)
     )
     lines = run("check", urdf(f'<link name="base"/>{joints}')).out.splitlines()
-    assert [line for line in lines if line.startswith("warning")] == [
-        """warning: joint "j'1", joint "j'2": it mimics a joint that does not exist; it is left free """
-        """(the first: it mimics 'gone1', which does not exist; it is left free)"""
-    ]
+    (line,) = [line for line in lines if line.endswith(": it mimics a joint that does not exist; it is left free")]
+    assert "j'1" in line
+    assert "j'2" in line
 
 
 class TestFollowers:

@@ -71,6 +71,14 @@ def test_like_warnings_are_one_line_on_stderr_and_all_in_the_json(run):
     assert len(quadruped.json["warnings"]) == 4
 
 
+def test_a_robot_comes_from_stdin(run):
+    text = pinik.load("two_link").description.path.read_text()
+    assert run("info", "-", "--json", stdin=text).json["joints"] == run("info", "two_link", "--json").json["joints"]
+    refused = run("info", "-", stdin="<sdf/>")
+    assert (refused.status, refused.out) == (3, "")
+    assert "this is an SDF file" in refused.err
+
+
 def test_a_bad_pose_is_a_warning_and_all_the_rest_is_shown(run, tmp_path):
     arm = pinik.load("arm").description.path
     (tmp_path / "mine.urdf").write_bytes(arm.read_bytes())

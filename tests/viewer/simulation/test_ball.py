@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from pathlib import Path
 
 import numpy as np
 import pinocchio
@@ -117,3 +118,17 @@ def test_a_balls_own_tolerance_is_its_targets():
     assert here.target.tolerance == pinik.Tolerance((0.01, 0.02, 0.03), 0.1)
     here.tolerate(None)
     assert here.target.tolerance is None
+
+
+@pytest.mark.skipif(not Path("/proc/self/statm").exists(), reason="this system does not tell a process's size so")
+def test_asking_where_a_ball_is_leaves_no_memory_behind():
+    placed = ball()
+
+    def pages():
+        """The resident size, in pages."""
+        for _ in range(20_000):
+            assert len(placed.placement) == 7
+        return int(Path("/proc/self/statm").read_text().split()[1])
+
+    before = pages()
+    assert pages() - before < 100  # a leak of 80 bytes each would take 390

@@ -311,3 +311,17 @@ def test_without_the_variable_files_are_in_the_users_cache_folder(monkeypatch, t
     if sys.platform == "linux":
         assert cache_folder() == tmp_path / "xdg" / "pinik" / "shapes"
     assert cache_folder().is_absolute()
+
+
+@pytest.mark.parametrize("kind", ["pipe", "endless"])
+def test_a_cached_file_that_is_no_file_is_made_again(conversions, kind):
+    machine = load_quietly(robot(link("base", BOX)))
+    whole = shapes_of(machine)
+    file = only_file()
+    file.unlink()
+    if kind == "pipe":
+        os.mkfifo(file)
+    else:
+        file.symlink_to("/dev/zero")
+    assert shapes_of(machine) == whole
+    assert len(conversions) == 2

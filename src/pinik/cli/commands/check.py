@@ -2,17 +2,18 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import Annotated
 
 import typer
 
-from ...description.flaw import summarised
 from ..inputs.loading import check_folders, xacro_arguments
 from ..inputs.options import AllowOutside, AsJson, PackageDirs, XacroArgs
-from ..reports.inspection import Inspection, inspect
+from ..reports.check_report import emit_inspection
+from ..reports.inspection import inspect
+from ..reports.mended_file import check_target, write_mended
 from ..terminal import output
 from ..terminal.exits import ExitStatus
-from ..terminal.units import counted
 
 __all__ = ["check"]
 
@@ -26,42 +27,41 @@ def check(
             show_default=False,
         ),
     ],
+    strict: Annotated[
+        bool, typer.Option("--strict", help="Let every warning be an error, with exit status 3.")
+    ] = False,
+    fix: Annotated[
+        Path | None,
+        typer.Option(
+            metavar="OUT.urdf",
+            help="Write a copy in which all flaws are mended that have one answer, and say which.",
+        ),
+    ] = None,
     package_dir: PackageDirs = None,
     xacro_arg: XacroArgs = None,
     allow_outside: AllowOutside = False,
     as_json: AsJson = False,
 ) -> ExitStatus:
-    """Check a URDF file for faults, doubtful parts and missing meshes, and compare pinik's reading with yourdfpy's.
+    """Check a URDF file for faults, mistakes and missing meshes, and compare pinik's reading with yourdfpy's.
 
-    The exit status is 3 if the file cannot be loaded; the comparison with yourdfpy does not change it.
+    The exit status is 3 if the file cannot be loaded or, with --strict, if there is any warning, also one that --fix
+    mends. The comparison with yourdfpy does not change it.
 
     Example:
 
       pinik check lion
+      pinik check robot.urdf --fix mended.urdf
     """
     check_folders(package_dir)
+    if fix is not None:
+        fix = fix.expanduser()
+        check_target(fix, file)
     found = inspect(file, tuple(package_dir or ()), xacro_arguments(xacro_arg), allow_outside)
+    result = None if fix is None else write_mended(found, fix)
     if as_json:
-        output.emit_json(found.to_dict())
+        output.emit_json(found.to_dict(strict=strict) | {"fix": None if result is None else result.to_dict()})
     else:
-        _emit(found)
-    return ExitStatus.ANSWERED if found.loads else ExitStatus.NO_ROBOT
-
-
-def _emit(found: Inspection) -> None:
-    verdict = "loads" if found.loads else "cannot be loaded"
-    output.emit_words(f"{found.file}: {verdict}", "green" if found.loads else "red")
-    for fault in found.faults:
-        output.emit_words("fault: " + (f"{fault.element}: " if fault.element else "") + fault.message)
-    for words in summarised(found.warnings):
-        output.emit_words(f"warning: {words}")
-    for address in found.missing_meshes:
-        output.emit_words(f"missing mesh: {address}")
-    for words in found.mesh_faults:
-        output.emit_words(f"mesh: {words}")
-    opinion = found.second_opinion
-    if opinion is not None:
-        output.emit_words(str(opinion) if opinion.agrees else f"warning: {opinion}")
-    if found.loads:
-        counts = {"link": found.links, "joint": found.joints, "mesh": found.meshes, "shape": found.shapes}
-        output.emit_words(", ".join(counted(count, noun) for noun, count in counts.items()))
+        emit_inspection(found)
+        if result is not None:
+            result.emit()
+    return ExitStatus.ANSWERED if found.passes(strict=strict) else ExitStatus.NO_ROBOT

@@ -6,11 +6,13 @@ from collections.abc import Iterable, Sequence
 from pathlib import Path
 
 from ...description.flaw import summarised
+from ...description.xml import MAX_BYTES
 from ...errors import RobotLoadError, UnknownNameError
 from ...loading import load_in_silence
 from ...robot import Robot
 from ..terminal import output
 from ..terminal.exits import CommandError, ExitStatus
+from .files import read_bytes
 
 __all__ = ["check_folders", "load_robot", "xacro_arguments"]
 
@@ -23,7 +25,7 @@ def load_robot(
     xacro_args: Sequence[str] | None = None,
     allow_outside: bool = False,
 ) -> Robot:
-    """`pinik.load`, with one line on stderr for each sort of warning.
+    """`pinik.load`, with one line on stderr for each sort of warning; "-" is a URDF on stdin.
 
     Raises:
         CommandError: The robot cannot be loaded (`ExitStatus.NO_ROBOT`), a folder does not exist, or an argument of
@@ -31,10 +33,11 @@ def load_robot(
         InputError: An unknown root.
     """
     check_folders(package_dirs)
-    given = xacro_arguments(xacro_args)
+    xacro_given = xacro_arguments(xacro_args)
+    given = read_bytes(source, MAX_BYTES, "a robot description") if source == "-" else source
     try:
         robot = load_in_silence(
-            source, root=root, package_dirs=package_dirs or (), xacro_args=given, allow_outside=allow_outside
+            given, root=root, package_dirs=package_dirs or (), xacro_args=xacro_given, allow_outside=allow_outside
         )
     except (RobotLoadError, UnknownNameError, OSError) as error:
         raise CommandError(str(error), ExitStatus.NO_ROBOT) from None

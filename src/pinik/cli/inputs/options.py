@@ -27,7 +27,7 @@ RobotSource = Annotated[
     typer.Argument(
         metavar="ROBOT",
         help="The name of a robot in the catalogue ('pinik robots' lists them), or of one that "
-        "robot_descriptions has downloaded, or the path of a URDF or xacro file.",
+        "robot_descriptions has downloaded, the path of a URDF or xacro file, or - for a URDF on stdin.",
         show_default=False,
     ),
 ]

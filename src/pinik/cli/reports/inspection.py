@@ -1,24 +1,33 @@
-"""Inspect a URDF file with pinik's own reader, with Pinocchio, with trimesh (its meshes) and with yourdfpy."""
+"""Inspect a URDF file with pinik's own reader and lint, with Pinocchio, with trimesh (its meshes) and with yourdfpy."""
 
 from __future__ import annotations
 
 import logging
 import warnings
-from collections.abc import Mapping, Sequence
-from dataclasses import asdict, dataclass
+from collections import Counter
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from ...description.flaw import Flaw
+from ...description.lint.front import NOTES, lint
+from ...description.packages import Found
+from ...description.source import Source
+from ...description.xacro import is_xacro
 from ...errors import RobotLoadError, UnknownNameError
 from ...extras import needed_by
 from ...loading import Located, describe, locate
 from ...robot import Robot
+from .flaw_json import MOST_LISTED, flaw_fields, shortened
 
 if TYPE_CHECKING:
     from ...shapes.second_opinion import SecondOpinion
 
 __all__ = ["Fault", "Inspection", "inspect"]
+
+_MISSING = ("missing-mesh", "mesh-outside")
+_MESHES = (*_MISSING, "unreadable-shape")
 
 
 @dataclass(frozen=True)
@@ -42,34 +51,71 @@ class Inspection:
         file: The file.
         robot: The robot's name; None if the file cannot be loaded.
         faults: Why the file cannot be loaded.
-        warnings: What pinik repaired or ignored.
-        missing_meshes: The addresses of meshes that were not found.
-        mesh_faults: A sentence about each shape that cannot be drawn for another reason.
+        flaws: What pinik repaired or ignored, what looks wrong, and the meshes that cannot be drawn.
         links, joints, meshes, shapes: Their numbers; only joints that move, and each mesh address once.
         second_opinion: What yourdfpy says; None if the file cannot be loaded.
+        document: The bytes that were read; None if there are none.
     """
 
     file: str
     robot: str | None = None
     faults: tuple[Fault, ...] = ()
-    warnings: tuple[str, ...] = ()
-    missing_meshes: tuple[str, ...] = ()
-    mesh_faults: tuple[str, ...] = ()
+    flaws: tuple[Flaw, ...] = ()
     links: int = 0
     joints: int = 0
     meshes: int = 0
     shapes: int = 0
     second_opinion: SecondOpinion | None = None
+    document: bytes | None = None
 
     @property
     def loads(self) -> bool:
         """Whether the robot can be loaded."""
         return not self.faults
 
-    def to_dict(self) -> dict[str, Any]:
+    @property
+    def warnings(self) -> tuple[Flaw, ...]:
+        """The flaws without those that are worth knowing only."""
+        return tuple(flaw for flaw in self.flaws if flaw.code not in NOTES)
+
+    def passes(self, *, strict: bool) -> bool:
+        """Whether the robot can be loaded and, if `strict`, there is no warning."""
+        return self.loads and not (strict and self.warnings)
+
+    def to_dict(self, *, strict: bool = False) -> dict[str, Any]:
         """The JSON form; docs/json.md explains the fields."""
-        opinion = None if self.second_opinion is None else self.second_opinion.to_dict()
-        return {"schema": 1, "loads": self.loads, **asdict(self), "second_opinion": opinion}
+        missing = dict.fromkeys(flaw.mesh or "" for flaw in self.flaws if flaw.code in _MISSING)
+        unreadable = [flaw for flaw in self.flaws if flaw.code == "unreadable-shape"]
+        others = [flaw for flaw in self.warnings if flaw.code not in _MESHES]
+        counts = Counter(flaw.code for flaw in self.flaws)
+        listed: Counter[str] = Counter()
+        rows = []
+        for flaw in self.flaws:
+            listed[flaw.code] += 1
+            if listed[flaw.code] <= MOST_LISTED:
+                rows.append(flaw_fields(flaw))
+        return {
+            "schema": 1,
+            "loads": self.loads,
+            "strict": strict,
+            "passes": self.passes(strict=strict),
+            "file": self.file,
+            "robot": None if self.robot is None else shortened(self.robot),
+            "faults": [
+                {"element": fault.element and shortened(fault.element), "message": shortened(fault.message)}
+                for fault in self.faults
+            ],
+            "flaws": rows,
+            "counts": dict(sorted(counts.items())),
+            "warnings": _listed(others),
+            "missing_meshes": _listed(missing),
+            "mesh_faults": _listed(unreadable),
+            "links": self.links,
+            "joints": self.joints,
+            "meshes": self.meshes,
+            "shapes": self.shapes,
+            "second_opinion": None if self.second_opinion is None else self.second_opinion.to_dict(),
+        }
 
 
 def inspect(
@@ -92,22 +138,42 @@ def inspect(
         description = describe(located, package_dirs=folders, xacro_args=xacro_args)
         robot = Robot(description, package_dirs=folders, allow_outside=allow_outside)
     except RobotLoadError as error:
-        return Inspection(error.source, faults=(Fault(error.element, error.cause),))
-    surroundings = robot.surroundings
-    missing = tuple(address for address in description.meshes if surroundings.find(address).path is None)
-    shapes, flaws = _shapes(robot)
+        document = _document(source)
+        flaws = () if document is None else lint(document)
+        return Inspection(error.source, faults=(Fault(error.element, error.cause),), flaws=flaws, document=document)
+    found = lint(description.document, description)
+    shapes, about_shapes = _shapes(robot)
+    collisions = _missing_collisions(robot, {flaw.mesh for flaw in about_shapes})
     return Inspection(
         file=str(located.source),
         robot=robot.name,
-        warnings=tuple(dict.fromkeys(robot.warnings)),
-        missing_meshes=missing,
-        mesh_faults=tuple(flaw for flaw in flaws if flaw.mesh is None),
+        flaws=_in_order([*robot.warnings, *found, *about_shapes, *collisions]),
         links=len(description.links),
         joints=len(robot.joints),
         meshes=len(description.meshes),
         shapes=shapes,
         second_opinion=_second_opinion(robot),
+        document=description.document,
     )
+
+
+def _document(source: str) -> bytes | None:
+    """The bytes of a file that cannot be loaded; None if they cannot be read, or are no URDF but xacro."""
+    try:
+        content = Source.of(_located(source).source).content()
+    except RobotLoadError:
+        return None
+    return None if is_xacro(Path(source), content) else content
+
+
+def _in_order(flaws: Iterable[str]) -> tuple[Flaw, ...]:
+    """The flaws by line, each once; the last one of several that say the same."""
+    each = {str(flaw): flaw if isinstance(flaw, Flaw) else Flaw("<robot>", flaw, code="other") for flaw in flaws}
+    return tuple(sorted(each.values(), key=lambda flaw: flaw.line or 0))
+
+
+def _listed(texts: Iterable[str]) -> list[str]:
+    return [shortened(str(text)) for text, _ in zip(texts, range(MOST_LISTED), strict=False)]
 
 
 def _located(source: str) -> Located:
@@ -119,9 +185,10 @@ def _located(source: str) -> Located:
 
 
 def _shapes(robot: Robot) -> tuple[int, list[Flaw]]:
-    """The number of shapes that can be drawn, and a sentence about each one that cannot."""
+    """The number of shapes that can be drawn, and a flaw for each one that cannot, or that has an unlikely size."""
     with needed_by("pinik check", "check"):
         from ...shapes.meshes import load_shapes
+        from ...shapes.sizes import size_flaws
 
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")  # from the mesh readers; the flaws say what cannot be read
@@ -130,7 +197,27 @@ def _shapes(robot: Robot) -> tuple[int, list[Flaw]]:
             shapes, flaws = load_shapes(robot)
         finally:
             logging.disable(logging.NOTSET)
-    return len(shapes), flaws
+    corners = ((shape.link, shape.name, shape.mesh.vertices) for shape in shapes)
+    return len(shapes), [*flaws, *size_flaws(robot, corners)]
+
+
+def _missing_collisions(robot: Robot, known: set[str | None]) -> list[Flaw]:
+    """A flaw for each mesh that is used for collisions only and is not found."""
+    flaws = []
+    found: dict[str, Found] = {}
+    for link in robot.description.link_tags:
+        for shape in link.collisions:
+            address = shape.filename
+            if shape.kind != "mesh" or address in known:
+                continue
+            if address not in found:
+                found[address] = robot.surroundings.find(address)
+            if found[address].path is None:
+                about = found[address]
+                cause = f"there is no mesh {address!r}: {about.why}"
+                owner = f"link {link.name!r}, collision"
+                flaws.append(Flaw(owner, cause, code=about.code, line=shape.line, mend=about.mend, mesh=address))
+    return flaws
 
 
 def _second_opinion(robot: Robot) -> SecondOpinion:

@@ -96,12 +96,16 @@ def _problem(robot: Any, asked: Problem) -> Any:
         target, chain = term.pattern, term.chain
         bounds = [reach_bounds(term, limits) for limits in (free, limited)]
         base = next((b.base for b in bounds if b is not None), np.zeros(3))
-        reference = chain.reference_placement or _IDENTITY
+        reference, tool = chain.reference_placement or _IDENTITY, target.tool or _IDENTITY
+        frame = asked.robot.model.frames[asked.robot.frame_id(target.frame)].placement
         problem.add_term(
             robot=robot,
             frame_joint=chain.frame_joint,
-            frame_rotation=chain.frame_placement.rotation,
-            frame_translation=chain.frame_placement.translation,
+            frame_rotation=frame.rotation,
+            frame_translation=frame.translation,
+            has_tool=target.tool is not None,
+            tool_rotation=tool.rotation,
+            tool_translation=tool.translation,
             has_reference=chain.reference_placement is not None,
             reference_joint=chain.reference_joint,
             reference_rotation=reference.rotation,

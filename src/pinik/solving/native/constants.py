@@ -8,7 +8,7 @@ from ... import checks
 from ...model import configurations, joint, limits
 from ...problem import problem, reach, slack, targets, tolerance
 from ...solvers import ccd, chaser, damped_least_squares, pseudo_inverse
-from .. import attempts, changes, choice, run, starts, walk
+from .. import aims, attempts, changes, choice, run, starts, walk
 from .module import load
 
 __all__ = ["CONSTANTS", "make_constants"]
@@ -16,6 +16,7 @@ __all__ = ["CONSTANTS", "make_constants"]
 CONSTANTS = {
     "farthest": checks.FARTHEST,
     "widest_range": joint.WIDEST_RANGE,
+    "unit_rounding": configurations.UNIT_ROUNDING,
     "largest_unit_error": configurations.LARGEST_UNIT_ERROR,
     "barely_outside": limits.BARELY_OUTSIDE,
     "radian": problem.RADIAN,
@@ -44,6 +45,7 @@ CONSTANTS = {
     "jump_floor": changes.JUMP_FLOOR,
     "jump_factor": changes.JUMP_FACTOR,
     "jump_damping": changes.JUMP_DAMPING,
+    "opposite": aims.OPPOSITE,
     "creep_halvings": walk.CREEP_HALVINGS,
     "tick_iterations": walk.TICK_ITERATIONS,
 }

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import pinocchio
 
-from ...model.configurations import LARGEST_UNIT_ERROR
+from ...model.configurations import LARGEST_UNIT_ERROR, UNIT_ROUNDING
 from ...model.robot_model import RobotModel
 from .compiling import native_robot
 from .module import load
@@ -37,6 +37,7 @@ def make_walk(robot: RobotModel, frame: int, reference: int | None) -> FrameWalk
         reference_joint=reference_joint,
         reference_rotation=reference_placement.rotation,
         reference_translation=reference_placement.translation,
+        unit_rounding=UNIT_ROUNDING,
         largest_unit_error=LARGEST_UNIT_ERROR,
     )
     return walk

@@ -7,6 +7,7 @@ import html
 import json
 import re
 from collections.abc import Mapping
+from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
@@ -47,20 +48,28 @@ def animation_page(
         "frame_bytes": recording.frame_bytes,
         "frames_per_second": FRAMES_PER_SECOND,
     }
-    modules = {
-        f"pinik/{module.name}": f"data:text/javascript;base64,{_base64(module.read_bytes())}"
-        for module in sorted(page.glob("*.js"))
-    }
     pieces = {
         "title": html.escape(f"{robot['name']} – pinik"),
-        "style": (page / "style.css").read_text("utf-8"),
-        "importmap": _json_in_html({"imports": modules}),
-        "meshcat": _script_in_html(meshcat_script().read_text("utf-8")),
         "recording": _json_in_html(document),
+        **_fixed_pieces(page, max(file.stat().st_mtime_ns for file in page.iterdir())),
     }
     # A single pass, so that a placeholder inside one of the pieces is never replaced.
     player = (page / "player.html").read_text("utf-8")
     return re.sub(r"\{\{(\w+)\}\}", lambda place: pieces[place[1]], player)
+
+
+@lru_cache(maxsize=1)
+def _fixed_pieces(page: Path, changed: int) -> dict[str, str]:
+    """Return what is the same in all animations, kept because it takes long; `changed` is the files' date."""
+    modules = {
+        f"pinik/{module.name}": f"data:text/javascript;base64,{_base64(module.read_bytes())}"
+        for module in sorted(page.glob("*.js"))
+    }
+    return {
+        "style": (page / "style.css").read_text("utf-8"),
+        "importmap": _json_in_html({"imports": modules}),
+        "meshcat": _script_in_html(meshcat_script().read_text("utf-8")),
+    }
 
 
 def _base64(data: bytes) -> str:

@@ -50,8 +50,7 @@ class Show:
         self.recording = Recording()
         menu = RobotMenu(session.robot)
         self._loader = RobotLoader(menu, later)
-        self._later = later
-        self._clock = clock
+        self._later, self._clock = later, clock
         self._seats = Seats()
         self._hello = hello_message(version, session.methods, menu.own_names)
         self._generation = 0

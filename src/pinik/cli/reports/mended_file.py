@@ -1,0 +1,128 @@
+"""The mended copy of a URDF that `pinik check --fix` writes, and what it says about it."""
+
+from __future__ import annotations
+
+import contextlib
+import os
+from collections import Counter
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from ...description.flaw import Flaw
+from ...description.lint.front import NOTES
+from ...description.lint.mending import Mending, mended
+from ...description.xml import DocumentError, parse
+from ..inputs.files import check_file, write_file
+from ..terminal import output
+from ..terminal.exits import CommandError
+from ..terminal.units import counted
+from .flaw_json import MOST_LISTED, flaw_fields, shortened
+from .inspection import Inspection
+
+__all__ = ["MendedFile", "check_target", "write_mended"]
+
+_MOST_NAMED = 6
+_LONGEST = 200
+
+
+@dataclass(frozen=True)
+class MendedFile:
+    """What became of --fix.
+
+    Attributes:
+        file: The file that was to be written.
+        mending: What was mended and what was left; None if the document is no XML.
+        fault: Why nothing was written; empty if the file was written.
+        moved: Whether the file is in another folder than the original one, whose relative addresses it has.
+    """
+
+    file: Path
+    mending: Mending | None
+    fault: str = ""
+    moved: bool = False
+
+    def to_dict(self) -> dict[str, Any]:
+        """The JSON form; docs/json.md explains the fields."""
+        done = () if self.mending is None else self.mending.done
+        left = () if self.mending is None else self.mending.left
+        return {
+            "file": str(self.file),
+            "written": not self.fault,
+            "fault": shortened(self.fault) or None,
+            "mended": [flaw_fields(flaw) for flaw in done[:MOST_LISTED]],
+            "left": [flaw_fields(one.flaw) | {"because": shortened(one.why)} for one in left[:MOST_LISTED]],
+        }
+
+    def emit(self) -> None:
+        """Print what was mended, what is left and why."""
+        if self.fault or self.mending is None:
+            output.emit(output.painted(f"{self.file}: not written: {shortened(self.fault, _LONGEST)}", "red"))
+            return
+        left = [one for one in self.mending.left if one.flaw.code not in NOTES]
+        rest = f"; {_are(len(left))} left to you" if left else ""
+        output.emit(output.painted(f"{self.file}: written; {_are(len(self.mending.done))} mended{rest}", "green"))
+        for code, flaws in _by_code(self.mending.done).items():
+            output.emit(f"  mended {code}: {_named(flaws)}")
+        reasons = Counter((one.flaw.code, one.why) for one in left)
+        for (code, why), count in reasons.items():
+            output.emit(f"  left {code}{f', {count:,} times' if count > 1 else ''}: {shortened(why, _LONGEST)}")
+        if self.moved:
+            output.emit("  its relative addresses of meshes begin at its own folder, which is another one")
+
+
+def check_target(target: Path, source: str) -> None:
+    """Check where --fix is to write, before any work.
+
+    Raises:
+        CommandError: It is the file itself, or a file cannot be written there.
+    """
+    with contextlib.suppress(OSError):
+        if os.path.samefile(target, Path(source).expanduser()):
+            raise CommandError(f"--fix {target}: this is the file itself; name another one, so that it is kept")
+    check_file(target, "--fix")
+
+
+def write_mended(found: Inspection, target: Path) -> MendedFile:
+    """Mend an inspected file and write the result whole, if it can be loaded.
+
+    Raises:
+        CommandError: The file cannot be written.
+    """
+    if found.document is None:
+        return MendedFile(target, None, "there is no document to mend")
+    try:
+        mending = mended(found.document)
+        parse(mending.document)
+    except DocumentError as error:
+        return MendedFile(target, None, str(error))
+    if mending.fault:
+        return MendedFile(target, mending, f"it cannot be loaded after the mends either: {mending.fault}")
+    write_file(target, mending.document, "--fix")
+    moved = target.absolute().parent.resolve() != Path(found.file).absolute().parent.resolve()
+    return MendedFile(target, mending, moved=moved and _has_relative_addresses(mending.document))
+
+
+def _has_relative_addresses(document: bytes) -> bool:
+    addresses = (element.attributes.get("filename", "") for element in parse(document).walk() if element.tag == "mesh")
+    return any(address and "://" not in address and not address.startswith("/") for address in addresses)
+
+
+def _by_code(flaws: Sequence[Flaw]) -> dict[str, list[Flaw]]:
+    groups: dict[str, list[Flaw]] = {}
+    for flaw in flaws:
+        groups.setdefault(flaw.code, []).append(flaw)
+    return groups
+
+
+def _named(flaws: Sequence[Flaw]) -> str:
+    places = [shortened(f"{flaw.element} (line {flaw.line})", _LONGEST) for flaw in flaws[:_MOST_NAMED]]
+    more = f" and {len(flaws) - _MOST_NAMED:,} more" if len(flaws) > _MOST_NAMED else ""
+    return f"{', '.join(places)}{more}"
+
+
+def _are(count: int) -> str:
+    if count == 0:
+        return "no flaw is"
+    return f"{counted(count, 'flaw')} {'is' if count == 1 else 'are'}"

@@ -1,0 +1,1 @@
+"""What is plainly wrong, or hardly meant, in a robot description that can be read all the same."""

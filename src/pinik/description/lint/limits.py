@@ -1,0 +1,85 @@
+"""Joint limits that exclude 0, leave no travel, or ask more of a leader than its follower can do."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+
+from ..flaw import Flaw
+from ..joints import JointTag, Mimic
+from ..xml import Element
+from .plain import BOUNDED, joint_values, named
+
+__all__ = ["followers", "limits"]
+
+_SLACK = 1e-3  # of a follower's travel: files round their limits
+_ONE_VALUE = 1e-9  # [rad or m]: a range this narrow holds a single value
+
+
+def limits(robot: Element) -> Iterator[Flaw]:
+    """The flaws of the limits of single joints."""
+    for joint in joint_values(robot):
+        lower, upper = joint.lower, joint.upper
+        if joint.kind not in BOUNDED or lower is None or upper is None or lower > upper:
+            continue
+        if lower == upper:
+            yield Flaw(
+                joint.owner,
+                f"its lower and its upper limit are both {lower:g}, so that it cannot move",
+                code="no-travel",
+                line=joint.line,
+                common="its lower and its upper limit are the same, so that it cannot move",
+                why="Solves that need the joint miss their targets.",
+                mend='Give its limits, or write type="fixed".',
+            )
+        elif not lower <= 0.0 <= upper:
+            yield Flaw(
+                joint.owner,
+                f"0 lies outside its limits {lower:g}…{upper:g}",
+                code="zero-outside-limits",
+                line=joint.line,
+                common="0 lies outside its limits",
+                why="The neutral configuration breaks the limits; solves start from the nearest one inside.",
+                mend="Nothing, if this is meant; give a start (q0) where it matters.",
+            )
+
+
+def followers(joints: Sequence[JointTag], robot: Element) -> Iterator[Flaw]:
+    """The flaws of followers that reach the ends of their limits before their leaders do."""
+    by_name = {joint.name: joint for joint in joints}
+    elements = {element.attributes.get("name", ""): element for element in robot.named("joint")}
+    for joint in joints:
+        leader = None if joint.mimic is None else by_name.get(joint.mimic.leader)
+        if joint.mimic is None or leader is None or joint.mimic.multiplier == 0.0:
+            continue
+        own, kept = _range(leader), _kept(joint, joint.mimic)
+        if own is None or kept is None:
+            continue
+        slack = _SLACK * (kept[1] - kept[0])
+        low, high = max(own[0], kept[0]), min(own[1], kept[1])
+        # Without any room left the follower's limits are ignored, about which the robot itself warns.
+        if high - low > _ONE_VALUE and (own[0] < kept[0] - slack or own[1] > kept[1] + slack):
+            lower, upper = _range(joint) or (0.0, 0.0)
+            element = elements[joint.name]
+            yield Flaw(
+                named(element),
+                f"it cannot follow {leader.name!r} over its limits {own[0]:g}…{own[1]:g}: its own limits "
+                f"{lower:g}…{upper:g} leave {leader.name!r} only {low:g}…{high:g}",
+                code="follower-narrows",
+                line=element.line,
+                common="its own limits leave the joint that it follows only a part of its range",
+                why="pinik keeps followers inside their limits, and other programs do not.",
+                mend="Give leader and follower limits that fit the multiplier and the offset.",
+            )
+
+
+def _range(joint: JointTag) -> tuple[float, float] | None:
+    return (joint.lower or 0.0, joint.upper or 0.0) if joint.kind in BOUNDED else None
+
+
+def _kept(follower: JointTag, mimic: Mimic) -> tuple[float, float] | None:
+    """The range of the leader in which the follower stays inside its limits."""
+    own = _range(follower)
+    if own is None:
+        return None
+    ends = [(limit - mimic.offset) / mimic.multiplier for limit in own]
+    return min(ends), max(ends)
