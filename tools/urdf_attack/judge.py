@@ -149,7 +149,7 @@ class Judge:
         if event == "open" and isinstance(arguments[0], (str, bytes)):
             path = os.path.abspath(os.fsdecode(arguments[0]))
             # Folders above the robot may be packages, which only their manifest tells.
-            if not path.startswith(self._allowed) and os.path.basename(path) != "package.xml":
+            if not path.startswith(self._allowed) and os.path.basename(path) != "package.xml" and path != os.devnull:
                 self._opened.append(path[:200])
 
 
