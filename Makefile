@@ -7,15 +7,19 @@ engine := CMakeLists.txt $(wildcard src/native/*.cmake src/native/*/*)
 compiled := build/{wheel_tag}
 sanitized := build/sanitized
 
+ROOMS := solvers problem
+
 # A sourced ROS workspace would put another Pinocchio, built for another Python, before ours.
 unexport PYTHONPATH
 
-.PHONY: help run test lint versions sanitize bench notebooks clean
+.PHONY: help run test lint coverage mutants versions sanitize bench notebooks clean
 
 help:
 	@echo "make run       install what is missing into $(VENV), run a tour and open the live view"
 	@echo "make test      run every check: style, types and tests"
 	@echo "make lint      check style and types only"
+	@echo "make coverage  run the tests and tell which branches of src/pinik they miss"
+	@echo "make mutants   tell which changes of ROOMS=\"solvers problem\" no test notices"
 	@echo "make versions  build, install and try pinik under every other Python that it supports and that is found here"
 	@echo "make sanitize  run the engine's tests under AddressSanitizer and UndefinedBehaviorSanitizer"
 	@echo "make bench     measure how fast the solvers are"
@@ -35,6 +39,20 @@ lint: $(VENV)/installed-dev
 	@$(python) -m ruff check .
 	@$(python) -m ruff format --check .
 	@$(python) -m mypy
+
+# Processes that tests start are measured too, wherever they run, so the file has an absolute path.
+coverage: export COVERAGE_FILE = $(CURDIR)/build/coverage/data
+coverage: $(VENV)/installed-dev
+	@rm -rf build/coverage && mkdir -p build/coverage
+	@$(python) -m coverage run -m pytest --numprocesses=auto --dist=worksteal --timeout=600
+	@$(python) -m coverage combine --quiet
+	@$(python) -m coverage report --skip-covered --show-missing --sort=cover
+	@$(python) -m coverage json --quiet -o build/coverage/report.json
+	@$(python) tools/branch_coverage.py build/coverage/report.json 95
+
+mutants: $(VENV)/installed-dev
+	@$(pip) install 'mutmut>=3.8,<4'
+	@$(python) tools/mutants.py $(ROOMS)
 
 versions: $(python)
 	@$(python) tools/try_versions.py

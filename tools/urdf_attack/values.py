@@ -127,9 +127,13 @@ DEVOURED = (
 )
 
 
+NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?", re.ASCII)
+
+
 def is_numeric(text: str) -> bool:
-    """Whether an attribute holds numbers only."""
-    return bool(re.fullmatch(r"\s*[-+.\deE]*\d[-+.\deE\s]*", text))
+    """Whether an attribute holds plain numbers, at least one."""
+    words = text.split()
+    return bool(words) and all(NUMBER.fullmatch(word) for word in words)
 
 
 def near_name(random: Random, name: str) -> str:
