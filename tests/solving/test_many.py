@@ -192,6 +192,14 @@ class TestInputs:
                 many[0]
 
 
+@pytest.mark.parametrize("engine", ["python", pytest.param("native", marks=needs_native)])
+def test_a_robot_without_joints_is_asked_as_any_other(engine):
+    robot = pinik.load('<robot name="stone"><link name="stone"/></robot>')
+    many = pinik.solve_many(robot, "stone", [[1.0, 0.0, 0.0], [0.0, 0.0, 0.0]], engine=engine)
+    assert many.q.shape == (2, 0)
+    assert many.success.tolist() == [False, True]
+
+
 class TestSolutions:
     def test_one_of_many_is_a_solution_with_the_same_figures(self, panda, poses):
         far = poses.copy()

@@ -228,7 +228,7 @@ def _attempt_one_by_one(prepared: Prepared, goals: Array, starts: Array, nearest
     largest = np.array([largest_of(outcome.errors) for outcome in outcomes], dtype=np.float64)  # None becomes NaN
     largest = largest.reshape(-1, 2)
     return Outcomes(
-        np.array([outcome.q for outcome in outcomes]).reshape(-1, prepared.robot.model.nq),
+        np.array([outcome.q for outcome in outcomes]).reshape(len(outcomes), prepared.robot.model.nq),
         np.array([outcome.status for outcome in outcomes], dtype=object),
         largest[:, 0],
         largest[:, 1],

@@ -192,6 +192,11 @@ def test_inertias_that_no_body_has(numbers, code):
     assert only(inertial(*numbers)).code == code
 
 
+@pytest.mark.parametrize("numbers", [(1e-300, 1e300, 1e300, 1e300), (1e300, 1e-300, 1e-300, 1e-300), (5e-324, 1, 1, 1)])
+def test_masses_and_inertias_may_be_as_large_or_small_as_numbers_can_be(numbers):
+    flaws(inertial(*numbers))
+
+
 def test_inertias_of_bodies_are_not_doubted():
     """A steel ball, a thin rod, a plate with rounded numbers, a massless link, and a turned box, by their formulas."""
     ball = 0.4 * 0.51 * 0.025**2

@@ -74,9 +74,10 @@ def _fault(mass: float, entries: list[float], reach: float) -> _Fault | None:
     if most > (least + middle) * (1.0 + _ROUNDING):
         common = "its inertia is that of no body, as one principal moment is larger than the sum of the others"
         return _Fault(code="inertia-triangle", cause=f"{common}: {shown}", mend=compute, common=common)
-    radius = math.sqrt((least + middle + most) / (2.0 * mass))  # of gyration [m]
-    # The solid ball of the same mass and the same sum of moments.
-    density = mass / (4.0 / 3.0 * math.pi * ((least + middle + most) / (1.2 * mass)) ** 1.5)
+    with np.errstate(all="ignore"):  # a file may have any numbers, which overflow or underflow here
+        radius = np.sqrt((least + middle + most) / np.float64(2.0 * mass))  # of gyration [m]
+        # The solid ball of the same mass and the same sum of moments.
+        density = mass / (4.0 / 3.0 * math.pi * np.sqrt((least + middle + most) / np.float64(1.2 * mass)) ** 3)
     if density > _DENSEST:
         common = f"its mass and inertia are those of a body of over {_DENSEST:g} kg/m³; osmium has 22,590"
         cause = f"its mass of {mass:g} kg and its inertia are those of a body of {density:.2g} kg/m³; osmium has 22,590"
