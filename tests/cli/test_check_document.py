@@ -8,6 +8,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from pinik.description.lint.front import NOTES
+from pinik.shapes.mesh_checks import UNDRAWN
 
 ROOT = Path(__file__).parents[2]
 CODE = re.compile(r"[a-z]+(-[a-z]+)*")
@@ -29,7 +30,7 @@ def values_named_code(tree: ast.AST) -> Iterator[ast.expr]:
 
 def used() -> set[str]:
     """The codes of flaws in the source; those of XML errors and of processes are no texts."""
-    return {
+    return set(UNDRAWN) | {
         part.value
         for file in sorted((ROOT / "src" / "pinik").rglob("*.py"))
         for value in values_named_code(ast.parse(file.read_text("utf-8")))

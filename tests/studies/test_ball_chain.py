@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -92,3 +93,17 @@ def test_a_ball_within_the_tolerance_is_left_alone(method):
     chain = BallChain(np.zeros(3), np.ones(3))
     step = ProgramChase(method, chain, **AT | {"tolerance": 0.5}).step(np.array([0.1, 0.1, 3.0]))
     assert (step.iterations, step.joint_updates, step.reached, step.jump) == (0, 0, True, 0.0)
+
+
+@pytest.mark.skipif(not Path("/proc/self/statm").exists(), reason="this system does not tell a process's size so")
+def test_turning_a_bone_leaves_no_memory_behind():
+    chain = BallChain(np.zeros(3), np.ones(1))
+
+    def pages():
+        """The resident size, in pages."""
+        for _ in range(20_000):
+            chain.turn(0, np.eye(3), np.array([0.01, 0.02, 0.0]))
+        return int(Path("/proc/self/statm").read_text().split()[1])
+
+    before = pages()
+    assert pages() - before < 100  # a leak of 80 bytes each would take 390

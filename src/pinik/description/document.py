@@ -57,13 +57,13 @@ def _without_surroundings(content: bytes, flaws: list[Flaw]) -> bytes:
     if not content.startswith(_UTF_16):
         whole = content.rstrip(b"\0 \t\r\n")
         if b"\0" in content[len(whole) :]:
-            _note(flaws, "null bytes at its end are ignored", "junk-around", whole.count(b"\n") + 1)
+            _note(flaws, "null bytes at its end are ignored", code="junk-around", line=whole.count(b"\n") + 1)
             content = whole + content[len(whole) :].replace(b"\0", b" ")
     blank = len(content) - len(content.lstrip(b"\xef\xbb\xbf \t\r\n"))
     if not content.startswith((b"<", *_UTF_16), blank):
         begins = min((place for word in _BEGINNINGS if (place := content.find(word)) > 0), default=0)
         if begins and b"\0" not in content[:begins]:
-            _note(flaws, "text before its first element is ignored", "junk-around", 1)
+            _note(flaws, "text before its first element is ignored", code="junk-around", line=1)
             content = _blank(content, 0, begins)
     return content
 
@@ -74,12 +74,17 @@ def _mended(content: bytes, fault: BrokenXMLError, flaws: list[Flaw]) -> bytes |
         begins = fault.start
         if begins is None or b"<robot" in content[begins:]:
             raise DocumentError(f"it holds two documents; the second begins on line {fault.line}") from None
-        _note(flaws, "text after its last element is ignored", "junk-around", fault.line)
+        _note(flaws, "text after its last element is ignored", code="junk-around", line=fault.line)
         return _blank(content, begins, len(content))
     if fault.kind == "encoding":
         return _in_utf_8(content, flaws)
     if fault.kind == "token" and any(b"--" in comment[4:-3] for comment in _COMMENT.findall(content)):
-        _note(flaws, 'a comment contains "--", which XML forbids; comments are ignored', "bad-comment", fault.line)
+        _note(
+            flaws,
+            'a comment contains "--", which XML forbids; comments are ignored',
+            code="bad-comment",
+            line=fault.line,
+        )
         return _COMMENT.sub(lambda comment: _blank(comment[0], 0, len(comment[0])), content)
     return None
 
@@ -97,7 +102,7 @@ def _in_utf_8(content: bytes, flaws: list[Flaw]) -> bytes | None:
             text, taken = content.decode("utf-8"), "UTF-8"
         except UnicodeDecodeError:
             text, taken = content.decode("latin-1"), "Latin-1"
-        _note(flaws, f"its bytes are not {name[:40]!r}, as it declares; they are read as {taken}", "encoding")
+        _note(flaws, f"its bytes are not {name[:40]!r}, as it declares; they are read as {taken}", code="encoding")
     return declared_as_utf_8(text.encode("utf-8"))
 
 
@@ -111,5 +116,5 @@ def _blank(content: bytes, start: int, end: int) -> bytes:
     return content[:start] + re.sub(rb"[^\n]", b" ", content[start:end]) + content[end:]
 
 
-def _note(flaws: list[Flaw], cause: str, code: str, line: int | None = None) -> None:
+def _note(flaws: list[Flaw], cause: str, *, code: str, line: int | None = None) -> None:
     flaws.append(Flaw("the document", cause, code=code, line=line))

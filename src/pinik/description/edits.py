@@ -16,6 +16,7 @@ __all__ = [
     "edited",
     "escaped",
     "moved_to_child",
+    "new_value",
     "overlap",
     "renamed_attribute",
     "renamed_element",
@@ -134,6 +135,15 @@ def renamed_element(document: bytes, element: Element, name: str) -> tuple[Edit,
 def renamed_attribute(document: bytes, element: Element, attribute: str, name: str) -> tuple[Edit, ...]:
     """The edit that gives an attribute another name."""
     return (Edit(*start_tag(document, element).attributes[attribute].name, name),)
+
+
+def new_value(document: bytes, element: Element, attribute: str, value: str) -> tuple[Edit, ...]:
+    """The edit that gives an attribute another value; none if it cannot be found, as in a document in UTF-16."""
+    try:
+        place = start_tag(document, element).attributes.get(attribute)
+    except ValueError:
+        return ()
+    return () if place is None else (Edit(*place.value, escaped(value)),)
 
 
 def moved_to_child(document: bytes, element: Element, attribute: str, child: str, name: str) -> tuple[Edit, ...]:

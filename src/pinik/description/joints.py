@@ -80,13 +80,13 @@ class JointTag:
     friction: float | None = None
 
 
-def read_joint(element: Element, flaws: list[Flaw]) -> JointTag:
-    """Read and check a `<joint>`. What is left out or assumed is added to `flaws`.
+def read_joint(element: Element, flaws: list[Flaw], document: bytes) -> JointTag:
+    """Read and check a `<joint>` of a document. What is left out or assumed is added to `flaws`.
 
     Raises:
         DocumentError: Something that decides where links are cannot be read, can be read in two ways, or is missing.
     """
-    joint = Part.named(element, flaws)
+    joint = Part.named(element, flaws, document)
     kind = joint.text("type")
     if kind not in JOINT_KINDS:
         raise joint.fault(f"unknown type {kind!r}; it must be one of {', '.join(JOINT_KINDS)}")

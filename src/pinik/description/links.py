@@ -55,18 +55,19 @@ class LinkTag:
         return self.visuals + self.collisions
 
 
-def read_link(element: Element, colors: Mapping[str, Color], flaws: list[Flaw]) -> LinkTag:
+def read_link(element: Element, colors: Mapping[str, Color], flaws: list[Flaw], document: bytes) -> LinkTag:
     """Read and check a `<link>`. What is left out or assumed is added to `flaws`.
 
     Args:
         element: The `<link>`.
         colors: The colours of the materials that have a name.
         flaws: The list of flaws.
+        document: The bytes in which the element stands.
 
     Raises:
         DocumentError: The link has no name.
     """
-    link = Part.named(element, flaws)
+    link = Part.named(element, flaws, document)
     return LinkTag(
         name=link.name,
         visuals=read_shapes(link, "visual", colors),

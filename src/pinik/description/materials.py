@@ -15,10 +15,10 @@ Color = tuple[float, float, float, float]
 _BYTE = 255.0
 
 
-def named_colors(robot: Element, flaws: list[Flaw]) -> dict[str, Color]:
+def named_colors(robot: Element, flaws: list[Flaw], document: bytes) -> dict[str, Color]:
     """The colours of all materials that have a name: those of `<robot>` first, then those in links, the first of each.
 
-    Flaws in them are added to `flaws`.
+    Flaws in them are added to `flaws`, with edits of `document`.
     """
     in_links = [
         material
@@ -29,22 +29,25 @@ def named_colors(robot: Element, flaws: list[Flaw]) -> dict[str, Color]:
     colors: dict[str, Color] = {}
     for material in [*robot.named("material"), *in_links]:
         name = material.attributes.get("name", "")
-        color = color_of(material, f"material {in_words(name)!r}" if name else "material without a name", flaws)
+        color = color_of(
+            material, f"material {in_words(name)!r}" if name else "material without a name", flaws, document
+        )
         if color is not None and name:
             colors.setdefault(name, color)
     return colors
 
 
-def color_of(material: Element, owner: str, flaws: list[Flaw] | None = None) -> Color | None:
+def color_of(material: Element, owner: str, flaws: list[Flaw] | None = None, document: bytes = b"") -> Color | None:
     """The colour that a `<material>` itself gives; None if there is none, or none that can be read.
 
     Args:
         material: The element.
         owner: What flaws call it.
         flaws: The list to which its flaws are added; None to add them nowhere.
+        document: The bytes in which the element stands; empty if its flaws need no edits.
     """
     noted: list[Flaw] = [] if flaws is None else flaws
-    part = Part(material, owner, noted).only("color")
+    part = Part(material, owner, noted, document).only("color")
     if part is None:
         return None
     try:

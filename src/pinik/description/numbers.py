@@ -53,6 +53,16 @@ class Reading:
     def __str__(self) -> str:
         return " ".join(f"{value:.12g}" for value in self.values)
 
+    @property
+    def exact(self) -> str:
+        """The numbers in plain notation, with all of their digits."""
+        return " ".join(_shortest(value) for value in self.values)
+
+
+def _shortest(value: float) -> str:
+    short = f"{value:.12g}"
+    return short if float(short) == value else repr(value)
+
 
 def plain_number(text: str) -> float | None:
     """The number, if the text is nothing but a finite one in the notation that all URDF readers accept; else None."""

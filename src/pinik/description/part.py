@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass
 
-from .flaw import Flaw
+from .edits import new_value
+from .flaw import Edit, Flaw
 from .numbers import FARTHEST, NumberError, Reading, in_words, read_numbers
 from .xml import DocumentError, Element
 
@@ -24,30 +25,39 @@ class Part:
         element: The element.
         owner: What it belongs to, in the words of messages, such as "joint 'elbow'".
         flaws: The list to which the flaws of the document are added.
+        document: The bytes in which the element stands; empty if its flaws need no edits.
     """
 
     element: Element
     owner: str
     flaws: list[Flaw]
+    document: bytes = b""
 
     @classmethod
-    def named(cls, element: Element, flaws: list[Flaw]) -> Part:
+    def named(cls, element: Element, flaws: list[Flaw], document: bytes) -> Part:
         """A link or joint, which is its own owner.
 
         Raises:
             DocumentError: Its name is missing or empty.
         """
-        return cls(element, f"{element.tag} {required_name(element)!r}", flaws)
+        return cls(element, f"{element.tag} {required_name(element)!r}", flaws, document)
 
     @property
     def name(self) -> str:
         """The `name` of a link or joint that has one."""
         return self.element.attributes["name"]
 
-    def flaw(self, cause: str, *, code: str, common: str | None = None, mend: str = "") -> None:
+    def flaw(
+        self, cause: str, *, code: str, common: str | None = None, mend: str = "", edits: Sequence[Edit] = ()
+    ) -> None:
         """Add a flaw of this element."""
-        flaw = Flaw(self.owner, cause, code=code, line=self.element.line, common=common, mend=mend)
+        flaw = Flaw(self.owner, cause, code=code, line=self.element.line, common=common, mend=mend, edits=edits)
         self.flaws.append(flaw)
+
+    def misread(self, attribute: str, cause: str, value: str, *, code: str, common: str | None = None) -> None:
+        """Add a flaw of an attribute whose mend is another value, which means what was read."""
+        edits = new_value(self.document, self.element, attribute, value)
+        self.flaw(cause, code=code, common=common, mend=f'write {attribute}="{value}"', edits=edits)
 
     def fault(self, cause: str) -> DocumentError:
         """An error about this element."""
@@ -59,7 +69,7 @@ class Part:
 
     def of(self, element: Element, owner: str | None = None) -> Part:
         """A part of this part."""
-        return Part(element, self.owner if owner is None else owner, self.flaws)
+        return Part(element, self.owner if owner is None else owner, self.flaws, self.document)
 
     def only(self, tag: str) -> Part | None:
         """The child with this tag, or None. Of several the first counts, as in urdfdom and yourdfpy."""
@@ -139,18 +149,19 @@ class Part:
         if self.element.attributes.get(attribute, "0").strip():
             return self.vector(attribute, quantity, _ZERO)
         cause = f'<origin {attribute}=""> is empty, which is read as "0 0 0"'
-        self.flaw(cause, code="empty-origin", mend=f'write {attribute}="0 0 0"')
+        self.misread(attribute, cause, "0 0 0", code="empty-origin")
         return _ZERO
 
     def _quoted(self, attribute: str) -> str:
         return f'<{self.element.tag} {attribute}="{in_words(self.element.attributes[attribute])}">'
 
     def _note(self, attribute: str, reading: Reading) -> None:
-        self.flaw(
+        self.misread(
+            attribute,
             f'{self._quoted(attribute)} has {reading.oddity}; it is read as "{reading}"',
+            reading.exact,
             code="loose-number",
             common=f"numbers have {reading.oddity}; they are read as plain numbers",
-            mend=f'write {attribute}="{reading}"',
         )
 
 

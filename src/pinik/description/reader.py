@@ -108,9 +108,9 @@ def _described(document: Document, source: Source) -> Description:
     if not robot.named("link"):
         raise DocumentError(_why_no_links(robot), owner="<robot>", line=robot.line)
     check_unique(robot)
-    colors = named_colors(robot, flaws)
-    links = [read_link(element, colors, flaws) for element in robot.named("link")]
-    joints = [read_joint(element, flaws) for element in robot.named("joint")]
+    colors = named_colors(robot, flaws, document.content)
+    links = [read_link(element, colors, flaws, document.content) for element in robot.named("link")]
+    joints = [read_joint(element, flaws, document.content) for element in robot.named("joint")]
     root = root_link([link.name for link in links], joints)
     joints = resolved_mimics(joints, flaws)
     flaws.extend(unknown_in_joints(robot))

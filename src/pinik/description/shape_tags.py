@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 from .materials import Color, color_of
-from .numbers import FARTHEST
+from .numbers import FARTHEST, Reading
 from .part import Part, Vector
 from .xml import DocumentError, Element
 
@@ -116,12 +116,13 @@ def _scale(mesh: Part) -> tuple[float, ...]:
     if len(scale) != 3:
         what, how = ("one number", "for all axes") if len(scale) == 1 else ("four numbers", "without the last")
         scale = scale * 3 if len(scale) == 1 else scale[:3]
-        shown = " ".join(f"{value:g}" for value in scale)
-        mesh.flaw(
-            f'<mesh scale="{text.strip()}"> has {what} instead of three; it is read as "{shown}"',
+        reading = Reading(scale)
+        mesh.misread(
+            "scale",
+            f'<mesh scale="{text.strip()}"> has {what} instead of three; it is read as "{reading}"',
+            reading.exact,
             code="loose-scale",
             common=f"a mesh's scale has {what} instead of three, and is taken {how}",
-            mend=f'write scale="{shown}"',
         )
     if min(map(abs, scale)) < _SMALLEST:
         raise mesh.bad_value("scale", f"a scale must not be zero, or smaller than {_SMALLEST:g}")

@@ -11,11 +11,26 @@ import re
 import struct
 import zipfile
 from collections import Counter
-from typing import Any
+from typing import Any, Literal, get_args
 
 from ..description.xml import DocumentError, Element, parse
 
-__all__ = ["FORMATS", "MOST_BYTES", "MeshError", "checked"]
+__all__ = ["FORMATS", "MOST_BYTES", "UNDRAWN", "MeshError", "UndrawnCode", "checked"]
+
+UndrawnCode = Literal[
+    "unreadable-shape",
+    "unreadable-mesh",
+    "lfs-pointer",
+    "not-a-mesh",
+    "truncated-mesh",
+    "empty-mesh",
+    "nan-in-mesh",
+    "mesh-too-large",
+    "mesh-archive",
+    "unknown-mesh-format",
+]
+UNDRAWN: tuple[UndrawnCode, ...] = get_args(UndrawnCode)
+"""The codes of flaws for shapes that are there and cannot be drawn."""
 
 FORMATS = ("stl", "obj", "dae", "ply", "gltf", "glb", "off")
 MOST_BYTES = 100 * 1024**2
@@ -43,7 +58,7 @@ class MeshError(ValueError):
         code: The sort of fault, as the code of a flaw.
     """
 
-    def __init__(self, message: str, code: str = "unreadable-mesh") -> None:
+    def __init__(self, message: str, code: UndrawnCode = "unreadable-mesh") -> None:
         self.code = code
         super().__init__(message)
 

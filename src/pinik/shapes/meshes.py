@@ -24,7 +24,7 @@ from ..description.source import RobotSource, is_source
 from ..errors import InputError
 from ..model.robot_model import RobotModel
 from . import triangles
-from .mesh_checks import MeshError
+from .mesh_checks import MeshError, UndrawnCode
 
 __all__ = ["Color", "Shape", "load_shapes"]
 
@@ -150,7 +150,7 @@ def _flaw(element: str, line: int, fault: Exception) -> Flaw:
     if isinstance(fault, _MeshNotFoundError):
         found = fault.found
         return Flaw(element, cause, code=found.code, line=line, mend=found.mend, mesh=fault.address)
-    code = fault.code if isinstance(fault, MeshError) else "unreadable-shape"
+    code: UndrawnCode = fault.code if isinstance(fault, MeshError) else "unreadable-shape"
     return Flaw(element, cause, code=code, line=line)
 
 

@@ -85,7 +85,9 @@ class BallChain:
     def turn(self, bone: int, parent: Array, rotation: Array) -> None:
         """Turn a bone and all bones after it by a world rotation vector (3,) [rad]; `parent` is its parent's R."""
         turned = parent.T @ pinocchio.exp3(rotation) @ parent @ self.R[bone]
-        turned = np.asarray(pinocchio.Quaternion(turned).normalized().toRotationMatrix())
+        # Not by pinocchio.Quaternion(turned): each one made from a matrix leaks 80 bytes (eigenpy of Pinocchio 4.1.0).
+        xyzw = np.array(pinocchio.SE3ToXYZQUATtuple(pinocchio.SE3(turned, np.zeros(3)))[3:])
+        turned = np.asarray(pinocchio.Quaternion(xyzw).normalized().toRotationMatrix())
         self.R[bone] = self._leaning_less(turned) if math.isfinite(self._swing) else turned
 
     def leaning(self) -> Array:

@@ -145,7 +145,7 @@ class TestFix:
     def test_a_folder_that_is_not_there_is_wrong_usage(self, run, write, tmp_path):
         answer = run("check", write(AXIS_AS_ATTRIBUTE), "--fix", tmp_path / "gone" / "out.urdf")
         assert answer.status == 2
-        assert "there is no folder" in answer.err
+        assert "no such folder" in answer.err
         assert run("check", write(AXIS_AS_ATTRIBUTE), "--fix", tmp_path).status == 2
 
     def test_a_file_that_cannot_be_loaded_afterwards_is_not_written(self, run, write, tmp_path):

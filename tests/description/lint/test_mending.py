@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from xml.etree import ElementTree
+
 import numpy as np
 import pinocchio
 import pytest
@@ -54,6 +56,60 @@ def test_an_axis_that_was_an_attribute_turns_the_link_as_pinocchio_reads_it():
     result = mend(TREE.format(joint=' axis="0 1 0"', origin='<origin xyz="0 0 1"/>'))
     at = placed(result.document)[:3, :3]
     np.testing.assert_allclose(at, pinocchio.rpy.rpyToMatrix(0.0, 0.3, 0.0), atol=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("written", "xyz", "rpy"),
+    [
+        ('xyz="0.1, 0, 0.3" rpy="1.57, 0 0"', [0.1, 0, 0.3], [1.57, 0, 0]),
+        ('xyz="0.1; 0; 0.3"', [0.1, 0, 0.3], [0, 0, 0]),
+        ("xyz='[0.1 0 0.3]'", [0.1, 0, 0.3], [0, 0, 0]),
+        ('xyz="0.1f 0.0f 0.3F"', [0.1, 0, 0.3], [0, 0, 0]),
+        ('xyz="100mm 0mm 300mm"', [0.1, 0, 0.3], [0, 0, 0]),
+        ('xyz="0.1 0 3d-1"', [0.1, 0, 0.3], [0, 0, 0]),
+        ('xyz="&#x2212;0.1 0 0.3"', [-0.1, 0, 0.3], [0, 0, 0]),
+        ('xyz="0.1 0 0.3" rpy="20 0 50 deg"', [0.1, 0, 0.3], [np.pi / 9, 0, np.pi / 3.6]),
+        ('xyz="0.1234567890123456, 0 0" rpy=""', [0.1234567890123456, 0, 0], [0, 0, 0]),
+    ],
+)
+def test_loose_numbers_become_plain_ones_of_the_same_value(written, xyz, rpy):
+    text = TREE.format(joint="", origin=f"<origin {written}/>")
+    before = pinik.robot.Robot(read(text))
+    result = mend(text)
+    assert (result.left, result.fault) == ((), "")
+    after = pinik.load(result.document, strict=True)
+    placement = placed(result.document, angle=0.0)
+    np.testing.assert_allclose(placement[:3, 3], xyz, rtol=1e-15)
+    np.testing.assert_allclose(placement[:3, :3], pinocchio.rpy.rpyToMatrix(*map(float, rpy)), atol=1e-15)
+    assert after.description.joints == before.description.joints
+    origin = result.document[result.document.index(b"<origin") :]
+    origin = origin[: origin.index(b">") + 1]
+    assert result.document.replace(origin, b"{origin}").decode() == TREE.format(joint="", origin="{origin}")
+
+
+def test_a_scale_with_commas_and_four_numbers_becomes_three_plain_ones():
+    mesh = '<visual><geometry><mesh filename="a.stl" scale="0.001, 0.001, 0.001, 1"/></geometry></visual>'
+    result = mend(robot(link("a", mesh)))
+    assert sorted(flaw.code for flaw in result.done) == ["loose-number", "loose-scale"]
+    (found,) = ElementTree.fromstring(result.document).iter("mesh")
+    assert found.attrib["scale"] == "0.001 0.001 0.001"
+
+
+@pytest.mark.parametrize("first", ["\ufeff", '<?xml version="1.0" encoding="us-ascii"?>', "\n\n"])
+def test_loose_numbers_are_found_again_in_a_document_that_could_not_be_loaded(first):
+    """Its first mend, of the root, lets the reader change bytes before the numbers."""
+    result = mend(first + '<Robot name="r"><link name="a"/>' + joint("j", "a", "b", '<origin xyz="1, 2, 3"/>') + "\n"
+                  + link("b") + "</Robot>")  # fmt: skip
+    assert (result.left, result.fault) == ((), "")
+    (origin,) = ElementTree.fromstring(result.document).iter("origin")
+    assert origin.attrib == {"xyz": "1 2 3"}
+
+
+def test_loose_numbers_of_a_document_in_utf_16_are_mended():
+    text = TREE.format(joint="", origin='<origin xyz="1, 2, 3"/>').replace('"1.0"', '"1.0" encoding="utf-16"')
+    result = mended(text.encode("utf-16"))
+    np.testing.assert_allclose(placed(result.document)[:3, 3], [1, 2, 3])
+    assert read(text.encode("utf-16")).warnings[0].edits == ()
 
 
 def test_links_and_joints_in_capitals_come_back_together():

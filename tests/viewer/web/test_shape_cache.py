@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import ast
 import hashlib
 import os
 import subprocess
 import sys
 import threading
+from pathlib import Path
 
 import platformdirs
 import pytest
@@ -135,6 +137,22 @@ def test_a_mesh_in_another_place_is_another_mesh(tmp_path, conversions):
     one, other = (shapes_of(pinik.load(urdf, package_dirs=[tmp_path / place])) for place in ("one", "other"))
     assert one != other
     assert len(conversions) == 2
+
+
+def test_the_code_that_makes_shapes_is_that_of_shapes_and_what_reads_them():
+    """Every module of `shapes` that `meshes` imports, directly or not, and those of `description` with the readers."""
+    source = Path(pinik.__file__).parent
+    pending, found = ["meshes"], set()
+    while pending:
+        name = pending.pop()
+        if name not in found:
+            found.add(name)
+            for node in ast.walk(ast.parse((source / "shapes" / f"{name}.py").read_text("utf-8"))):
+                if isinstance(node, ast.ImportFrom) and node.level == 1:
+                    pending.extend([node.module] if node.module else [one.name for one in node.names])
+    readers = {source / "description" / f"{name}.py" for name in ("materials", "numbers", "part", "shape_tags")}
+    shapes = {source / "shapes" / f"{name}.py" for name in found}
+    assert set(shape_cache._MAKERS) == shapes | readers | {source / "viewer" / "web" / "scene.py"}
 
 
 @pytest.mark.parametrize("maker", range(len(shape_cache._MAKERS)))

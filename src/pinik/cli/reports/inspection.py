@@ -19,6 +19,7 @@ from ...errors import RobotLoadError, UnknownNameError
 from ...extras import needed_by
 from ...loading import Located, describe, locate
 from ...robot import Robot
+from ...shapes.mesh_checks import UNDRAWN
 from .flaw_json import MOST_LISTED, flaw_fields, shortened
 
 if TYPE_CHECKING:
@@ -27,7 +28,7 @@ if TYPE_CHECKING:
 __all__ = ["Fault", "Inspection", "inspect"]
 
 _MISSING = ("missing-mesh", "mesh-outside")
-_MESHES = (*_MISSING, "unreadable-shape")
+_MESHES = frozenset((*_MISSING, *UNDRAWN))
 
 
 @dataclass(frozen=True)
@@ -85,7 +86,7 @@ class Inspection:
     def to_dict(self, *, strict: bool = False) -> dict[str, Any]:
         """The JSON form; docs/json.md explains the fields."""
         missing = dict.fromkeys(flaw.mesh or "" for flaw in self.flaws if flaw.code in _MISSING)
-        unreadable = [flaw for flaw in self.flaws if flaw.code == "unreadable-shape"]
+        unreadable = [flaw for flaw in self.flaws if flaw.code in UNDRAWN]
         others = [flaw for flaw in self.warnings if flaw.code not in _MESHES]
         counts = Counter(flaw.code for flaw in self.flaws)
         listed: Counter[str] = Counter()

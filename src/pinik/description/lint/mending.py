@@ -75,9 +75,7 @@ class _Workshop:
     """A description that is being mended."""
 
     def __init__(self, content: bytes) -> None:
-        self._description, self._fault = _read(content)
-        # The reader blanks what does not belong to the document.
-        self._content = content if self._description is None else as_utf_8(self._description.document)
+        self._take(content, *_read(content))
         self._done: list[Flaw] = []
         self._refused: dict[str, str] = {}
 
@@ -91,7 +89,7 @@ class _Workshop:
             description, fault = _read(after)
             harm = _harm(self._description, description, fault, kinematic=kinematic)
             if not harm:
-                self._content, self._description, self._fault = after, description, fault
+                self._take(after, description, fault)
                 self._done.extend(group)
                 break  # the offsets of the others have changed; they come in the next round
             attempts += 1
@@ -107,8 +105,13 @@ class _Workshop:
         left = [Left(flaw, self._refused.get(_key(flaw), several)) for flaw in self._flaws()]
         return Mending(self._content, tuple(self._done), tuple(left), self._fault)
 
+    def _take(self, content: bytes, description: Description | None, fault: str) -> None:
+        """Go on with a document, without what the reader blanks in it because it does not belong to it."""
+        self._description, self._fault = description, fault
+        self._content = content if description is None else as_utf_8(description.document)
+
     def _flaws(self) -> list[Flaw]:
-        """The flaws that the reader and the lint find; those of the lint have edits."""
+        """The flaws that the reader and the lint find."""
         found = lint(self._content, self._description)
         said = set(map(str, found))
         read_too = () if self._description is None else self._description.warnings

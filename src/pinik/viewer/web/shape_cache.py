@@ -28,8 +28,12 @@ _MAKERS = [
     Path(__file__).parents[2] / room / module
     for room, module in (
         ("description", "materials.py"),
+        ("description", "numbers.py"),
+        ("description", "part.py"),
         ("description", "shape_tags.py"),
+        ("shapes", "mesh_checks.py"),
         ("shapes", "meshes.py"),
+        ("shapes", "neighbours.py"),
         ("shapes", "triangles.py"),
         ("viewer/web", "scene.py"),
     )
