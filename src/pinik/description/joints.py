@@ -131,7 +131,7 @@ def _read_axis(joint: Part, kind: str) -> Vector:
     axis = joint.only("axis")
     if axis is None and kind == "planar":
         cause = "it has no <axis>, for which URDF's default is x; it moves in the yz-plane of its frame"
-        joint.flaw(cause, code="planar-axis", mend='write <axis xyz="0 0 1"/> if it moves in the xy-plane')
+        joint.flaw(cause, code="planar-axis", mend='Write <axis xyz="0 0 1"/> if it moves in the xy-plane.')
     # Exporters write "0 0 0" for joints without an axis, where it has no meaning.
     if axis is None or kind in ("fixed", "floating"):
         return default

@@ -80,6 +80,6 @@ def _within_one(part: Part, values: tuple[float, ...]) -> Color:
         f'<color rgba="{text}"> has numbers above 1, which are {how}',
         code="bright-color",
         common=f"its colour has numbers above 1, which are {how}",
-        mend=f'write rgba="{red:.4g} {green:.4g} {blue:.4g} {opacity:.4g}"',
+        mend=f'Write rgba="{red:.4g} {green:.4g} {blue:.4g} {opacity:.4g}".',
     )
     return red, green, blue, opacity

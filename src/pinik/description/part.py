@@ -57,7 +57,7 @@ class Part:
     def misread(self, attribute: str, cause: str, value: str, *, code: str, common: str | None = None) -> None:
         """Add a flaw of an attribute whose mend is another value, which means what was read."""
         edits = new_value(self.document, self.element, attribute, value)
-        self.flaw(cause, code=code, common=common, mend=f'write {attribute}="{value}"', edits=edits)
+        self.flaw(cause, code=code, common=common, mend=f'Write {attribute}="{value}".', edits=edits)
 
     def fault(self, cause: str) -> DocumentError:
         """An error about this element."""
@@ -76,7 +76,7 @@ class Part:
         found = self.element.named(tag)
         if len(found) > 1:
             cause = f"has {len(found)} <{tag}> elements; the first is taken"
-            self.of(found[1]).flaw(cause, code="second-element", mend=f"remove all <{tag}> elements but one")
+            self.of(found[1]).flaw(cause, code="second-element", mend=f"Remove all <{tag}> elements but one.")
         return self.of(found[0]) if found else None
 
     def text(self, attribute: str) -> str:

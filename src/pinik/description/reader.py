@@ -118,7 +118,7 @@ def _described(document: Document, source: Source) -> Description:
     if name is None:
         name = source.path.stem if source.path else "robot"
         cause = f"has no name; the robot is named {name!r}"
-        flaws.append(Flaw("<robot>", cause, code="no-name", line=robot.line, mend=f"write <robot name={name!r}>"))
+        flaws.append(Flaw("<robot>", cause, code="no-name", line=robot.line, mend=f"Write <robot name={name!r}>."))
     return Description(
         name=name,
         source=source.label,
