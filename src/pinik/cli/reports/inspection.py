@@ -160,7 +160,7 @@ def inspect(
         meshes=len(description.meshes),
         shapes=shapes,
         second_opinion=_second_opinion(robot),
-        document=description.document,
+        document=fetched.document,
         expanded=fetched.remarks is not None,
     )
 

@@ -127,7 +127,8 @@ def _by_code(flaws: Sequence[Flaw]) -> dict[str, list[Flaw]]:
 
 
 def _named(flaws: Sequence[Flaw]) -> str:
-    places = [shortened(f"{flaw.element} (line {flaw.line})", _LONGEST) for flaw in flaws[:_MOST_NAMED]]
+    lines = [f" (line {flaw.line})" if flaw.line else "" for flaw in flaws[:_MOST_NAMED]]
+    places = [shortened(f"{flaw.element}{line}", _LONGEST) for flaw, line in zip(flaws, lines, strict=False)]
     more = f" and {len(flaws) - _MOST_NAMED:,} more" if len(flaws) > _MOST_NAMED else ""
     return f"{', '.join(places)}{more}"
 
