@@ -91,7 +91,7 @@ def load_in_silence(
     homes = tuple(_home_expanded(Path(folder)) for folder in folders)
     located = locate(source)
     homes = (*homes, *located.package_dirs)
-    description = describe(located, package_dirs=homes, xacro_args=xacro_args)
+    description = fetch(located, package_dirs=homes, xacro_args=xacro_args).read()
     robot = Robot(
         description,
         name=located.name,
@@ -141,10 +141,31 @@ class Located:
     xacro_args: Mapping[str, str] = field(default_factory=dict)
 
 
-def describe(
+@dataclass(frozen=True)
+class Fetched:
+    """A description that was fetched, and not read yet.
+
+    Attributes:
+        source: Where it comes from.
+        document: Its bytes; those that xacro made, if it is a xacro file.
+        remarks: What xacro warned about; None if it is no xacro file.
+    """
+
+    source: Source
+    document: bytes = field(repr=False)
+    remarks: tuple[str, ...] | None = None
+
+    def read(self) -> urdf.Description:
+        """Read and check it; a `RobotLoadError` says why it is not a valid URDF."""
+        description = urdf.read_content(self.document, self.source)
+        remarks = (Flaw("xacro", remark, code="xacro") for remark in self.remarks or ())
+        return replace(description, warnings=(*remarks, *description.warnings))
+
+
+def fetch(
     located: Located, *, package_dirs: Sequence[Path] = (), xacro_args: Mapping[str, object] | None = None
-) -> urdf.Description:
-    """Read and check a description; a xacro file is expanded first, if it is given by its path.
+) -> Fetched:
+    """Fetch a description; a xacro file is expanded, if it is given by its path.
 
     Raises:
         RobotLoadError, UnknownNameError, InputError, MissingExtraError: As for `load`.
@@ -156,11 +177,9 @@ def describe(
     if not (isinstance(path, Path) and xacro.is_xacro(path, content)):
         if given:
             raise InputError(f"are for xacro files, and this is none; got {xacro_args!r}", argument="xacro_args")
-        return urdf.read_content(content, source)
+        return Fetched(source, content)
     expansion = xacro.expand(path, {**located.xacro_args, **given}, package_dirs)
-    description = urdf.read_content(expansion.document, source)
-    remarks = (Flaw("xacro", remark, code="xacro") for remark in expansion.remarks)
-    return replace(description, warnings=(*remarks, *description.warnings))
+    return Fetched(source, expansion.document, expansion.remarks)
 
 
 def locate(source: RobotSource) -> Located:

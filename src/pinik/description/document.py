@@ -24,7 +24,7 @@ class Document:
         root: The root element.
         content: The bytes that were parsed: those of the file, with spaces in place of what does not belong to it; in
             UTF-8 if the declaration names another encoding than that of the file.
-        flaws: What had to be assumed.
+        flaws: What had to be assumed; `content` does not have these flaws any more.
     """
 
     root: Element

@@ -5,6 +5,7 @@ import pytest
 from pinik.shapes import second_opinion
 from pinik.shapes.second_opinion import ask_yourdfpy
 
+XACRO = '<robot name="r" xmlns:xacro="http://www.ros.org/wiki/xacro"><xacro:property name="a" value="1"/></robot>'
 LINKS = '<link name="a"/><link name="b"/>'
 JOINT = (
     '<joint name="j" type="revolute"><parent link="a"/><child link="b"/><axis xyz="0 0 1"/>'
@@ -28,6 +29,21 @@ def test_a_good_file_loads(run):
     assert answer.json["loads"]
     assert answer.json["missing_meshes"] == answer.json["mesh_faults"] == answer.json["faults"] == []
     assert answer.json["shapes"] > 0
+
+
+def test_a_urdf_on_stdin_is_checked_as_one_in_a_file(run, urdf):
+    for text in (LINKS + JOINT.format(lower=-1), LINKS + JOINT.format(lower=2)):
+        file = urdf(text)
+        from_file, from_stdin = run("check", file, "--json"), run("check", "-", "--json", stdin=file.read_text())
+        assert from_stdin.status == from_file.status
+        assert from_stdin.json == from_file.json | {"file": "stdin"}
+
+
+def test_what_is_no_urdf_on_stdin_is_said_in_words(run):
+    for text, words in (("", "empty"), ("lion", "not XML"), (XACRO, "unexpanded xacro file")):
+        answer = run("check", "-", stdin=text)
+        assert (answer.status, answer.out.splitlines()[0]) == (3, "stdin: cannot be loaded")
+        assert words in answer.out
 
 
 def test_a_fault_names_element_and_cause_and_is_status_3(run, urdf):

@@ -13,8 +13,10 @@ import pinik
 from pinik.cli.commands import check as command
 from pinik.cli.reports import mended_file
 from pinik.cli.terminal.exits import ExitStatus
+from pinik.description.reader import read
 from urdf_texts import joint, link, pair, robot
 
+XACRO = 'xmlns:xacro="http://www.ros.org/wiki/xacro"'
 LIMIT = '<limit lower="-1" upper="1" effort="1" velocity="1"/>'
 AXIS_AS_ATTRIBUTE = pair(limit=LIMIT).replace('name="j"', 'name="j" axis="0 1 0"')
 # The documents of five people, with the code and the words that each should meet.
@@ -120,6 +122,49 @@ class TestFix:
         assert f"{tmp_path / 'out.urdf'}: written; 1 flaw is mended; 1 flaw is left to you" in lines
         assert "  mended unknown-attribute: joint 'j' (line 1)" in lines
         assert any(line.startswith("  left limit-in-degrees: it has more than one answer") for line in lines)
+
+    def test_commas_become_spaces_and_the_copy_loads_strictly(self, run, write, tmp_path):
+        loose = pair('<origin xyz="0.1, 0, 0.3" rpy="1.57, 0 0"/>', limit=LIMIT)
+        target = tmp_path / "out.urdf"
+        assert run("check", write(loose), "--strict").status == 3
+        answer = run("check", write(loose), "--fix", target, "--json")
+        assert [flaw["code"] for flaw in answer.json["fix"]["mended"]] == ["loose-number"] * 2
+        assert target.read_text() == loose.replace(",", "")
+        assert run("check", target, "--strict").status == 0
+        before, after = pinik.robot.Robot(read(loose)), pinik.load(target, strict=True)
+        for angle in (-0.7, 0.0, 0.3):
+            q = np.array([angle])
+            np.testing.assert_array_equal(before.placement("b", q).homogeneous, after.placement("b", q).homogeneous)
+
+    def test_a_urdf_on_stdin_is_mended_as_one_in_a_file(self, run, write, tmp_path):
+        one, other = tmp_path / "one.urdf", tmp_path / "other.urdf"
+        from_file = run("check", write(AXIS_AS_ATTRIBUTE), "--fix", one, "--json").json
+        from_stdin = run("check", "-", "--fix", other, "--json", stdin=AXIS_AS_ATTRIBUTE).json
+        assert one.read_bytes() == other.read_bytes()
+        assert (from_stdin.pop("file"), from_file.pop("file")) == ("stdin", str(tmp_path / "robot.urdf"))
+        assert (from_stdin["fix"].pop("file"), from_file["fix"].pop("file")) == (str(other), str(one))
+        assert from_stdin == from_file
+
+    def test_a_xacro_file_is_written_as_the_urdf_that_it_becomes(self, run, write, tmp_path):
+        pytest.importorskip("xacrodoc")
+        text = pair('<origin xzy="${two} 0, 0"/>', limit=LIMIT)
+        text = text.replace('name="r">', f'name="r" {XACRO}><xacro:property name="two" value="2"/>', 1)
+        file, target = write(text, "robot.urdf"), tmp_path / "out.urdf"
+        answer = run("check", file, "--fix", target)
+        assert file.read_text() == text
+        assert "it is the URDF that xacro made of the file" in answer.out
+        assert "the lines below are those of the URDF that xacro makes of the file" in answer.out
+        np.testing.assert_array_equal(pinik.load(target, strict=True).description.joints[0].xyz, [2, 0, 0])
+        assert run("check", file, "--fix", target, "--json").json["fix"]["expanded"] is True
+        assert run("check", file, "--fix", file).status == 2
+
+    def test_a_xacro_file_whose_urdf_cannot_be_loaded_until_it_is_mended_is_written(self, run, write, tmp_path):
+        pytest.importorskip("xacrodoc")
+        text = robot(link("a"), '<Link name="x"/>', joint("k", "a", "x", kind="fixed"))
+        file, target = write(text, "robot.xacro"), tmp_path / "out.urdf"
+        answer = run("check", file, "--fix", target, "--json")
+        assert (answer.status, answer.json["fix"]["written"]) == (3, True)
+        assert pinik.load(target).description.links == ("a", "x")
 
     def test_a_good_file_is_copied(self, run, write, tmp_path):
         text = pair('<axis xyz="0 0 1"/>', limit=LIMIT)

@@ -105,6 +105,27 @@ def test_loose_numbers_are_found_again_in_a_document_that_could_not_be_loaded(fi
     assert origin.attrib == {"xyz": "1 2 3"}
 
 
+@pytest.mark.parametrize("root", ["robot", "Robot"])
+@pytest.mark.parametrize(
+    ("spoiled", "code"),
+    [
+        (lambda text: text + b"\0\0", "junk-around"),
+        (lambda text: b'Here it is:\n<?xml version="1.0"?>' + text, "junk-around"),
+        (lambda text: text.replace(b"</", b"<!-- a -- b --></", 1), "bad-comment"),
+        (
+            lambda text: b'<?xml version="1.0" encoding="utf-8"?>' + text.replace(b"<link", b"<!-- \xe9 --><link", 1),
+            "encoding",
+        ),
+    ],
+)
+def test_what_the_reader_clears_a_document_of_is_mended_and_not_left(spoiled, code, root):
+    text = robot(link("a"), joint("j", "a", "b", '<origin xyz="1, 2, 3"/>'), link("b")).replace("robot", root)
+    result = mended(spoiled(text.encode()))
+    assert code in [flaw.code for flaw in result.done]
+    assert (result.left, result.fault) == ((), "")
+    np.testing.assert_allclose(pinik.load(result.document, strict=True).description.joints[0].xyz, [1, 2, 3])
+
+
 def test_loose_numbers_of_a_document_in_utf_16_are_mended():
     text = TREE.format(joint="", origin='<origin xyz="1, 2, 3"/>').replace('"1.0"', '"1.0" encoding="utf-16"')
     result = mended(text.encode("utf-16"))
@@ -181,9 +202,15 @@ def test_other_encodings_become_utf_8_with_the_right_declaration(encoding):
     assert document.decode("utf-8").lstrip("\ufeff") == text.replace("xzy", "xyz").replace(encoding, "utf-8")
 
 
-def test_an_unknown_encoding_is_an_error():
+def test_an_unknown_encoding_becomes_utf_8_as_the_reader_takes_it():
+    result = mended(b'<?xml version="1.0" encoding="nonsense"?><robot name="r"><link name="\xc3\xa9"/></robot>')
+    assert result.document.decode() == '<?xml version="1.0" encoding="utf-8"?><robot name="r"><link name="é"/></robot>'
+    assert [flaw.code for flaw in result.done] == ["encoding"]
+
+
+def test_null_bytes_in_an_unknown_encoding_are_an_error():
     with pytest.raises(DocumentError):
-        mended(b'<?xml version="1.0" encoding="nonsense"?><robot/>')
+        mended(b'<?xml version="1.0" encoding="nonsense"?><robot name="\0"/>')
 
 
 def test_many_mends_are_made_at_once():

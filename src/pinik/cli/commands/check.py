@@ -7,6 +7,8 @@ from typing import Annotated
 
 import typer
 
+from ...description.xml import MAX_BYTES
+from ..inputs.files import read_bytes
 from ..inputs.loading import check_folders, xacro_arguments
 from ..inputs.options import AllowOutside, AsJson, PackageDirs, XacroArgs
 from ..reports.check_report import emit_inspection
@@ -23,7 +25,7 @@ def check(
         str,
         typer.Argument(
             metavar="FILE.urdf",
-            help="A URDF or xacro file, or the name of a robot in the catalogue.",
+            help="A URDF or xacro file, the name of a robot in the catalogue, or - for a URDF on stdin.",
             show_default=False,
         ),
     ],
@@ -45,7 +47,8 @@ def check(
     """Check a URDF file for faults, mistakes and missing meshes, and compare pinik's reading with yourdfpy's.
 
     The exit status is 3 if the file cannot be loaded or, with --strict, if there is any warning, also one that --fix
-    mends. The comparison with yourdfpy does not change it.
+    mends. The comparison with yourdfpy does not change it. Of a xacro file, the URDF that it becomes is checked, and
+    that is what --fix writes.
 
     Example:
 
@@ -56,7 +59,8 @@ def check(
     if fix is not None:
         fix = fix.expanduser()
         check_target(fix, file)
-    found = inspect(file, tuple(package_dir or ()), xacro_arguments(xacro_arg), allow_outside)
+    given = read_bytes(file, MAX_BYTES, "a robot description") if file == "-" else file
+    found = inspect(given, tuple(package_dir or ()), xacro_arguments(xacro_arg), allow_outside)
     result = None if fix is None else write_mended(found, fix)
     if as_json:
         output.emit_json(found.to_dict(strict=strict) | {"fix": None if result is None else result.to_dict()})

@@ -32,6 +32,8 @@ def emit_inspection(found: Inspection) -> None:
     for fault in found.faults:
         where = f"{shortened(fault.element, _LONGEST_NAME)}: " if fault.element else ""
         output.emit(output.painted("fault: ", "red") + where + shortened(fault.message, _LONGEST_CAUSE))
+    if found.expanded and found.flaws:
+        output.emit("the lines below are those of the URDF that xacro makes of the file")
     emit_flaws(found.flaws)
     opinion = found.second_opinion
     if opinion is not None:

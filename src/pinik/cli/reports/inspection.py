@@ -13,11 +13,9 @@ from typing import TYPE_CHECKING, Any
 from ...description.flaw import Flaw
 from ...description.lint.front import NOTES, lint
 from ...description.packages import Found
-from ...description.source import Source
-from ...description.xacro import is_xacro
 from ...errors import RobotLoadError, UnknownNameError
 from ...extras import needed_by
-from ...loading import Located, describe, locate
+from ...loading import Fetched, Located, fetch, locate
 from ...robot import Robot
 from ...shapes.mesh_checks import UNDRAWN
 from .flaw_json import MOST_LISTED, flaw_fields, shortened
@@ -27,6 +25,7 @@ if TYPE_CHECKING:
 
 __all__ = ["Fault", "Inspection", "inspect"]
 
+_STDIN = "stdin"
 _MISSING = ("missing-mesh", "mesh-outside")
 _MESHES = frozenset((*_MISSING, *UNDRAWN))
 
@@ -49,13 +48,14 @@ class Inspection:
     """The result of an inspection; the counts are 0 if the file cannot be loaded.
 
     Attributes:
-        file: The file.
+        file: The file, or "stdin".
         robot: The robot's name; None if the file cannot be loaded.
         faults: Why the file cannot be loaded.
         flaws: What pinik repaired or ignored, what looks wrong, and the meshes that cannot be drawn.
         links, joints, meshes, shapes: Their numbers; only joints that move, and each mesh address once.
         second_opinion: What yourdfpy says; None if the file cannot be loaded.
         document: The bytes that were read; None if there are none.
+        expanded: Whether xacro made these bytes from the file, so that lines are those of its result.
     """
 
     file: str
@@ -68,6 +68,7 @@ class Inspection:
     shapes: int = 0
     second_opinion: SecondOpinion | None = None
     document: bytes | None = None
+    expanded: bool = False
 
     @property
     def loads(self) -> bool:
@@ -120,7 +121,7 @@ class Inspection:
 
 
 def inspect(
-    source: str,
+    source: str | bytes,
     package_dirs: Sequence[Path],
     xacro_args: Mapping[str, str] | None = None,
     allow_outside: bool = False,
@@ -128,25 +129,30 @@ def inspect(
     """Read a file and everything that it refers to.
 
     Args:
-        source: A file, or the name of a robot in the catalogue.
+        source: A file, the name of a robot in the catalogue, or the bytes of a URDF from stdin.
         package_dirs: Folders that are searched first for packages.
         xacro_args: The arguments of a xacro file.
         allow_outside: Whether meshes may lie outside the folders that belong to the robot.
     """
+    fetched: Fetched | None = None
     try:
         located = _located(source)
         folders = (*(folder.expanduser() for folder in package_dirs), *located.package_dirs)
-        description = describe(located, package_dirs=folders, xacro_args=xacro_args)
+        fetched = fetch(located, package_dirs=folders, xacro_args=xacro_args)
+        description = fetched.read()
         robot = Robot(description, package_dirs=folders, allow_outside=allow_outside)
     except RobotLoadError as error:
-        document = _document(source)
-        flaws = () if document is None else lint(document)
-        return Inspection(error.source, faults=(Fault(error.element, error.cause),), flaws=flaws, document=document)
+        label = _STDIN if isinstance(source, bytes) else error.source
+        faults = (Fault(error.element, error.cause),)
+        if fetched is None:
+            return Inspection(label, faults=faults)
+        flaws, expanded = lint(fetched.document), fetched.remarks is not None
+        return Inspection(label, faults=faults, flaws=flaws, document=fetched.document, expanded=expanded)
     found = lint(description.document, description)
     shapes, about_shapes = _shapes(robot)
     collisions = _missing_collisions(robot, {flaw.mesh for flaw in about_shapes})
     return Inspection(
-        file=str(located.source),
+        file=_STDIN if isinstance(source, bytes) else str(located.source),
         robot=robot.name,
         flaws=_in_order(robot.warnings, [*found, *about_shapes, *collisions]),
         links=len(description.links),
@@ -154,17 +160,9 @@ def inspect(
         meshes=len(description.meshes),
         shapes=shapes,
         second_opinion=_second_opinion(robot),
-        document=description.document,
+        document=fetched.document,
+        expanded=fetched.remarks is not None,
     )
-
-
-def _document(source: str) -> bytes | None:
-    """The bytes of a file that cannot be loaded; None if they cannot be read, or are no URDF but xacro."""
-    try:
-        content = Source.of(_located(source).source).content()
-    except RobotLoadError:
-        return None
-    return None if is_xacro(Path(source), content) else content
 
 
 def _in_order(warnings: Iterable[str], found: Sequence[Flaw]) -> tuple[Flaw, ...]:
@@ -179,7 +177,9 @@ def _listed(texts: Iterable[str]) -> list[str]:
     return [shortened(str(text)) for text, _ in zip(texts, range(MOST_LISTED), strict=False)]
 
 
-def _located(source: str) -> Located:
+def _located(source: str | bytes) -> Located:
+    if isinstance(source, bytes):
+        return Located(source)
     try:
         located = locate(source)
     except UnknownNameError:

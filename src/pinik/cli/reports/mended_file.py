@@ -36,12 +36,14 @@ class MendedFile:
         mending: What was mended and what was left; None if the document is no XML.
         fault: Why nothing was written; empty if the file was written.
         moved: Whether the file is in another folder than the original one, whose relative addresses it has.
+        expanded: Whether it is the URDF that xacro made of the original file.
     """
 
     file: Path
     mending: Mending | None
     fault: str = ""
     moved: bool = False
+    expanded: bool = False
 
     def to_dict(self) -> dict[str, Any]:
         """The JSON form; docs/json.md explains the fields."""
@@ -50,6 +52,7 @@ class MendedFile:
         return {
             "file": str(self.file),
             "written": not self.fault,
+            "expanded": self.expanded,
             "fault": shortened(self.fault) or None,
             "mended": [_fields(flaw) for flaw in done[:MOST_LISTED]],
             "left": [_fields(one.flaw) | {"because": shortened(one.why)} for one in left[:MOST_LISTED]],
@@ -68,6 +71,8 @@ class MendedFile:
         reasons = Counter((one.flaw.code, one.why) for one in left)
         for (code, why), count in reasons.items():
             output.emit(f"  left {code}{f', {count:,} times' if count > 1 else ''}: {shortened(why, _LONGEST)}")
+        if self.expanded:
+            output.emit("  it is the URDF that xacro made of the file, without its macros and arguments")
         if self.moved:
             output.emit("  its relative addresses of meshes begin at its own folder, which is another one")
 
@@ -101,7 +106,8 @@ def write_mended(found: Inspection, target: Path) -> MendedFile:
         return MendedFile(target, mending, f"it cannot be loaded after the mends either: {mending.fault}")
     write_file(target, mending.document, "--fix")
     moved = target.absolute().parent.resolve() != Path(found.file).absolute().parent.resolve()
-    return MendedFile(target, mending, moved=moved and _has_relative_addresses(mending.document))
+    moved = moved and _has_relative_addresses(mending.document)
+    return MendedFile(target, mending, moved=moved, expanded=found.expanded)
 
 
 def _has_relative_addresses(document: bytes) -> bool:
@@ -121,7 +127,8 @@ def _by_code(flaws: Sequence[Flaw]) -> dict[str, list[Flaw]]:
 
 
 def _named(flaws: Sequence[Flaw]) -> str:
-    places = [shortened(f"{flaw.element} (line {flaw.line})", _LONGEST) for flaw in flaws[:_MOST_NAMED]]
+    lines = [f" (line {flaw.line})" if flaw.line else "" for flaw in flaws[:_MOST_NAMED]]
+    places = [shortened(f"{flaw.element}{line}", _LONGEST) for flaw, line in zip(flaws, lines, strict=False)]
     more = f" and {len(flaws) - _MOST_NAMED:,} more" if len(flaws) > _MOST_NAMED else ""
     return f"{', '.join(places)}{more}"
 

@@ -6,9 +6,11 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from ...errors import RobotLoadError
+from ..document import read_document
 from ..edits import as_utf_8, edited, overlap
 from ..flaw import Edit, Flaw
 from ..reader import Description, read
+from ..xml import DocumentError
 from .front import lint
 
 __all__ = ["Left", "Mending", "mended"]
@@ -62,7 +64,7 @@ def mended(document: bytes) -> Mending:
     Raises:
         DocumentError: The encoding that the document declares is unknown, or its bytes are not in it.
     """
-    workshop = _Workshop(as_utf_8(document))
+    workshop = _Workshop(document)
     for _ in range(_MOST_ROUNDS):
         # Mends that must not change joints come first, so that it can be seen whether they do.
         worked = [workshop.mend(kinematic=kinematic) for kinematic in (False, True)]
@@ -74,9 +76,16 @@ def mended(document: bytes) -> Mending:
 class _Workshop:
     """A description that is being mended."""
 
-    def __init__(self, content: bytes) -> None:
-        self._take(content, *_read(content))
+    def __init__(self, document: bytes) -> None:
         self._done: list[Flaw] = []
+        try:
+            cleared = read_document(document)
+        except DocumentError:  # `_read` says why
+            content = as_utf_8(document)
+        else:
+            content = as_utf_8(cleared.content)
+            self._done.extend(cleared.flaws)
+        self._take(content, *_read(content))
         self._refused: dict[str, str] = {}
 
     def mend(self, *, kinematic: bool) -> bool:
@@ -106,7 +115,7 @@ class _Workshop:
         return Mending(self._content, tuple(self._done), tuple(left), self._fault)
 
     def _take(self, content: bytes, description: Description | None, fault: str) -> None:
-        """Go on with a document, without what the reader blanks in it because it does not belong to it."""
+        """Go on with a document, in the bytes to which the edits of its flaws belong."""
         self._description, self._fault = description, fault
         self._content = content if description is None else as_utf_8(description.document)
 
@@ -132,7 +141,7 @@ class _Workshop:
 
 def _read(content: bytes) -> tuple[Description | None, str]:
     try:
-        return read(content.decode("utf-8", "replace")), ""
+        return read(content), ""
     except RobotLoadError as error:
         return None, f"{error.element}: {error.cause}" if error.element else error.cause
 
