@@ -61,6 +61,15 @@ def test_a_xacro_file_loads_with_its_arguments_whatever_its_ending(write: Write,
     assert "w" in pinik.load(path, xacro_args={"mobile": True}).frame_names
 
 
+def test_an_expression_alone_makes_a_xacro_file_where_its_names_are_declared(write: Write, tmp_path: Path) -> None:
+    body = '<link name="a"/><link name="b"/><joint name="j" type="fixed"><parent link="a"/><child link="b"/>'
+    body += '<origin xyz="${1 + 1} 0 0"/></joint>'
+    assert length(pinik.load(write(body, "r.urdf"))) == 2.0
+    (tmp_path / "undeclared.urdf").write_text(f'<robot name="r">{body}</robot>')
+    with pytest.raises(pinik.RobotLoadError, match="unexpanded xacro file"):
+        pinik.load(tmp_path / "undeclared.urdf")
+
+
 def test_a_plain_urdf_whose_name_ends_in_xacro_is_one_too(tmp_path: Path) -> None:
     path = tmp_path / "plain.xacro"
     path.write_text(robot('<link name="a"/>'))

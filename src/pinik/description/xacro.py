@@ -48,8 +48,13 @@ class Expansion:
 
 
 def is_xacro(path: Path, document: bytes) -> bool:
-    """Whether a file is xacro, by its name or by the tags in it: many files that end in ".urdf" are."""
-    return path.suffix.lower() == ".xacro" or _TAG.search(_COMMENT.sub(b"", document)) is not None
+    """Whether a file is xacro, by its name or by the tags or expressions in it: many files that end in ".urdf" are."""
+    plain = _COMMENT.sub(b"", document)
+    return (
+        path.suffix.lower() == ".xacro"
+        or _TAG.search(plain) is not None
+        or (b"xmlns:xacro" in plain and b"${" in plain)
+    )
 
 
 def check_arguments(arguments: Mapping[str, object] | None) -> dict[str, str]:

@@ -187,6 +187,13 @@ class TestFix:
         assert "this is the file itself" in answer.err
         assert file.read_text() == AXIS_AS_ATTRIBUTE
 
+    def test_the_file_of_a_robot_in_the_catalogue_is_never_overwritten(self, run, write, monkeypatch):
+        file = write(AXIS_AS_ATTRIBUTE)
+        monkeypatch.setattr("pinik.description.catalog._urdf_files", lambda: {"mine": file})
+        answer = run("check", "mine", "--fix", file)
+        assert (answer.status, "this is the file itself" in answer.err) == (2, True)
+        assert file.read_text() == AXIS_AS_ATTRIBUTE
+
     def test_a_folder_that_is_not_there_is_wrong_usage(self, run, write, tmp_path):
         answer = run("check", write(AXIS_AS_ATTRIBUTE), "--fix", tmp_path / "gone" / "out.urdf")
         assert answer.status == 2

@@ -83,9 +83,7 @@ def check_target(target: Path, source: str) -> None:
     Raises:
         CommandError: It is the file itself, or a file cannot be written there.
     """
-    with contextlib.suppress(OSError):
-        if os.path.samefile(target, Path(source).expanduser()):
-            raise CommandError(f"--fix {target}: this is the file itself; name another one, so that it is kept")
+    _keep(source, target)
     check_file(target, "--fix")
 
 
@@ -93,8 +91,9 @@ def write_mended(found: Inspection, target: Path) -> MendedFile:
     """Mend an inspected file and write the result whole, if it can be loaded.
 
     Raises:
-        CommandError: The file cannot be written.
+        CommandError: The file cannot be written, or is the one that was inspected, such as the catalogue's own.
     """
+    _keep(found.file, target)
     if found.document is None:
         return MendedFile(target, None, "there is no document to mend")
     try:
@@ -108,6 +107,13 @@ def write_mended(found: Inspection, target: Path) -> MendedFile:
     moved = target.absolute().parent.resolve() != Path(found.file).absolute().parent.resolve()
     moved = moved and _has_relative_addresses(mending.document)
     return MendedFile(target, mending, moved=moved, expanded=found.expanded)
+
+
+def _keep(file: str, target: Path) -> None:
+    """Refuse to write over the file that is mended."""
+    with contextlib.suppress(OSError):
+        if os.path.samefile(target, Path(file).expanduser()):
+            raise CommandError(f"--fix {target}: this is the file itself; name another one, so that it is kept")
 
 
 def _has_relative_addresses(document: bytes) -> bool:
