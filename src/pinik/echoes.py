@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 
-__all__ = ["bounded", "one_line"]
+__all__ = ["bounded", "one_line", "shortened"]
 
 MOST = 2000
 """The most characters of a message."""
@@ -19,7 +19,7 @@ def bounded(words: str) -> str:
     """The message itself if it is short; otherwise long names in it, and the whole, lose their middle."""
     if len(words) <= MOST_UNBROKEN:
         return words
-    return _cut(re.sub(r"\S+", lambda name: _cut(name.group(), MOST_UNBROKEN), words), MOST)
+    return shortened(re.sub(r"\S+", lambda name: shortened(name.group(), MOST_UNBROKEN), words), MOST)
 
 
 def one_line(words: str) -> str:
@@ -28,7 +28,8 @@ def one_line(words: str) -> str:
     return _CONTROL.sub(lambda control: control.group().encode("unicode_escape").decode(), joined)
 
 
-def _cut(words: str, most: int) -> str:
+def shortened(words: str, most: int) -> str:
+    """A text of at most `most` characters: a longer one loses its middle, with "…" in its place."""
     if len(words) <= most:
         return words
     end = most // 4

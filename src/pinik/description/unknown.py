@@ -2,25 +2,26 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterator
+from collections.abc import Iterator
 from dataclasses import dataclass
-from difflib import SequenceMatcher
 
-from ..errors import near_names
+from ..echoes import shortened
 from .edits import moved_to_child, renamed_attribute, renamed_element
 from .flaw import Edit, Flaw
-from .vocabulary import ASSUMED, FOREIGN, MAIN_ATTRIBUTES, URDF, Word
+from .slips import is_sure, meant
+from .vocabulary import ASSUMED, FOREIGN, MAIN_ATTRIBUTES, PLACES, URDF, Word
 from .xml import Element
 
 __all__ = ["unknown_in_joints", "unknown_parts"]
 
 _WHY_KINEMATICS = "The joint or link is not where the file seems to say."
 _WHY = "What it says is lost, as readers of URDF ignore it without a word."
-_RESEMBLES = 0.7  # of 1: how much two names have in common
-_SURELY = 0.8  # so much that only a slip of the keyboard explains it
-_LETTERS = 4  # so many letters are needed for one of them to be wrong
+_ORIGIN = "Write <origin xyz=… rpy=…> in <{}>, in metres and radians."
 _LONGEST = 60
-_MANY = frozenset({"link", "joint", "visual", "collision"})  # of these an element may hold several
+_TREE = frozenset({"link", "joint"})
+_MANY = _TREE | frozenset({"visual", "collision"})  # of these an element may hold several
+# What places links → what is assumed where it is not said in the way of URDF. A limit tells of its own if it has none.
+_PLACING = {"origin": ("xyz", "rpy"), "mimic": ("multiplier", "offset"), "axis": (), "parent": (), "child": ()}
 
 
 @dataclass(frozen=True, slots=True)
@@ -56,21 +57,37 @@ def unknown_parts(robot: Element, document: bytes) -> list[Flaw]:
 
 
 def unknown_in_joints(robot: Element) -> list[Flaw]:
-    """What is lost of `<robot>` itself and of its joints because its name is misspelt or misplaced; without edits."""
+    """What is lost of `<robot>` and of joints because it is misspelt, misplaced, or no attribute; without edits."""
     # Nearly all elements are right, and loading must be quick.
-    suspects = [] if _is_known(robot) else [(robot, "<robot>")]
+    flaws = [] if _is_known(robot) else list(_unknown(robot, "<robot>", None))
     for joint in robot.named("joint"):
         inside = [child for child in joint.children if child.tag not in FOREIGN]
         if not (_is_known(joint) and all(map(_is_known, inside))):
-            suspects.extend(_within(joint))
-    flaws = [flaw for element, owner in suspects for flaw in _unknown(element, owner, None)]
-    return [flaw for flaw in flaws if flaw.code != "unknown-name"]
+            for element, owner in _within(joint):
+                found = _unknown(element, owner, None)
+                flaws.extend(flaw for flaw in found if flaw.code != "unknown-name" or _places(element, joint))
+    for link in robot.named("link"):
+        if any(element.tag in _TREE for child in link.children for element in child.walk()):
+            for element, owner in _within(link):
+                place, lost = _place(element, owner, None), [one for one in element.children if one.tag in _TREE]
+                flaws.extend(flaw for child in lost for flaw in _unknown_child(place, child))
+    return [flaw for flaw in flaws if flaw.code != "unknown-name" or not flaw.element.startswith("<robot>")]
+
+
+def _places(element: Element, joint: Element) -> bool:
+    """Whether an element of a joint decides where links are, so that an unknown name in it matters."""
+    if element.tag != "limit":
+        return element.tag in _PLACING
+    needs_limits = joint.attributes.get("type") in ("revolute", "prismatic")
+    return needs_limits and not {"lower", "upper"} <= element.attributes.keys()
 
 
 def _is_known(element: Element) -> bool:
     word = URDF.get(element.tag)
     return word is None or (
-        element.attributes.keys() <= word.attributes and {child.tag for child in element.children} <= word.children
+        not element.text
+        and element.attributes.keys() <= word.attributes
+        and {child.tag for child in element.children} <= word.children
     )
 
 
@@ -84,7 +101,7 @@ def _known(robot: Element) -> Iterator[tuple[Element, str]]:
 
 def _within(part: Element) -> Iterator[tuple[Element, str]]:
     """A link, joint or material and what URDF knows in it, each with its owner."""
-    owner = f"{part.tag} {_short(part.attributes.get('name', ''))!r}"
+    owner = f"{part.tag} {shortened(part.attributes.get('name', ''), _LONGEST)!r}"
     pending = [part]
     while pending:
         element = pending.pop()
@@ -94,8 +111,9 @@ def _within(part: Element) -> Iterator[tuple[Element, str]]:
 
 
 def _unknown(element: Element, owner: str, document: bytes | None) -> Iterator[Flaw]:
-    word = URDF[element.tag]
-    place = _Place(element, word, owner, document, word.children.intersection(child.tag for child in element.children))
+    place = _place(element, owner, document)
+    if element.text:
+        yield _stray_text(place)
     for attribute in element.attributes:
         if attribute not in place.word.attributes and ":" not in attribute and attribute != "xmlns":
             yield from _unknown_attribute(place, attribute)
@@ -104,27 +122,46 @@ def _unknown(element: Element, owner: str, document: bytes | None) -> Iterator[F
             yield from _unknown_child(place, child)
 
 
+def _place(element: Element, owner: str, document: bytes | None) -> _Place:
+    word = URDF[element.tag]
+    return _Place(element, word, owner, document, word.children.intersection(child.tag for child in element.children))
+
+
+def _stray_text(place: _Place) -> Flaw:
+    tag, main = place.element.tag, "xyz" if place.element.tag == "origin" else MAIN_ATTRIBUTES.get(place.element.tag)
+    cause = f"the text {shortened(place.element.text, _LONGEST)!r} in <{tag}> is ignored{_losses(place)}"
+    mend = f"Write it as <{tag} {main}=…>, or take it out." if main else "Take it out; URDF has attributes instead."
+    return _flaw(place, cause, code="stray-text", mend=mend)
+
+
 def _unknown_attribute(place: _Place, attribute: str) -> Iterator[Flaw]:
     element, word = place.element, place.word
     tag = element.tag
-    held = f"<{tag} {_short(attribute)}=…>"
-    meant = _meant(attribute, word.attributes, element.attributes)
-    if meant is None and (child := attribute.casefold()) in word.children:
+    held = f"<{tag} {shortened(attribute, _LONGEST)}=…>"
+    near = meant(attribute, word.attributes, element.attributes)
+    if near is None and (child := attribute.casefold()) in word.children:
         yield _attribute_of_child(place, attribute, child)
-    elif meant is None and (parents := [child for child in sorted(word.children) if _holds(child, attribute)]):
+    elif near is None and (parents := [child for child in sorted(word.children) if _holds(child, attribute)]):
         cause = f"{held} is unknown to URDF and ignored; URDF has {attribute!r} in <{parents[0]}>"
         yield _flaw(place, cause, code="misplaced-attribute", mend=f"Write it as <{parents[0]} {attribute}=…>.")
-    elif meant is not None:
-        cause = f"{held} is unknown to URDF and ignored (near: {meant!r}){_loss(place, meant)}"
+    elif near is not None:
+        cause = f"{held} is unknown to URDF and ignored (near: {near!r}){_loss(place, near)}"
         edits: tuple[Edit, ...] = ()
-        if place.document is not None and _is_sure(attribute, word.attributes) and meant not in element.attributes:
-            edits = renamed_attribute(place.document, element, attribute, meant)
+        if place.document is not None and is_sure(attribute, word.attributes) and near not in element.attributes:
+            edits = renamed_attribute(place.document, element, attribute, near)
         yield _flaw(
-            place, cause, code="unknown-attribute", mend=f"Write {meant}= instead of {_short(attribute)}=.", edits=edits
+            place,
+            cause,
+            code="unknown-attribute",
+            mend=f"Write {near}= instead of {shortened(attribute, _LONGEST)}=.",
+            edits=edits,
         )
+    elif _means_origin(place, attribute):
+        cause = f"{held} is unknown to URDF and ignored; URDF has <origin xyz=… rpy=…>{_loss(place, 'origin')}"
+        yield _flaw(place, cause, code="unknown-attribute", mend=_ORIGIN.format(tag))
     elif not word.is_open:
         known = ", ".join(sorted(word.attributes)) or "no attributes"
-        cause = f"{held} is unknown to URDF and ignored"
+        cause = f"{held} is unknown to URDF and ignored{_losses(place)}"
         yield _flaw(place, cause, code="unknown-name", mend=f"Take it out; <{tag}> has {known}.")
 
 
@@ -138,37 +175,36 @@ def _attribute_of_child(place: _Place, attribute: str, child: str) -> Flaw:
     if place.document is not None and main and child not in place.given:
         edits = moved_to_child(place.document, element, attribute, child, main)
     text = element.attributes[attribute]
-    example = f'<{child} {main}="{_short(text)}"/>' if main else written
+    example = f'<{child} {main}="{shortened(text, _LONGEST)}"/>' if main else written
     mend = f"Write {example} inside <{element.tag}>."
     return _flaw(place, cause, code="misplaced-attribute", mend=mend, edits=edits)
 
 
 def _unknown_child(place: _Place, child: Element) -> Iterator[Flaw]:
     element, word = place.element, place.word
-    tag = _short(child.tag)
-    meant = _meant(child.tag, word.children, place.given - _MANY)
-    if meant is not None:
-        cause = f"<{tag}> is unknown to URDF and ignored with all that it holds (near: <{meant}>){_loss(place, meant)}"
+    tag = shortened(child.tag, _LONGEST)
+    near = meant(child.tag, word.children, place.given - _MANY)
+    if near is not None:
+        cause = f"<{tag}> is unknown to URDF and ignored with all that it holds (near: <{near}>){_loss(place, near)}"
         edits: tuple[Edit, ...] = ()
-        is_free = meant in _MANY or meant not in place.given
-        if place.document is not None and _is_sure(child.tag, word.children) and is_free:
-            edits = renamed_element(place.document, child, meant)
-        yield _flaw(
-            place, cause, child, code="unknown-element", mend=f"Write <{meant}> instead of <{tag}>.", edits=edits
-        )
+        is_free = near in _MANY or near not in place.given
+        if place.document is not None and is_sure(child.tag, word.children) and is_free:
+            edits = renamed_element(place.document, child, near)
+        mend = f"Write <{near}> instead of <{tag}>."
+        yield _flaw(place, cause, child, code="unknown-element", mend=mend, edits=edits)
     elif child.tag in URDF:
         homes = ", ".join(f"<{name}>" for name, known in URDF.items() if child.tag in known.children)
-        cause = f"<{tag}> has no place in <{element.tag}> and is ignored with all that it holds"
-        yield _flaw(
-            place,
-            cause,
-            child,
-            code="misplaced-element",
-            mend=f"URDF has <{tag}> in {homes}; move it there, or take it out.",
-        )
+        name = f" {shortened(child.attributes['name'], _LONGEST)!r}" if "name" in child.attributes else ""
+        cause = f"<{tag}>{name} has no place in <{element.tag}> and is ignored with all that it holds"
+        mend = f"URDF has <{tag}> in {homes}; move it there, or take it out."
+        yield _flaw(place, cause, child, code="misplaced-element", mend=mend)
+    elif _means_origin(place, child.tag):
+        written = "URDF has <origin xyz=… rpy=…>"
+        cause = f"<{tag}> is unknown to URDF and ignored with all that it holds; {written}{_loss(place, 'origin')}"
+        yield _flaw(place, cause, child, code="unknown-element", mend=_ORIGIN.format(element.tag))
     elif not word.is_open:
         known = ", ".join(f"<{name}>" for name in sorted(word.children)) or "no elements"
-        cause = f"<{tag}> in <{element.tag}> is unknown to URDF and ignored"
+        cause = f"<{tag}> in <{element.tag}> is unknown to URDF and ignored{_losses(place)}"
         yield _flaw(place, cause, child, code="unknown-name", mend=f"Take it out; <{element.tag}> holds {known}.")
 
 
@@ -178,48 +214,33 @@ def _flaw(
     element = place.element if child is None else child
     owner = place.owner
     if owner == "<robot>" and child is not None and child.attributes.get("name"):
-        owner = f"<{_short(child.tag)}> {_short(child.attributes['name'])!r}"
-    moves = place.owner.startswith(("joint", "<robot>")) and code != "unknown-name"
+        owner = f"<{shortened(child.tag, _LONGEST)}> {shortened(child.attributes['name'], _LONGEST)!r}"
+    moves = place.owner.startswith(("joint", "<robot>")) if code != "unknown-name" else place.element.tag in _PLACING
+    moves = moves or (child is not None and child.tag in _TREE)
     why = _WHY_KINEMATICS if moves else _WHY
     return Flaw(owner, cause, code=code, line=element.line, why=why, mend=mend, edits=edits)
 
 
-def _loss(place: _Place, meant: str) -> str:
+def _loss(place: _Place, near: str) -> str:
     """What is assumed without the attribute or child that was meant, as the rest of a sentence."""
     element = place.element
-    is_given = meant in element.attributes and meant in place.word.attributes
-    if is_given or meant in place.given - _MANY:
+    is_given = near in element.attributes and near in place.word.attributes
+    if is_given or near in place.given - _MANY:
         return ", and it is given too"
-    assumed = ASSUMED.get((element.tag, meant))
+    assumed = ASSUMED.get((element.tag, near))
     return f"; {assumed}" if assumed else ""
+
+
+def _losses(place: _Place) -> str:
+    """What is assumed because something in an element that places links is ignored, as the rest of a sentence."""
+    absent = [name for name in _PLACING.get(place.element.tag, ()) if name not in place.element.attributes]
+    assumed = [ASSUMED[place.element.tag, name] for name in absent]
+    return f"; {' and '.join(assumed)}" if assumed else ""
+
+
+def _means_origin(place: _Place, name: str) -> bool:
+    return "origin" in place.word.children and name.casefold() in PLACES
 
 
 def _holds(child: str, attribute: str) -> bool:
     return child in URDF and child not in FOREIGN and attribute in URDF[child].attributes and attribute != "name"
-
-
-def _meant(name: str, known: Collection[str], given: Collection[str]) -> str | None:
-    """The known name that this one resembles most, or None; one that is given beside it only if it is very near."""
-    for near in near_names(_short(name), known):
-        if _likeness(name, near) >= (_SURELY if near in given else _RESEMBLES):
-            return near
-    return None
-
-
-def _is_sure(name: str, known: Collection[str]) -> bool:
-    """Whether one known name is so near that it must be the one, and no other is."""
-    return sum(_likeness(name, one) >= _SURELY for one in known) == 1
-
-
-def _likeness(name: str, known: str) -> float:
-    """From 0 to 1: how much two names have in common; case, the order of letters and one wrong letter hardly count."""
-    word = name[:_LONGEST].casefold()
-    if sorted(word) == sorted(known):
-        return 1.0
-    if len(word) == len(known) >= _LETTERS and sum(one != other for one, other in zip(word, known, strict=True)) == 1:
-        return _SURELY
-    return SequenceMatcher(None, word, known).ratio()
-
-
-def _short(name: str) -> str:
-    return name if len(name) <= _LONGEST else name[: _LONGEST - 1] + "…"

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from types import MappingProxyType
 
-__all__ = ["ASSUMED", "FOREIGN", "MAIN_ATTRIBUTES", "URDF", "Word"]
+__all__ = ["ASSUMED", "FOREIGN", "MAIN_ATTRIBUTES", "PLACES", "URDF", "Word"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -62,6 +62,25 @@ URDF: Mapping[str, Word] = MappingProxyType({
 
 FOREIGN = frozenset({"gazebo", "transmission", "verbose", "contact_coefficients", "safety_controller", "calibration"})
 """Elements of URDF whose content does not belong to it, or has no meaning for kinematics."""
+
+PLACES = frozenset(
+    [
+        "pose",
+        "pos",
+        "position",
+        "orientation",
+        "rotation",
+        "translation",
+        "transform",
+        "transformation",
+        "xyz",
+        "rpy",
+        "quat",
+        "quaternion",
+        "euler",
+    ]
+)
+"""What other formats call the place of something, for which URDF has `<origin>`; in small letters."""
 
 MAIN_ATTRIBUTES = MappingProxyType({
     "axis": "xyz", "parent": "link", "child": "link", "mimic": "joint", "mass": "value", "color": "rgba",

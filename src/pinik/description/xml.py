@@ -48,7 +48,7 @@ class BrokenXMLError(DocumentError):
 
 @dataclass(slots=True)
 class Element:
-    """An XML element without its text, which URDF does not use.
+    """An XML element.
 
     Attributes:
         tag: The name as written, with its namespace prefix.
@@ -56,6 +56,7 @@ class Element:
         line: The line on which the element begins, from 1.
         start: The offset of its "<" in the bytes of the document.
         children: The child elements, in order.
+        text: The first piece of text in it, without white space around; empty if there is none, as in good URDFs.
     """
 
     tag: str
@@ -63,6 +64,7 @@ class Element:
     line: int
     start: int = 0
     children: list[Element] = field(default_factory=list)
+    text: str = ""
 
     def named(self, tag: str) -> list[Element]:
         """The direct children with this tag, in order."""
@@ -91,6 +93,7 @@ class _Builder:
         self._xinclude_prefixes = {"xi"}
         parser.StartElementHandler = self._start
         parser.EndElementHandler = self._end
+        parser.CharacterDataHandler = self._add_text
         parser.StartDoctypeDeclHandler = self._refuse_doctype
 
     def _start(self, tag: str, attributes: dict[str, str]) -> None:
@@ -112,6 +115,10 @@ class _Builder:
         self._open.pop()
         if not self._open:
             self.end = self._parser.CurrentByteIndex + self._bytes_before
+
+    def _add_text(self, text: str) -> None:
+        if not text.isspace() and not self._open[-1].text:
+            self._open[-1].text = text.strip()
 
     def _refuse_doctype(self, name: str, *_: object) -> None:
         raise DocumentError(
@@ -153,6 +160,7 @@ def parse(document: bytes, most_bytes: int = MAX_BYTES) -> Element:
     # Blank lines before the declaration are common in pasted text, and other URDF readers accept them.
     blank = document[: len(document) - len(document.lstrip())]
     parser = expat.ParserCreate()
+    parser.buffer_text = True
     builder = _Builder(parser, blank)
     try:
         parser.Parse(document[len(blank) :], True)

@@ -6,6 +6,7 @@ from collections import Counter
 
 import pytest
 
+import pinik
 from pinik.description import reader
 from pinik.description.catalog import catalog, find
 from pinik.description.flaw import Flaw
@@ -65,6 +66,55 @@ def test_what_is_lost_of_joints_is_known_to_the_reader_too():
         assert loss in flaw
         assert str(flaw) in map(str, reader.read(pair(wrong)).warnings)
     assert unknown_in_joints(parse(pair('<axis xyz="0 0 1"/>').encode())) == []
+
+
+XYZ, RPY = "xyz is taken as 0 0 0", "rpy is taken as 0 0 0"
+BOTH = f"{XYZ} and {RPY}"
+# Part of a joint that holds a place or a factor where URDF does not look → what is assumed.
+LOST = {
+    '<origin position="0.2 0 0.1"/>': BOTH,
+    '<origin x="0.2" y="0" z="0.1"/>': BOTH,
+    '<origin xyz="0.2 0 0.1" rotation="0 0 1"/>': RPY,
+    '<origin rpy="0 0 1" quat="0 0 0 1"/>': XYZ,
+    '<origin xyz="0 0 1" rpy="0 0 1" frame="tool"/>': "<origin frame=…> is unknown to URDF and ignored",
+    "<origin><xyz>0.2 0 0.1</xyz></origin>": BOTH,
+    "<origin>0.2 0 0.1</origin>": f"the text '0.2 0 0.1' in <origin> is ignored; {BOTH}",
+    '<mimic joint="k" ratio="2"/>': "the multiplier is taken as 1 and the offset is taken as 0",
+    '<mimic joint="k" multiplier="2">0.5</mimic>': "the text '0.5' in <mimic> is ignored; the offset is taken as 0",
+    '<axis xyz="0 0 1" expressed_in="base"/>': "<axis expressed_in=…> is unknown to URDF and ignored",
+    '<axis xyz="0 0 1">1 0 0</axis>': "the text '1 0 0' in <axis> is ignored",
+    "<pose>0.2 0 0.1 0 0 0</pose>": "<pose> is unknown to URDF and ignored with all that it holds; URDF has <origin "
+    "xyz=… rpy=…>; the joint stands at the origin of its parent link",
+    '<Transform xyz="0.2 0 0.1"/>': "the joint stands at the origin of its parent link",
+    "0.2 0 0.1": "the text '0.2 0 0.1' in <joint> is ignored",
+}
+
+
+@pytest.mark.parametrize(("part", "loss"), LOST.items())
+def test_a_place_or_factor_where_urdf_does_not_look_is_a_warning_of_load_and_of_check(part, loss):
+    text = robot(*map(link, "abc"), joint("k", "a", "c"), joint("j", "a", "b", part))
+    lost = [flaw for flaw in reader.read(text).warnings if flaw.startswith("joint 'j': ") and loss in flaw]
+    assert lost
+    assert set(map(str, lost)) <= set(map(str, flaws(text)))
+    assert "not where the file seems to say" in lost[0].why
+    with pytest.raises(pinik.RobotLoadError, match="joint 'j'"):
+        pinik.load(text, strict=True)
+
+
+@pytest.mark.parametrize("limit", ['<limit min="-1" max="1"/>', "<limit><lower>-1</lower></limit>"])
+def test_a_limit_under_an_unknown_name_is_a_warning_of_load_if_the_limit_is_missing(limit):
+    assert "unknown-name" in [flaw.code for flaw in reader.read(pair(limit=limit)).warnings]
+    assert reader.read(pair(limit=limit, kind="continuous")).warnings == ()
+    assert reader.read(pair(limit=LIMIT.format(-1, 1).replace("/>", ' current="3"/>'))).warnings == ()
+
+
+@pytest.mark.parametrize("inner", ["{}", "<visual>{}<geometry><box size='1 1 1'/></geometry></visual>"])
+@pytest.mark.parametrize(("tag", "part"), [("joint", joint("j", "a", "b")), ("link", link("c"))])
+def test_a_joint_or_link_inside_a_link_is_a_warning_of_load(tag, part, inner):
+    (flaw,) = reader.read(robot(link("a", inner.format(part)))).warnings
+    assert flaw.code == "misplaced-element"
+    assert f"<{tag}> '{'j' if tag == 'joint' else 'c'}' has no place in <" in flaw
+    assert reader.read(robot(link("a", f"<sensor>{part}</sensor>"))).warnings == ()
 
 
 @pytest.mark.parametrize(
