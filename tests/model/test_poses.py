@@ -85,6 +85,62 @@ def test_a_number_that_is_rounded_or_whole_turns_away_is_taken_inside(posed, nam
     assert angles == pytest.approx(expected, abs=1e-12)
 
 
+@pytest.mark.parametrize("name", ["Hinge", "hnige", "hingee", "hing", "hinga"])
+def test_a_misspelt_joint_is_an_error_that_names_the_one_that_was_meant(posed, name):
+    with pytest.raises(
+        pinik.RobotLoadError, match=rf"pose 'home', joint '{name}': the robot has no such.*near: 'hinge'"
+    ):
+        _ = posed((name, "0.5")).poses
+
+
+def test_joints_that_another_robot_has_are_skipped(posed):
+    """Robots with fewer joints share an SRDF; a name near to one that the pose sets itself is no slip."""
+    loaded = posed(
+        ("root_joint", "0 0 1 0 0 0 1"), ("hinge", "0.5"), ("hinga", "0.1"), ("elbow", "0.3"), ("slide7", "1")
+    )
+    assert loaded.angles(loaded.poses["home"])["hinge"] == pytest.approx(0.5)
+
+
+def test_a_joint_that_is_set_in_two_ways_is_an_error_that_shows_both(posed):
+    with pytest.raises(pinik.RobotLoadError, match=r"pose 'home', joint 'hinge': it is set twice, to 0.5 and to -0.5"):
+        _ = posed(("hinge", "0.5"), ("hinge", "-0.5")).poses
+    loaded = posed(("hinge", "0.5"), ("hinge", "0.50"))
+    assert loaded.angles(loaded.poses["home"])["hinge"] == pytest.approx(0.5)
+
+
+def state(group: str, **angles: object) -> str:
+    joints = "".join(f'<joint name="{name}" value="{value}"/>' for name, value in angles.items())
+    return f'<group_state name="home" group="{group}">{joints}</group_state>'
+
+
+def test_states_of_one_name_for_several_groups_are_one_pose_and_for_one_group_an_error(tmp_path):
+    def loaded(*states: str) -> pinik.Robot:
+        (tmp_path / "r.urdf").write_text(ROBOT)
+        (tmp_path / "r.srdf").write_text(f'<robot name="r">{"".join(states)}</robot>')
+        return pinik.load(tmp_path / "r.urdf")
+
+    both = loaded(state("arm", hinge=0.5), state("hand", slide=1.5))
+    assert both.angles(both.poses["home"]) == pytest.approx(
+        {"hinge": 0.5, "slide": 1.5, "wheel": 0.0, "wrist": 0.0, "thumb": 0.25}
+    )
+    with pytest.raises(pinik.RobotLoadError, match=r"pose 'home', joint 'hinge': it is set twice, to 0\.5 and to 0\.25"):
+        _ = loaded(state("arm", hinge=0.5), state("hand", hinge=0.25)).poses
+    with pytest.raises(pinik.RobotLoadError, match="pose 'home': it is given twice for group 'arm', first on line 1"):
+        _ = loaded(state("arm", hinge=0.5), state("arm", slide=1.5)).poses
+
+
+@pytest.mark.parametrize(("kind", "needed"), [("planar", 4), ("floating", 7)])
+def test_a_wrong_count_of_numbers_is_an_error_for_a_joint_of_the_file_but_not_for_the_root(tmp_path, kind, needed):
+    text = robot(link("a"), link("b"), joint("base", "a", "b", axis(0, 0, 1), kind=kind, limit=""))
+    (tmp_path / "r.urdf").write_text(text)
+    (tmp_path / "r.srdf").write_text(f'<robot name="r">{state("g", base="0.1 0.2 0.3")}</robot>')
+    with pytest.raises(pinik.RobotLoadError, match=f"joint 'base': its value must be {needed} numbers.*got 3"):
+        _ = pinik.load(tmp_path / "r.urdf").poses
+    (tmp_path / "r.srdf").write_text(f'<robot name="r">{state("g", root_joint="0 0 1 0 0 0 1")}</robot>')
+    rooted = pinik.load(tmp_path / "r.urdf", root="planar")
+    assert rooted.poses["home"] == pytest.approx(rooted.neutral())
+
+
 def test_those_who_never_ask_for_poses_are_not_stopped(posed):
     loaded = posed(("hinge", "nan"))
     assert loaded.solve("b", rpy=[0, 0, 0.5]).success

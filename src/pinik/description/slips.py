@@ -8,7 +8,7 @@ from difflib import SequenceMatcher
 from ..echoes import shortened
 from ..errors import near_names
 
-__all__ = ["is_sure", "meant"]
+__all__ = ["is_slip", "is_sure", "meant"]
 
 _RESEMBLES = 0.7  # of 1: how much two names have in common
 _SURELY = 0.8  # so much that only a slip of the keyboard explains it
@@ -27,6 +27,12 @@ def meant(name: str, known: Collection[str], given: Collection[str] = ()) -> str
 def is_sure(name: str, known: Collection[str]) -> bool:
     """Whether one known name is so near that it must be the one, and no other is."""
     return sum(_likeness(name, one) >= _SURELY for one in known) == 1
+
+
+def is_slip(name: str, known: str) -> bool:
+    """Whether a name of one's own making, with numbers in it, is a slip for a known one: its digits are right."""
+    digits, others = ([sign for sign in word if sign.isdigit()] for word in (name, known))
+    return digits == others and abs(len(name) - len(known)) <= 1 and _likeness(name, known) >= _SURELY
 
 
 def _likeness(name: str, known: str) -> float:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable
+from collections.abc import Collection, Iterable
 from pathlib import Path
 
 import numpy as np
@@ -11,6 +11,7 @@ import pinocchio
 from numpy.typing import NDArray
 
 from ..description.numbers import FARTHEST, in_words, plain_number
+from ..description.slips import is_slip
 from ..description.xml import MAX_BYTES, DocumentError, Element, parse
 from ..errors import RobotLoadError
 from ..files import FileError, read_within
@@ -22,22 +23,26 @@ Array = NDArray[np.float64]
 
 _ROUNDING = 1e-3  # [rad or m]: a pose this far outside the limits was rounded
 _TURN = 2.0 * math.pi
+_MOST_NEAR = 3
 
 
-def read_poses(srdf: Path, model: pinocchio.Model, joints: Iterable[Joint]) -> dict[str, Array]:
+def read_poses(srdf: Path, model: pinocchio.Model, joints: Iterable[Joint], names: Collection[str]) -> dict[str, Array]:
     """The poses in an SRDF file: name → q (nq,). Joints that a pose does not mention are neutral.
 
-    Followers, and joints that the model does not have, are skipped. An angle outside the limits is taken at the limit
-    if it is at most 1e-3 [rad or m] away, as files round their numbers, or turned by whole turns to inside the limits.
+    States of the same name for several groups are one pose. Followers, and joints that the robot does not have, are
+    skipped, as robots with fewer joints share the SRDF. An angle outside the limits is taken at the limit if it is at
+    most 1e-3 [rad or m] away, as files round their numbers, or turned by whole turns to inside the limits.
 
     Args:
         srdf: The SRDF file.
         model: Pinocchio's model with the robot's limits; it is not modified.
         joints: The joints of the model.
+        names: The names of all joints in the URDF, fixed ones too.
 
     Raises:
-        RobotLoadError: The file cannot be read, or is not XML; or a pose has something else than a number for a joint,
-            or a number outside its limits. The message names the pose and the joint.
+        RobotLoadError: The file cannot be read, or is not XML; or a pose has something else than numbers for a joint,
+            or a number outside its limits; or it sets a joint in two ways, or one that is misspelt; or there are two
+            states of the same name and group. The message names the pose and the joint.
     """
     try:
         robot = parse(read_within(srdf, MAX_BYTES, "an SRDF file"))
@@ -46,30 +51,74 @@ def read_poses(srdf: Path, model: pinocchio.Model, joints: Iterable[Joint]) -> d
     except DocumentError as fault:
         raise RobotLoadError(f"the SRDF cannot be read: {fault.message}", source=str(srdf)) from None
     by_name = {joint.name: joint for joint in joints}
-    poses = {}
+    states: dict[str, list[Element]] = {}
     for state in robot.named("group_state"):
-        name = state.attributes.get("name", "")
+        states.setdefault(state.attributes.get("name", ""), []).append(state)
+    poses = {}
+    for name, parts in states.items():
         try:
-            poses[name] = _pose(state, model, by_name)
+            poses[name] = _pose(_settings(parts), model, by_name, names)
         except DocumentError as fault:
             message = f"{fault.message} (line {fault.line})"
-            raise RobotLoadError(message, source=str(srdf), element=f"pose {in_words(name)!r}, {fault.owner}") from None
+            element = f"pose {in_words(name)!r}" + (f", {fault.owner}" if fault.owner else "")
+            raise RobotLoadError(message, source=str(srdf), element=element) from None
     return poses
 
 
-def _pose(state: Element, model: pinocchio.Model, joints: dict[str, Joint]) -> Array:
+def _settings(states: Iterable[Element]) -> list[Element]:
+    """The `<joint>` elements of all states of one name.
+
+    Raises:
+        DocumentError: Two of them are for the same group.
+    """
+    first: dict[str, Element] = {}
+    for state in states:
+        group = state.attributes.get("group", "")
+        other = first.setdefault(group, state)
+        if other is not state:
+            cause = f"it is given twice for group {in_words(group)!r}, first on line {other.line}"
+            raise DocumentError(cause, line=state.line)
+    return [setting for state in first.values() for setting in state.named("joint")]
+
+
+def _pose(
+    settings: Iterable[Element], model: pinocchio.Model, joints: dict[str, Joint], names: Collection[str]
+) -> Array:
     q = np.array(pinocchio.neutral(model))
-    for setting in state.named("joint"):
-        joint = joints.get(setting.attributes.get("name", ""))
+    by_joint: dict[str, list[Element]] = {}
+    for setting in settings:
+        by_joint.setdefault(setting.attributes.get("name", ""), []).append(setting)
+    for name, same in by_joint.items():
+        joint = joints.get(name)
         if joint is None:
+            _check_known(same[0], {*joints, *names}, by_joint)
             continue
-        values = _values(setting, joint)
+        values, *others = (_values(setting, joint) for setting in same)
+        for setting, other in zip(same[1:], others, strict=True):
+            if other != values:
+                raise _fault(setting, f"it is set twice, to {_shown(values)} and to {_shown(other)}")
         if not joint.has_one_axis:
             if len(values) == joint.nq:
                 q[joint.idx_q : joint.idx_q + joint.nq] = values
+            elif name in names:  # the root's own joint is none of the file's: a pose may be for another kind of root
+                needed = f"must be {joint.nq} numbers, as many as a {joint.kind} joint has in q"
+                raise _fault(same[0], f"its value {needed}; got {len(values)}")
         elif joint.leader is None:
-            joint.set_angle(q, _within_limits(setting, joint, values[0], model))
+            joint.set_angle(q, _within_limits(same[0], joint, values[0], model))
     return np.array(pinocchio.normalize(model, q))
+
+
+def _check_known(setting: Element, known: Collection[str], given: Collection[str]) -> None:
+    """Refuse a joint that the robot does not have if its name is a slip for one that the pose does not set."""
+    name = setting.attributes.get("name", "")
+    near = [] if name in known else [one for one in known if one not in given and is_slip(name, one)]
+    if near:
+        shown = " and ".join(repr(in_words(one)) for one in sorted(near)[:_MOST_NEAR])
+        raise _fault(setting, f"the robot has no such joint (near: {shown}, which the pose does not set)")
+
+
+def _shown(values: Iterable[float]) -> str:
+    return " ".join(f"{value:g}" for value in values)
 
 
 def _values(setting: Element, joint: Joint) -> list[float]:
@@ -96,4 +145,4 @@ def _within_limits(setting: Element, joint: Joint, angle: float, model: pinocchi
 
 
 def _fault(setting: Element, cause: str) -> DocumentError:
-    return DocumentError(cause, owner=f"joint {in_words(setting.attributes['name'])!r}", line=setting.line)
+    return DocumentError(cause, owner=f"joint {in_words(setting.attributes.get('name', ''))!r}", line=setting.line)

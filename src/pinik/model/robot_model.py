@@ -148,8 +148,8 @@ class RobotModel:
         SRDF file there are no poses. The file is read when the poses are first asked for.
 
         Raises:
-            RobotLoadError: The SRDF file cannot be read, or a pose in it has no number for a joint, or one outside its
-                limits; the message names the pose and the joint.
+            RobotLoadError: The SRDF file cannot be read; or a pose in it has no number for a joint, or one outside its
+                limits, sets a joint in two ways, or misspells its name; the message names the pose and the joint.
         """
         poses = {name: q.copy() for name, q in self._poses.items()}
         for q in poses.values():
@@ -158,7 +158,10 @@ class RobotModel:
 
     @cached_property
     def _poses(self) -> dict[str, Array]:
-        return {} if self._srdf is None else read_poses(self._srdf, self.model, self.joints)
+        if self._srdf is None:
+            return {}
+        names = {joint.name for joint in self.description.joints}
+        return read_poses(self._srdf, self.model, self.joints, names)
 
     def frame_id(self, name: str) -> int:
         """The index of a frame in the model. If a link and a joint share the name, it is the link's.
