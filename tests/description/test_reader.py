@@ -224,11 +224,15 @@ WARNINGS = {
     ),
     "a limit without end": (
         pair(limit='<limit lower="-inf" upper="1"/>'),
-        """joint 'j': <limit lower="-inf"> is beyond 1e+16; it is read as no limit (line 1)""",
+        """joint 'j': <limit> lower="-inf" is infinite; it is read as no limit (line 1)""",
     ),
     "a limit that no joint reaches": (
         pair(limit='<limit lower="-1" upper="1e308"/>'),
-        '<limit upper="1e308"> is beyond',
+        '<limit> upper="1e308" is beyond 1e+16; it is read as no limit',
+    ),
+    "two limits without end": (
+        pair(limit='<limit lower="-INF" upper="1e17"/>'),
+        """joint 'j': <limit> lower="-INF" is infinite and upper="1e17" is beyond 1e+16; they are read as no""",
     ),
     "a negative effort": (
         pair(limit='<limit lower="-1" upper="1" effort="-1"/>'),

@@ -123,7 +123,9 @@ def test_states_of_one_name_for_several_groups_are_one_pose_and_for_one_group_an
     assert both.angles(both.poses["home"]) == pytest.approx(
         {"hinge": 0.5, "slide": 1.5, "wheel": 0.0, "wrist": 0.0, "thumb": 0.25}
     )
-    with pytest.raises(pinik.RobotLoadError, match=r"pose 'home', joint 'hinge': it is set twice, to 0\.5 and to 0\.25"):
+    with pytest.raises(
+        pinik.RobotLoadError, match=r"pose 'home', joint 'hinge': it is set twice, to 0\.5 and to 0\.25"
+    ):
         _ = loaded(state("arm", hinge=0.5), state("hand", hinge=0.25)).poses
     with pytest.raises(pinik.RobotLoadError, match="pose 'home': it is given twice for group 'arm', first on line 1"):
         _ = loaded(state("arm", hinge=0.5), state("arm", slide=1.5)).poses

@@ -158,7 +158,7 @@ def _read_limits(joint: Part, limit: Part | None, kind: str) -> tuple[float | No
         limit.flaw(f"a {kind} joint has no limits here; its <limit> is ignored", code="limit-ignored")
     if not bounded:
         return None, None
-    lower, upper = _bound(limit, "lower", kind), _bound(limit, "upper", kind)
+    lower, upper = _bounds(limit, kind)
     absent = [name for name, value in (("lower", lower), ("upper", upper)) if value is None]
     if absent:
         bounds = f"{lower or 0.0:g}..{upper or 0.0:g}"
@@ -174,16 +174,24 @@ def _read_limits(joint: Part, limit: Part | None, kind: str) -> tuple[float | No
     return lower, upper
 
 
-def _bound(limit: Part, attribute: str, kind: str) -> float | None:
-    """A limit [rad or m], which is infinite if the file says so, or a number that no joint can reach."""
-    quantity = "length" if kind == "prismatic" else "angle"
-    value = limit.number(attribute, quantity, infinite=True)
-    if value is None or abs(value) <= ENDLESS:
-        return value
-    written = in_words(limit.element.attributes[attribute])
-    end = f"is beyond {ENDLESS:g}; it is read as no limit"
-    limit.flaw(f'<limit {attribute}="{written}"> {end}', code="endless-limit", common=f"a limit {end}")
-    return math.copysign(math.inf, value)
+def _bounds(limit: Part, kind: str) -> list[float | None]:
+    """The two limits [rad or m], each infinite if the file says so, or gives a number that no joint can reach."""
+    bounds: list[float | None] = []
+    endless = []
+    for attribute in ("lower", "upper"):
+        value = limit.number(attribute, "length" if kind == "prismatic" else "angle", infinite=True)
+        if value is not None and abs(value) > ENDLESS:
+            written = f'{attribute}="{in_words(limit.element.attributes[attribute])}"'
+            endless.append(f"{written} is {'infinite' if math.isinf(value) else f'beyond {ENDLESS:g}'}")
+            value = math.copysign(math.inf, value)
+        bounds.append(value)
+    if endless:
+        end = "it is read as no limit" if len(endless) == 1 else "they are read as no limits"
+        common = f"a limit is infinite or beyond {ENDLESS:g}; it is read as no limit"
+        turns = len(endless) == 2 and kind == "revolute"
+        mend = 'Write type="continuous" if the joint turns without an end.' if turns else ""
+        limit.flaw(f"<limit> {' and '.join(endless)}; {end}", code="endless-limit", common=common, mend=mend)
+    return bounds
 
 
 def _strength(part: Part | None, attribute: str, quantity: str, *, may_be_negative: bool = False) -> float | None:

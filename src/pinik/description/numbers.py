@@ -23,6 +23,7 @@ _MINUS = str.maketrans(dict.fromkeys("\u2010\u2011\u2012\u2013\u2212\ufe63\uff0d
 _INVISIBLE = str.maketrans(dict.fromkeys("\u200b\u200c\u200d\u200e\u200f\u2060\ufeff", ""))
 _PAIRS = ("()", "[]", "{}", '""', "''")
 
+_ONE_UNIT, _UNITS_EACH = "a unit", "units"
 _DEGREE = math.pi / 180.0
 # Quantity → unit → how many of the SI unit it is.
 _UNITS = {
@@ -45,13 +46,20 @@ class Reading:
     Attributes:
         values: The numbers, in SI units.
         oddity: What is unusual about their notation, such as "commas between the numbers"; empty if it is plain.
+        has_units: Whether units stand behind them.
     """
 
     values: tuple[float, ...]
     oddity: str = ""
+    has_units: bool = False
 
     def __str__(self) -> str:
         return " ".join(f"{value:.12g}" for value in self.values)
+
+    @property
+    def manner(self) -> str:
+        """How they are read: "as plain numbers", or "in SI units" where others stand behind them."""
+        return "in SI units" if self.has_units else "as plain numbers"
 
     @property
     def exact(self) -> str:
@@ -104,7 +112,7 @@ def read_numbers(text: str, counts: Collection[int], quantity: str = "number", *
         more = [] if len(shown) > 1 else ["one number more, if every comma separates two numbers"]
         raise NumberError(f"can be read in two ways: as {' or as '.join([*shown, *more])}")
     values, oddity = next(iter(readings.items()))
-    return Reading(values, oddity)
+    return Reading(values, oddity, has_units=not {_ONE_UNIT, _UNITS_EACH}.isdisjoint(oddity.split(", ")))
 
 
 def _bare(text: str) -> tuple[str, list[str]]:
@@ -175,10 +183,11 @@ def _values(words: Sequence[str], quantity: str, *, infinite: bool) -> tuple[tup
         together = tuple(value * factors[-1] for value in values)
         if not last.startswith(" ") and alone != together:
             raise NumberError(f'can be read in two ways: as "{Reading(alone)}" or as "{Reading(together)}"')
-        return together, [*oddities, "a unit"]
-    if not all(given) and len(set(factors)) > 1:
+        return together, [*oddities, _ONE_UNIT]
+    # Zero is the same in all units, and needs none.
+    if not all(unit or not value for value, unit in zip(values, given, strict=True)) and len(set(factors)) > 1:
         raise NumberError("must have one unit for all of its numbers, or a unit behind each")
-    return tuple(value * factor for value, factor in zip(values, factors, strict=True)), [*oddities, "units"]
+    return tuple(value * factor for value, factor in zip(values, factors, strict=True)), [*oddities, _UNITS_EACH]
 
 
 def _value(word: str, units: Collection[str], *, infinite: bool) -> tuple[float, str, list[str]]:

@@ -161,7 +161,7 @@ class Part:
             f'{self._quoted(attribute)} has {reading.oddity}; it is read as "{reading}"',
             reading.exact,
             code="loose-number",
-            common=f"numbers have {reading.oddity}; they are read as plain numbers",
+            common=f"numbers have {reading.oddity}; they are read {reading.manner}",
         )
 
 

@@ -80,6 +80,13 @@ def test_strict_passes_what_has_no_warning_and_what_is_only_a_note(run, write):
     assert "note: zero-outside-limits" in run("check", beyond).out.splitlines()
 
 
+def test_a_summary_says_that_units_count_and_names_each_place_once(run, write):
+    path = write(pair(limit='<limit lower="-90deg" upper="90deg"/>'))
+    done = run("check", path)
+    assert "joint 'j' (line 1): numbers have units; they are read in SI units" in done.out
+    assert read(path).joints[0].upper == pytest.approx(np.pi / 2)
+
+
 @pytest.mark.parametrize("slip", ["axis_as_attribute", "origin_xyz_typo", "link_upper"])
 def test_load_warns_about_what_changes_the_kinematics(slip):
     text, _, words, _ = MISTAKES[slip]

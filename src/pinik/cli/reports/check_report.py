@@ -69,9 +69,9 @@ def _emit_group(flaws: Sequence[Flaw]) -> None:
     if len(flaws) == 1:
         _emit_line(f"{_place(first)}: {shortened(first.cause, _LONGEST_CAUSE)}")
         return
-    places = [_place(flaw) for flaw in flaws[:_MOST_NAMED]]
-    more = f" and {len(flaws) - _MOST_NAMED:,} more" if len(flaws) > _MOST_NAMED else ""
-    _emit_line(f"{', '.join(places)}{more}: {shortened(first.common, _LONGEST_CAUSE)}")
+    places = list(dict.fromkeys(map(_place, flaws)))
+    more = f" and {len(places) - _MOST_NAMED:,} more" if len(places) > _MOST_NAMED else ""
+    _emit_line(f"{', '.join(places[:_MOST_NAMED])}{more}: {shortened(first.common, _LONGEST_CAUSE)}")
 
 
 def _emit_remark(title: str, remarks: Iterable[str]) -> None:
