@@ -213,10 +213,14 @@ WARNINGS = {
     ),
     "two axes": (
         pair('<axis xyz="0 1 0"/><axis xyz="0 0 1"/>'),
-        "joint 'j': has 2 <axis> elements; the first is taken (line 1)",
+        """joint 'j': has 2 <axis> elements that differ, <axis xyz="0 1 0"> (line 1) and <axis xyz="0 0 1"> (line 1)"""
+        "; the first is taken (line 1)",
     ),
-    "two origins": (pair("<origin/><origin/>"), "joint 'j': has 2 <origin> elements; the first is taken"),
-    "the same parent twice": (pair('<parent link="a"/>'), "joint 'j': has 2 <parent> elements; the first is taken"),
+    "two origins": (pair("<origin/><origin/>"), "joint 'j': has 2 equal <origin> elements; the first is taken"),
+    "the same parent twice": (
+        pair('<parent link="a"/>'),
+        "joint 'j': has 2 equal <parent> elements; the first is taken",
+    ),
     "an empty origin": (pair('<origin xyz="" rpy="0 0 1"/>'), """joint 'j': <origin xyz=""> is empty, which is read"""),
     "commas": (
         pair('<origin xyz="0.1, 0, 0.3"/>'),

@@ -18,6 +18,7 @@ __all__ = [
     "moved_to_child",
     "new_value",
     "overlap",
+    "removed",
     "renamed_attribute",
     "renamed_element",
     "start_tag",
@@ -144,6 +145,15 @@ def new_value(document: bytes, element: Element, attribute: str, value: str) -> 
     except ValueError:
         return ()
     return () if place is None else (Edit(*place.value, escaped(value)),)
+
+
+def removed(document: bytes, element: Element) -> tuple[Edit, ...]:
+    """The edit that takes an element out; none if it cannot be found, as in a document in UTF-16."""
+    try:
+        start, _, end = whole_element(document, element)
+    except ValueError:
+        return ()
+    return (Edit(start, end, ""),)
 
 
 def moved_to_child(document: bytes, element: Element, attribute: str, child: str, name: str) -> tuple[Edit, ...]:

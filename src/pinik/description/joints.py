@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from .flaw import Flaw
 from .numbers import FARTHEST, in_words
 from .part import Part, Vector
+from .slips import misspelt
 from .xml import DocumentError, Element
 
 __all__ = ["ENDLESS", "ONE_AXIS_KINDS", "JointTag", "Mimic", "read_joint"]
@@ -160,9 +161,11 @@ def _read_limits(joint: Part, limit: Part | None, kind: str) -> tuple[float | No
         return None, None
     lower, upper = _bounds(limit, kind)
     absent = [name for name, value in (("lower", lower), ("upper", upper)) if value is None]
-    if absent:
+    # The warning about a misspelt or misplaced attribute says already what is taken instead.
+    unsaid = [name for name in absent if name not in misspelt(limit.element) | joint.element.attributes.keys()]
+    if unsaid:
         bounds = f"{lower or 0.0:g}..{upper or 0.0:g}"
-        cause = f"<limit> has no {' and no '.join(absent)}, which is read as 0: its range is {bounds}"
+        cause = f"<limit> has no {' and no '.join(unsaid)}, which is read as 0: its range is {bounds}"
         limit.flaw(cause, code="absent-limit")
     low, high = lower or 0.0, upper or 0.0
     if low > high:

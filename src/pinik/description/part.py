@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Collection, Sequence
 from dataclasses import dataclass
 
-from .edits import new_value
+from .edits import new_value, removed
 from .flaw import Edit, Flaw
 from .numbers import FARTHEST, NumberError, Reading, in_words, read_numbers
 from .xml import DocumentError, Element
@@ -14,6 +14,7 @@ __all__ = ["Part", "Vector", "required_name"]
 
 Vector = tuple[float, float, float]
 
+_MOST_SHOWN = 4
 _ZERO: Vector = (0.0, 0.0, 0.0)
 
 
@@ -75,8 +76,7 @@ class Part:
         """The child with this tag, or None. Of several the first counts, as in urdfdom and yourdfpy."""
         found = self.element.named(tag)
         if len(found) > 1:
-            cause = f"has {len(found)} <{tag}> elements; the first is taken"
-            self.of(found[1]).flaw(cause, code="second-element", mend=f"Remove all <{tag}> elements but one.")
+            self._note_others(found)
         return self.of(found[0]) if found else None
 
     def text(self, attribute: str) -> str:
@@ -155,6 +155,22 @@ class Part:
     def _quoted(self, attribute: str) -> str:
         return f'<{self.element.tag} {attribute}="{in_words(self.element.attributes[attribute])}">'
 
+    def _note_others(self, found: Sequence[Element]) -> None:
+        """Add a flaw about several elements of which one is taken. If all are equal, its mend removes the others."""
+        first, *others = found
+        count, tag = len(found), first.tag
+        mend, end = f"Remove all <{tag}> elements but one.", "the first is taken"
+        common = f"has several <{tag}> elements; {end}"
+        if all(other.says_the_same(first) for other in others):
+            edits = [edit for other in others for edit in removed(self.document, other)]
+            cause = f"has {count} equal <{tag}> elements; {end}"
+            self.of(others[0]).flaw(cause, code="second-element", common=common, mend=mend, edits=edits)
+            return
+        shown = " and ".join(f"{_start_tag(one)} (line {one.line})" for one in found[:_MOST_SHOWN])
+        more = f" and {count - _MOST_SHOWN} more" if count > _MOST_SHOWN else ""
+        cause = f"has {count} <{tag}> elements that differ, {shown}{more}; {end}"
+        self.of(others[0]).flaw(cause, code="second-element", common=common, mend=mend)
+
     def _note(self, attribute: str, reading: Reading) -> None:
         self.misread(
             attribute,
@@ -163,6 +179,11 @@ class Part:
             code="loose-number",
             common=f"numbers have {reading.oddity}; they are read {reading.manner}",
         )
+
+
+def _start_tag(element: Element) -> str:
+    attributes = "".join(f' {name}="{in_words(value)}"' for name, value in element.attributes.items())
+    return f"<{element.tag}{attributes}>"
 
 
 def required_name(element: Element) -> str:

@@ -7,8 +7,10 @@ from difflib import SequenceMatcher
 
 from ..echoes import shortened
 from ..errors import near_names
+from .vocabulary import URDF
+from .xml import Element
 
-__all__ = ["is_slip", "is_sure", "meant"]
+__all__ = ["is_slip", "is_sure", "meant", "misspelt"]
 
 _RESEMBLES = 0.7  # of 1: how much two names have in common
 _SURELY = 0.8  # so much that only a slip of the keyboard explains it
@@ -22,6 +24,13 @@ def meant(name: str, known: Collection[str], given: Collection[str] = ()) -> str
         if _likeness(name, near) >= (_SURELY if near in given else _RESEMBLES):
             return near
     return None
+
+
+def misspelt(element: Element) -> set[str]:
+    """The attributes of URDF that an element holds under names that are near to theirs."""
+    known = URDF[element.tag].attributes
+    others = [name for name in element.attributes if name not in known]
+    return {near for name in others if (near := meant(name, known, element.attributes)) is not None}
 
 
 def is_sure(name: str, known: Collection[str]) -> bool:

@@ -70,6 +70,13 @@ class Element:
         """The direct children with this tag, in order."""
         return [child for child in self.children if child.tag == tag]
 
+    def says_the_same(self, other: Element) -> bool:
+        """Whether another element has the same tag and attributes, and children that say the same in the same order."""
+        if (self.tag, self.attributes, self.text) != (other.tag, other.attributes, other.text):
+            return False
+        pairs = zip(self.children, other.children, strict=False)
+        return len(self.children) == len(other.children) and all(one.says_the_same(two) for one, two in pairs)
+
     def walk(self) -> Iterator[Element]:
         """This element and all its descendants, parents first; siblings come in any order."""
         pending = [self]

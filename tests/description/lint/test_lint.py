@@ -233,7 +233,11 @@ def inertial(mass: float, ixx: float, iyy: float, izz: float, ixy: float = 0.0) 
         ((1, 0.1, 0.1, 0.3), "inertia-triangle"),
         ((1, 0.1, 0.1, 0.1, 0.2), "inertia-not-positive"),
         ((1, -0.1, 0.1, 0.1), "inertia-not-positive"),
-        ((1, 0, 0, 0), "inertia-not-positive"),
+        ((1, 0, 0, 0), "inertia-singular"),
+        ((1, 0, 0, 1e-6), "inertia-singular"),
+        ((1, -5e-20, -5e-20, 0), "inertia-singular"),
+        ((1, -3.5e-8, 3.5e-8, 9e-8), "inertia-not-positive"),
+        ((1, 0, 0.1, 0.2), "inertia-triangle"),
         ((0, 0.1, 0.1, 0.1), "massless-inertia"),
         ((1, 1e-9, 1e-9, 1e-9), "density"),
     ],
@@ -253,6 +257,8 @@ def test_inertias_of_bodies_are_not_doubted():
     for numbers in [
         (0.51, ball, ball, ball),
         (1.0, 1 / 12, 1 / 12, 1e-6),
+        (1.0, 1 / 12, 1 / 12, 0.0),
+        (1.0, 1 / 12, 1 / 12, -1e-19),
         (1.0, 0.0833, 0.0833, 0.1667),
         (0, 0, 0, 0),
         (1.0, 0.05, 0.05, 0.06, 0.03),
@@ -272,6 +278,19 @@ class TestLimits:
         assert only(pair(limit=LIMIT.format(0, 0))).code == "no-travel"
         assert only(pair(limit='<limit effort="1" velocity="1"/>')).code == "no-travel"
         assert flaws(pair(limit=LIMIT.format(0, 1))) == ()
+
+    @pytest.mark.parametrize(
+        "text",
+        [
+            pair(limit='<limit lowr="-1" uper="1"/>'),
+            pair(limit="<limit/>").replace('type="revolute"', 'type="revolute" lower="-1" upper="1"'),
+        ],
+    )
+    def test_a_slip_in_the_limits_is_said_once_and_not_taken_for_limits_of_zero(self, text):
+        assert {flaw.code for flaw in flaws(text)} <= {"unknown-attribute", "misplaced-attribute"}
+        assert {flaw.code for flaw in reader.read(text).warnings} <= {"unknown-attribute", "misplaced-attribute"}
+        half = text.replace('uper="1"', "").replace('upper="1"', "")
+        assert ["has no upper" in flaw for flaw in reader.read(half).warnings if flaw.code == "absent-limit"] == [True]
 
     def test_a_follower_that_holds_its_leader_up_is_named_with_what_is_left(self):
         lead = joint("lead", "a", "b", limit=LIMIT.format(0, 1))
@@ -327,7 +346,8 @@ def test_a_root_in_capital_letters_has_an_edit():
 
 # What is doubted in the robots of the catalogue, all of it rightly: each sort was looked at, robot by robot.
 IN_GOOD_ROBOTS = {
-    "density", "inertia-not-positive", "inertia-triangle", "massless-inertia", "material-twice", "misplaced-element",
+    "density", "inertia-not-positive", "inertia-singular",
+    "inertia-triangle", "massless-inertia", "material-twice", "misplaced-element",
     "no-travel", "undefined-material", "unknown-name", "zero-outside-limits",
 }  # fmt: skip
 

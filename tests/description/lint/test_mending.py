@@ -52,6 +52,16 @@ def test_the_mended_text_differs_in_the_slip_alone(wrong, right):
     np.testing.assert_allclose(placed(result.document)[:3, 3], [1, 2, 3])
 
 
+def test_equal_elements_are_removed_but_one_and_different_ones_are_left():
+    once, twice = ('<origin xyz="1 2 3"/>', '<origin xyz="1 2 3"/><origin  xyz="1 2 3"></origin><origin xyz="1 2 3"/>')
+    result = mend(TREE.format(joint="", origin=twice))
+    assert result.document.decode() == TREE.format(joint="", origin=once)
+    assert ([flaw.code for flaw in result.done], result.left) == (["second-element"], ())
+    different = TREE.format(joint="", origin='<origin xyz="1 2 3"/><origin xyz="1 2 4"/>')
+    result = mend(different)
+    assert (result.document.decode(), [one.flaw.code for one in result.left]) == (different, ["second-element"])
+
+
 def test_an_axis_that_was_an_attribute_turns_the_link_as_pinocchio_reads_it():
     result = mend(TREE.format(joint=' axis="0 1 0"', origin='<origin xyz="0 0 1"/>'))
     at = placed(result.document)[:3, :3]

@@ -17,7 +17,7 @@ from .plain import named
 
 __all__ = ["NOTES", "lint"]
 
-NOTES = frozenset({"zero-outside-limits"})
+NOTES = frozenset({"inertia-singular", "zero-outside-limits"})
 """The codes of flaws that many good robots have; they are worth knowing, but no warnings."""
 
 

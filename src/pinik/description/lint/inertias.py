@@ -17,6 +17,7 @@ __all__ = ["inertias"]
 _WHY = "Dynamics with this link is wrong, or fails; kinematics does not use it."
 _ENTRIES = ("ixx", "ixy", "ixz", "iyy", "iyz", "izz")
 _ROUNDING = 1e-3  # of the largest moment: files round their inertias
+_SINGULAR = 1e-12  # of the largest moment, or [m²] of the mass: no more than rounding leaves of zero
 _DENSEST = 1e5  # [kg/m³]: four times osmium
 _FARTHER = 10.0  # a radius of gyration this many times as long as all links together
 
@@ -62,16 +63,18 @@ def _fault(mass: float, entries: list[float], reach: float) -> _Fault | None:
         least, middle, most = np.linalg.eigvalsh([[ixx, ixy, ixz], [ixy, iyy, iyz], [ixz, iyz, izz]]).tolist()
     if not math.isfinite(most):
         return None
-    if not any(entries):
-        cause = "its inertia is 0, though its mass is not"
-        return _Fault(code="inertia-not-positive", cause=cause, mend="Give the inertia about the centre of mass.")
     shown = f"{least:.3g}, {middle:.3g} and {most:.3g} kg m²"
     compute = "Compute the inertia about the centre of mass again."
-    if least <= 0.0:
+    zero = _SINGULAR * max(mass, most)
+    if least < -max(_ROUNDING * most, zero):
         common = "its inertia is not positive definite"
         cause = f"{common}: its principal moments are {shown}"
         return _Fault(code="inertia-not-positive", cause=cause, mend=compute, common=common)
-    if most > (least + middle) * (1.0 + _ROUNDING):
+    if middle <= zero:
+        mend = "Give the inertia about the centre of mass, if dynamics is wanted."
+        cause = "at least two of its principal moments of inertia are 0, though its mass is not"
+        return _Fault(code="inertia-singular", cause=cause, mend=mend)
+    if most - (least + middle) > _ROUNDING * most:
         common = "its inertia is that of no body, as one principal moment is larger than the sum of the others"
         return _Fault(code="inertia-triangle", cause=f"{common}: {shown}", mend=compute, common=common)
     with np.errstate(all="ignore"):  # a file may have any numbers, which overflow or underflow here

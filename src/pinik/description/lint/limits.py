@@ -6,8 +6,9 @@ from collections.abc import Iterator, Sequence
 
 from ..flaw import Flaw
 from ..joints import JointTag, Mimic
+from ..slips import misspelt
 from ..xml import Element
-from .plain import BOUNDED, joint_values, named
+from .plain import BOUNDED, JointValues, joint_values, named
 
 __all__ = ["followers", "limits"]
 
@@ -21,7 +22,7 @@ def limits(robot: Element) -> Iterator[Flaw]:
         lower, upper = joint.lower, joint.upper
         if joint.kind not in BOUNDED or lower is None or upper is None or lower > upper:
             continue
-        if lower == upper:
+        if lower == upper and _is_meant(joint):
             yield Flaw(
                 joint.owner,
                 f"its lower and its upper limit are both {lower:g}, so that it cannot move",
@@ -31,7 +32,7 @@ def limits(robot: Element) -> Iterator[Flaw]:
                 why="Solves that need the joint miss their targets.",
                 mend='Give its limits, or write type="fixed".',
             )
-        elif not lower <= 0.0 <= upper:
+        elif lower < upper and not lower <= 0.0 <= upper:
             yield Flaw(
                 joint.owner,
                 f"0 lies outside its limits {lower:g}…{upper:g}",
@@ -41,6 +42,12 @@ def limits(robot: Element) -> Iterator[Flaw]:
                 why="The neutral configuration breaks the limits; solves start from the nearest one inside.",
                 mend="Nothing, if this is meant; give a start (q0) where it matters.",
             )
+
+
+def _is_meant(joint: JointValues) -> bool:
+    """Whether the limits are those of the file, instead of zeros for attributes that are misspelt or misplaced."""
+    lost = set() if joint.limit is None else misspelt(joint.limit)
+    return {"lower", "upper"}.isdisjoint(lost | joint.element.attributes.keys())
 
 
 def followers(joints: Sequence[JointTag], robot: Element) -> Iterator[Flaw]:
