@@ -1,67 +1,61 @@
-"""What messages echo is bounded, in errors, in warnings and in the command."""
+"""What messages quote is shortened in one way: it loses its middle, and keeps its beginning and its end."""
 
 from __future__ import annotations
 
-import pickle
-
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
 import pinik
-from pinik.echoes import bounded, one_line
-from urdf_texts import joint, link, robot
+from pinik.cli.reports.flaw_json import flaw_fields
+from pinik.description.flaw import Flaw
+from pinik.description.lint.front import lint
+from pinik.description.reader import read
+from pinik.echoes import shortened
+from urdf_texts import LIMIT, joint, link, pair, robot
 
-LONG = "n" * 5000
-SPACED = "long name " * 500
-
-
-def test_what_is_short_stays_as_it_is():
-    for words in ("no frame 'tipp'; did you mean 'tip'?", "x" * 300, " ".join(["word"] * 400), ""):
-        assert bounded(words) == words
+LONG = "first" + "x" * 4990 + "final"
 
 
-@pytest.mark.parametrize("name", [LONG, SPACED, LONG + " " + SPACED])
-def test_both_ends_of_a_long_message_stay(name):
-    words = bounded(f"no frame {name!r}; did you mean 'tip'?")
-    assert words.startswith("no frame '")
-    assert words.endswith("; did you mean 'tip'?")
-    assert "…" in words
-    assert len(words) <= 2000
-    assert bounded(words) == words
+@given(st.text(max_size=40), st.integers(4, 50))
+def test_a_shortened_text_is_bounded_and_a_short_one_stays(words, most):
+    short = shortened(words, most)
+    assert len(short) <= most
+    assert short == words or ("…" in short and words.startswith(short.partition("…")[0]))
 
 
-def test_a_line_is_one_line_without_control_characters():
-    assert one_line("two\n  lines\r\n") == "two lines"
-    assert one_line("\x1b[2J \x07 \u202e \x9b") == r"\x1b[2J \x07 \u202e \x9b"
-    assert one_line("é λ 中 😀") == "é λ 中 😀"
+def fault(text: str) -> str:
+    with pytest.raises(pinik.RobotLoadError) as caught:
+        read(text)
+    return str(caught.value)
 
 
-def errors():
-    arm = pinik.load("arm")
-    text = robot(link("base"), link("tip"), joint("j", "base", "tip", kind="revolute"))
-    yield lambda: arm.placement(LONG, arm.neutral())
-    yield lambda: arm.configuration({LONG: 0.0})
-    yield lambda: arm.solve("tip", position=[0, 0, 1], method=LONG)
-    yield lambda: arm.solve("tip", position=LONG)
-    yield lambda: pinik.load(LONG)
-    yield lambda: pinik.load(f"/nowhere/{LONG}.urdf")
-    yield lambda: pinik.load(robot(link(LONG), link(LONG)))
-    yield lambda: pinik.load(text.replace('"j"', f'"{LONG}"').replace('type="revolute"', f'type="{LONG}"'))
+def flaw(given: str | bytes, code: str) -> str:
+    document = given.encode() if isinstance(given, str) else given
+    return next(str(one) for one in (*read(document).warnings, *lint(document)) if one.code == code)
 
 
-@pytest.mark.parametrize("wrong", list(errors()))
-def test_no_error_echoes_thousands_of_characters(wrong):
-    with pytest.raises(pinik.PinikError) as caught:
-        wrong()
-    error = caught.value
-    assert len(str(error)) <= 2000
-    assert str(pickle.loads(pickle.dumps(error))) == str(error)
-    if isinstance(error, pinik.RobotLoadError):
-        assert len(error.cause) <= 2000
-        assert len(error.element or "") <= 2000
+QUOTES = {
+    "a number": lambda: fault(pair(f'<origin xyz="{LONG} 0 0"/>')),
+    "a xacro expression": lambda: fault(robot(link("first${x}" + LONG))),
+    "a path": lambda: fault(f"/{LONG}"),
+    "an unknown attribute": lambda: flaw(pair(f'<origin {LONG}="1"/>'), "unknown-name"),
+    "an unknown element": lambda: flaw(pair(f"<origin><{LONG}/></origin>"), "unknown-name"),
+    "a name that the lint says": lambda: flaw(
+        robot(link("a"), link("b"), joint(LONG, "a", "b", limit=LIMIT.replace('"3"', '"-3"'))), "no-travel"
+    ),
+    "text": lambda: flaw(pair(f"<origin>{LONG}</origin>"), "stray-text"),
+    "an encoding": lambda: flaw(
+        f'<?xml version="1.0" encoding="{LONG[:200]}final"?>{robot(link("ä"))}'.encode(), "encoding"
+    ),
+    "an entry of a report": lambda: flaw_fields(Flaw("link 'a'", "a cause", code="other", mend=LONG))["mend"],
+}
 
 
-def test_a_warning_does_not_either():
-    mesh = f'<visual><geometry><mesh filename="{LONG}.stl"/></geometry></visual>'
-    with pytest.warns(pinik.UrdfWarning) as given:
-        pinik.load(robot(link(LONG, mesh)).replace('name="r"', f'name="{LONG}"'))
-    assert [len(str(warning.message)) <= 2000 for warning in given] == [True] * len(given)
+@pytest.mark.parametrize("quote", QUOTES.values(), ids=QUOTES)
+def test_what_is_quoted_keeps_its_beginning_and_its_end(quote):
+    message = quote()
+    assert "first" in message
+    assert "x…x" in message
+    assert "final" in message
+    assert len(message) < 1200

@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from dataclasses import dataclass
 
+from ..echoes import QUOTED, shortened
 from .flaw import Flaw
 from .xml import BrokenXMLError, DocumentError, Element, parse
 
@@ -102,7 +103,11 @@ def _in_utf_8(content: bytes, flaws: list[Flaw]) -> bytes | None:
             text, taken = content.decode("utf-8"), "UTF-8"
         except UnicodeDecodeError:
             text, taken = content.decode("latin-1"), "Latin-1"
-        _note(flaws, f"its bytes are not {name[:40]!r}, as it declares; they are read as {taken}", code="encoding")
+        _note(
+            flaws,
+            f"its bytes are not {shortened(name, QUOTED)!r}, as it declares; they are read as {taken}",
+            code="encoding",
+        )
     return declared_as_utf_8(text.encode("utf-8"))
 
 

@@ -6,8 +6,9 @@ import math
 import sys
 from dataclasses import dataclass
 
+from ..echoes import QUOTED, shortened
 from .flaw import Flaw
-from .numbers import FARTHEST, in_words
+from .numbers import FARTHEST
 from .part import Part, Vector
 from .slips import misspelt
 from .xml import DocumentError, Element
@@ -184,7 +185,7 @@ def _bounds(limit: Part, kind: str) -> list[float | None]:
     for attribute in ("lower", "upper"):
         value = limit.number(attribute, "length" if kind == "prismatic" else "angle", infinite=True)
         if value is not None and abs(value) > ENDLESS:
-            written = f'{attribute}="{in_words(limit.element.attributes[attribute])}"'
+            written = f'{attribute}="{shortened(limit.element.attributes[attribute], QUOTED)}"'
             endless.append(f"{written} is {'infinite' if math.isinf(value) else f'beyond {ENDLESS:g}'}")
             value = math.copysign(math.inf, value)
         bounds.append(value)

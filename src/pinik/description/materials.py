@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
+from ..echoes import QUOTED, shortened
 from .flaw import Flaw
-from .numbers import in_words
 from .part import Part
 from .xml import DocumentError, Element
 
@@ -30,7 +30,7 @@ def named_colors(robot: Element, flaws: list[Flaw], document: bytes) -> dict[str
     for material in [*robot.named("material"), *in_links]:
         name = material.attributes.get("name", "")
         color = color_of(
-            material, f"material {in_words(name)!r}" if name else "material without a name", flaws, document
+            material, f"material {shortened(name, QUOTED)!r}" if name else "material without a name", flaws, document
         )
         if color is not None and name:
             colors.setdefault(name, color)
@@ -75,7 +75,7 @@ def _within_one(part: Part, values: tuple[float, ...]) -> Color:
     else:
         red, green, blue, opacity = (min(value, 1.0) for value in values)
         how = "cut to 1"
-    text = in_words(part.element.attributes["rgba"])
+    text = shortened(part.element.attributes["rgba"], QUOTED)
     part.flaw(
         f'<color rgba="{text}"> has numbers above 1, which are {how}',
         code="bright-color",

@@ -7,7 +7,9 @@ import re
 from collections.abc import Collection, Iterator, Sequence
 from dataclasses import dataclass
 
-__all__ = ["FARTHEST", "NumberError", "Reading", "in_words", "plain_number", "read_numbers"]
+from ..echoes import QUOTED, shortened
+
+__all__ = ["FARTHEST", "NumberError", "Reading", "plain_number", "read_numbers"]
 
 # [m or rad]: beyond this, sums and squares of distances could overflow, and placements would not be finite.
 FARTHEST = 1e12
@@ -197,7 +199,7 @@ def _value(word: str, units: Collection[str], *, infinite: bool) -> tuple[float,
         if _PLAIN.fullmatch(fortran):
             value = float(fortran)
             if not math.isfinite(value) and not infinite:
-                raise NumberError(f"{in_words(word)!r} is not finite")
+                raise NumberError(f"{shortened(word, QUOTED)!r} is not finite")
             return value, "", ["the exponent of Fortran"] if fortran != word else []
         if _NON_FINITE.fullmatch(word):
             if not infinite or math.isnan(float(word)):
@@ -207,7 +209,9 @@ def _value(word: str, units: Collection[str], *, infinite: bool) -> tuple[float,
         if split and (split[2] in units or split[2] in ("f", "F")):
             value, _, _ = _value(split[1], (), infinite=infinite)
             return (value, "", ["the suffix 'f'"]) if split[2] in ("f", "F") else (value, split[2], [])
-    raise NumberError(f"{in_words(word)!r} is not a number" if word else "a number is missing between two commas")
+    raise NumberError(
+        f"{shortened(word, QUOTED)!r} is not a number" if word else "a number is missing between two commas"
+    )
 
 
 def _numbers(counts: Collection[int]) -> str:
@@ -219,8 +223,3 @@ def _hint(values: Sequence[float], counts: Collection[int], quantity: str) -> st
     if quantity == "angle" and set(counts) == {3} and len(values) == 4:
         return ", which may be a quaternion, or roll, pitch and yaw with one number too many"
     return ""
-
-
-def in_words(text: str, most: int = 60) -> str:
-    """A text that a message quotes, shortened where it is long."""
-    return text if len(text) <= most else text[: most - 3] + "..."

@@ -5,9 +5,10 @@ from __future__ import annotations
 from collections.abc import Collection, Sequence
 from dataclasses import dataclass
 
+from ..echoes import QUOTED, shortened
 from .edits import new_value, removed
 from .flaw import Edit, Flaw
-from .numbers import FARTHEST, NumberError, Reading, in_words, read_numbers
+from .numbers import FARTHEST, NumberError, Reading, read_numbers
 from .xml import DocumentError, Element
 
 __all__ = ["Part", "Vector", "required_name"]
@@ -153,7 +154,7 @@ class Part:
         return _ZERO
 
     def _quoted(self, attribute: str) -> str:
-        return f'<{self.element.tag} {attribute}="{in_words(self.element.attributes[attribute])}">'
+        return f'<{self.element.tag} {attribute}="{shortened(self.element.attributes[attribute], QUOTED)}">'
 
     def _note_others(self, found: Sequence[Element]) -> None:
         """Add a flaw about several elements of which one is taken. If all are equal, its mend removes the others."""
@@ -182,7 +183,7 @@ class Part:
 
 
 def _start_tag(element: Element) -> str:
-    attributes = "".join(f' {name}="{in_words(value)}"' for name, value in element.attributes.items())
+    attributes = "".join(f' {name}="{shortened(value, QUOTED)}"' for name, value in element.attributes.items())
     return f"<{element.tag}{attributes}>"
 
 

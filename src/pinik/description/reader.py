@@ -10,6 +10,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from pathlib import Path
 
+from ..echoes import QUOTED, shortened
 from ..errors import RobotLoadError
 from .addresses import uses_find
 from .document import Document, read_document
@@ -147,7 +148,7 @@ def _check_root(robot: Element) -> None:
                 # "$(find package)/mesh.stl" has one meaning, and files that were expanded by hand still have it.
                 if "${" in text or ("$(" in text and not (attribute == "filename" and uses_find(text))):
                     raise DocumentError(
-                        f'{attribute}="{text[:60]}" is a xacro expression: this is {XACRO_HELP}',
+                        f'{attribute}="{shortened(text, QUOTED)}" is a xacro expression: this is {XACRO_HELP}',
                         owner=f"<{element.tag}>",
                         line=element.line,
                     )

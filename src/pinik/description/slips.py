@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Collection
 from difflib import SequenceMatcher
 
-from ..echoes import shortened
+from ..echoes import QUOTED, shortened
 from ..errors import near_names
 from .vocabulary import URDF
 from .xml import Element
@@ -15,12 +15,11 @@ __all__ = ["is_slip", "is_sure", "meant", "misspelt"]
 _RESEMBLES = 0.7  # of 1: how much two names have in common
 _SURELY = 0.8  # so much that only a slip of the keyboard explains it
 _LETTERS = 4  # so many letters are needed for one of them to be wrong
-_LONGEST = 60
 
 
 def meant(name: str, known: Collection[str], given: Collection[str] = ()) -> str | None:
     """The known name that this one resembles most, or None; one that is given beside it only if it is very near."""
-    for near in near_names(shortened(name, _LONGEST), known):
+    for near in near_names(shortened(name, QUOTED), known):
         if _likeness(name, near) >= (_SURELY if near in given else _RESEMBLES):
             return near
     return None
@@ -46,7 +45,7 @@ def is_slip(name: str, known: str) -> bool:
 
 def _likeness(name: str, known: str) -> float:
     """From 0 to 1: how much two names have in common; case, the order of letters and one wrong letter hardly count."""
-    word, other = name[:_LONGEST].casefold(), known.casefold()
+    word, other = name[:QUOTED].casefold(), known.casefold()
     if sorted(word) == sorted(other):
         return 1.0
     if len(word) == len(other) >= _LETTERS and sum(one != two for one, two in zip(word, other, strict=True)) == 1:

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import IO, Any
 
+from ..echoes import shortened
 from ..errors import RobotLoadError
 from ..files import FileError, read_within
 from .document import declared_as_utf_8
@@ -18,6 +19,7 @@ RobotSource = str | os.PathLike[str] | bytes | IO[str] | IO[bytes]
 """A path, URDF text, the bytes of a URDF file, or an open file."""
 
 _TEXT = "<text>"
+_LONGEST = 200
 
 
 @dataclass(frozen=True)
@@ -74,8 +76,7 @@ def is_source(given: object) -> bool:
 
 
 def _shown(path: str) -> str:
-    if len(path) > 200:
-        return repr(path[:60]) + "..."
+    path = shortened(path, _LONGEST)
     return path if path and path.isprintable() else repr(path)
 
 

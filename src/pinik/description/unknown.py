@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from ..echoes import shortened
+from ..echoes import QUOTED, shortened
 from .edits import moved_to_child, renamed_attribute, renamed_element
 from .flaw import Edit, Flaw
 from .slips import is_sure, meant
@@ -17,7 +17,6 @@ __all__ = ["unknown_in_joints", "unknown_parts"]
 _WHY_KINEMATICS = "The joint or link is not where the file seems to say."
 _WHY = "What it says is lost, as readers of URDF ignore it without a word."
 _ORIGIN = "Write <origin xyz=… rpy=…> in <{}>, in metres and radians."
-_LONGEST = 60
 _TREE = frozenset({"link", "joint"})
 _MANY = _TREE | frozenset({"visual", "collision"})  # of these an element may hold several
 # What places links → what is assumed where it is not said in the way of URDF. A limit tells of its own if it has none.
@@ -101,7 +100,7 @@ def _known(robot: Element) -> Iterator[tuple[Element, str]]:
 
 def _within(part: Element) -> Iterator[tuple[Element, str]]:
     """A link, joint or material and what URDF knows in it, each with its owner."""
-    owner = f"{part.tag} {shortened(part.attributes.get('name', ''), _LONGEST)!r}"
+    owner = f"{part.tag} {shortened(part.attributes.get('name', ''), QUOTED)!r}"
     pending = [part]
     while pending:
         element = pending.pop()
@@ -129,7 +128,7 @@ def _place(element: Element, owner: str, document: bytes | None) -> _Place:
 
 def _stray_text(place: _Place) -> Flaw:
     tag, main = place.element.tag, "xyz" if place.element.tag == "origin" else MAIN_ATTRIBUTES.get(place.element.tag)
-    cause = f"the text {shortened(place.element.text, _LONGEST)!r} in <{tag}> is ignored{_losses(place)}"
+    cause = f"the text {shortened(place.element.text, QUOTED)!r} in <{tag}> is ignored{_losses(place)}"
     mend = f"Write it as <{tag} {main}=…>, or take it out." if main else "Take it out; URDF has attributes instead."
     return _flaw(place, cause, code="stray-text", mend=mend)
 
@@ -137,7 +136,7 @@ def _stray_text(place: _Place) -> Flaw:
 def _unknown_attribute(place: _Place, attribute: str) -> Iterator[Flaw]:
     element, word = place.element, place.word
     tag = element.tag
-    held = f"<{tag} {shortened(attribute, _LONGEST)}=…>"
+    held = f"<{tag} {shortened(attribute, QUOTED)}=…>"
     near = meant(attribute, word.attributes, element.attributes)
     if near is None and (child := attribute.casefold()) in word.children:
         yield _attribute_of_child(place, attribute, child)
@@ -153,7 +152,7 @@ def _unknown_attribute(place: _Place, attribute: str) -> Iterator[Flaw]:
             place,
             cause,
             code="unknown-attribute",
-            mend=f"Write {near}= instead of {shortened(attribute, _LONGEST)}=.",
+            mend=f"Write {near}= instead of {shortened(attribute, QUOTED)}=.",
             edits=edits,
         )
     elif _means_origin(place, attribute):
@@ -175,14 +174,14 @@ def _attribute_of_child(place: _Place, attribute: str, child: str) -> Flaw:
     if place.document is not None and main and child not in place.given:
         edits = moved_to_child(place.document, element, attribute, child, main)
     text = element.attributes[attribute]
-    example = f'<{child} {main}="{shortened(text, _LONGEST)}"/>' if main else written
+    example = f'<{child} {main}="{shortened(text, QUOTED)}"/>' if main else written
     mend = f"Write {example} inside <{element.tag}>."
     return _flaw(place, cause, code="misplaced-attribute", mend=mend, edits=edits)
 
 
 def _unknown_child(place: _Place, child: Element) -> Iterator[Flaw]:
     element, word = place.element, place.word
-    tag = shortened(child.tag, _LONGEST)
+    tag = shortened(child.tag, QUOTED)
     near = meant(child.tag, word.children, place.given - _MANY)
     if near is not None:
         cause = f"<{tag}> is unknown to URDF and ignored with all that it holds (near: <{near}>){_loss(place, near)}"
@@ -194,7 +193,7 @@ def _unknown_child(place: _Place, child: Element) -> Iterator[Flaw]:
         yield _flaw(place, cause, child, code="unknown-element", mend=mend, edits=edits)
     elif child.tag in URDF:
         homes = ", ".join(f"<{name}>" for name, known in URDF.items() if child.tag in known.children)
-        name = f" {shortened(child.attributes['name'], _LONGEST)!r}" if "name" in child.attributes else ""
+        name = f" {shortened(child.attributes['name'], QUOTED)!r}" if "name" in child.attributes else ""
         cause = f"<{tag}>{name} has no place in <{element.tag}> and is ignored with all that it holds"
         mend = f"URDF has <{tag}> in {homes}; move it there, or take it out."
         yield _flaw(place, cause, child, code="misplaced-element", mend=mend)
@@ -214,7 +213,7 @@ def _flaw(
     element = place.element if child is None else child
     owner = place.owner
     if owner == "<robot>" and child is not None and child.attributes.get("name"):
-        owner = f"<{shortened(child.tag, _LONGEST)}> {shortened(child.attributes['name'], _LONGEST)!r}"
+        owner = f"<{shortened(child.tag, QUOTED)}> {shortened(child.attributes['name'], QUOTED)!r}"
     moves = place.owner.startswith(("joint", "<robot>")) if code != "unknown-name" else place.element.tag in _PLACING
     moves = moves or (child is not None and child.tag in _TREE)
     why = _WHY_KINEMATICS if moves else _WHY

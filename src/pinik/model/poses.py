@@ -10,9 +10,10 @@ import numpy as np
 import pinocchio
 from numpy.typing import NDArray
 
-from ..description.numbers import FARTHEST, in_words, plain_number
+from ..description.numbers import FARTHEST, plain_number
 from ..description.slips import is_slip
 from ..description.xml import MAX_BYTES, DocumentError, Element, parse
+from ..echoes import QUOTED, shortened
 from ..errors import RobotLoadError
 from ..files import FileError, read_within
 from .joint import Joint
@@ -60,7 +61,7 @@ def read_poses(srdf: Path, model: pinocchio.Model, joints: Iterable[Joint], name
             poses[name] = _pose(_settings(parts), model, by_name, names)
         except DocumentError as fault:
             message = f"{fault.message} (line {fault.line})"
-            element = f"pose {in_words(name)!r}" + (f", {fault.owner}" if fault.owner else "")
+            element = f"pose {shortened(name, QUOTED)!r}" + (f", {fault.owner}" if fault.owner else "")
             raise RobotLoadError(message, source=str(srdf), element=element) from None
     return poses
 
@@ -76,7 +77,7 @@ def _settings(states: Iterable[Element]) -> list[Element]:
         group = state.attributes.get("group", "")
         other = first.setdefault(group, state)
         if other is not state:
-            cause = f"it is given twice for group {in_words(group)!r}, first on line {other.line}"
+            cause = f"it is given twice for group {shortened(group, QUOTED)!r}, first on line {other.line}"
             raise DocumentError(cause, line=state.line)
     return [setting for state in first.values() for setting in state.named("joint")]
 
@@ -113,7 +114,7 @@ def _check_known(setting: Element, known: Collection[str], given: Collection[str
     name = setting.attributes.get("name", "")
     near = [] if name in known else [one for one in known if one not in given and is_slip(name, one)]
     if near:
-        shown = " and ".join(repr(in_words(one)) for one in sorted(near)[:_MOST_NEAR])
+        shown = " and ".join(repr(shortened(one, QUOTED)) for one in sorted(near)[:_MOST_NEAR])
         raise _fault(setting, f"the robot has no such joint (near: {shown}, which the pose does not set)")
 
 
@@ -126,7 +127,7 @@ def _values(setting: Element, joint: Joint) -> list[float]:
     values = [value for word in words if (value := plain_number(word)) is not None and abs(value) <= FARTHEST]
     needed = "a number" if joint.has_one_axis else "numbers"
     if len(values) < len(words) or not words or (joint.has_one_axis and len(words) > 1):
-        given = in_words(setting.attributes.get("value", ""))
+        given = shortened(setting.attributes.get("value", ""), QUOTED)
         raise _fault(setting, f"its value must be {needed} of at most {FARTHEST:g}; got {given!r}")
     return values
 
@@ -145,4 +146,6 @@ def _within_limits(setting: Element, joint: Joint, angle: float, model: pinocchi
 
 
 def _fault(setting: Element, cause: str) -> DocumentError:
-    return DocumentError(cause, owner=f"joint {in_words(setting.attributes.get('name', ''))!r}", line=setting.line)
+    return DocumentError(
+        cause, owner=f"joint {shortened(setting.attributes.get('name', ''), QUOTED)!r}", line=setting.line
+    )

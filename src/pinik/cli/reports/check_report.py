@@ -9,9 +9,9 @@ from collections.abc import Iterable, Sequence
 
 from ...description.flaw import Flaw
 from ...description.lint.front import NOTES
+from ...echoes import shortened
 from ..terminal import output
 from ..terminal.units import counted
-from .flaw_json import shortened
 from .inspection import Inspection
 
 __all__ = ["emit_flaws", "emit_inspection"]

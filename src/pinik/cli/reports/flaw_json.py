@@ -6,12 +6,12 @@ from typing import Any
 
 from ...description.flaw import Flaw
 from ...description.lint.front import NOTES
+from ...echoes import shortened
 
 __all__ = ["MOST_LISTED", "flaw_fields", "shortened"]
 
 MOST_LISTED = 1000
 """The largest number of entries in each list, and of flaws of each sort."""
-_LONGEST = 1000
 
 
 def flaw_fields(flaw: Flaw) -> dict[str, Any]:
@@ -26,9 +26,3 @@ def flaw_fields(flaw: Flaw) -> dict[str, Any]:
         "mend": shortened(flaw.mend),
         "fixable": bool(flaw.edits),
     }
-
-
-def shortened(text: str, most: int = _LONGEST) -> str:
-    """A text without its middle where it is longer than `most` characters, as names can be of any length."""
-    half = most // 2 - 1
-    return text if len(text) <= most else f"{text[:half]} … {text[-half:]}"

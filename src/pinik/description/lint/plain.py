@@ -6,6 +6,7 @@ import math
 from collections.abc import Iterator
 from dataclasses import dataclass
 
+from ...echoes import QUOTED, shortened
 from ..xml import Element
 
 __all__ = ["BOUNDED", "JointValues", "Vector", "joint_values", "named", "plain_numbers", "plain_vector"]
@@ -14,7 +15,6 @@ Vector = tuple[float, float, float]
 
 BOUNDED = ("revolute", "prismatic")
 """The kinds of joints with a lower and an upper limit."""
-_LONGEST = 60
 
 
 @dataclass(frozen=True, slots=True)
@@ -58,8 +58,7 @@ def joint_values(robot: Element) -> Iterator[JointValues]:
 
 def named(element: Element) -> str:
     """An element in messages: "joint 'elbow'"."""
-    name = element.attributes.get("name", "")
-    return f"{element.tag} {name if len(name) <= _LONGEST else name[: _LONGEST - 1] + '…'!r}"
+    return f"{element.tag} {shortened(element.attributes.get('name', ''), QUOTED)!r}"
 
 
 def plain_numbers(text: str) -> list[float] | None:
