@@ -242,7 +242,7 @@ def _unfound(robot: Robot) -> Iterator[Flaw]:
                 f"mesh {address!r}",
                 f"{what}: {found.why}; kinematics works without it",
                 code=found.code,
-                common=f"{what}; kinematics works without it",
+                common=f"{what}: {found.common}; kinematics works without it",
                 mend=found.mend,
                 mesh=address,
             )

@@ -137,6 +137,7 @@ def test_a_package_of_package_dirs_comes_first(write: Write, tmp_path: Path) -> 
         ('<xacro:macro name="m" params="n">\n<link name="${n + q}"/></xacro:macro>\n\n<xacro:m n="a"/>', r"\(line 2\)"),
         ('\n<link name="$(arg which)"/>', r"'which' has no value; .*--xacro-arg which:=VALUE\) \(line 2\)"),
         ('<xacro:include filename="$(find nowhere)/x.xacro"/>', r"no package 'nowhere' was found; .*package_dirs"),
+        ('<xacro:include filename="$(find Hand)/x.xacro"/>', r"no package 'Hand' was found, but there is 'hand'; name"),
         ('\n\n\n<xacro:include filename="none.xacro"/>', r"none.xacro cannot be read: No such file .*\(line 4\)"),
         ('\n<link name="a">', r"not XML: mismatched tag \(line 2\)"),
         ('<xacro:include filename="r.urdf.xacro"/>', "files include each other, .* without end"),
@@ -153,6 +154,7 @@ def test_a_package_of_package_dirs_comes_first(write: Write, tmp_path: Path) -> 
 )  # fmt: skip
 def test_an_error_is_said_in_words_with_file_and_line(write: Write, tmp_path: Path, body: str, words: str) -> None:
     (tmp_path / "broken.xacro").write_text("<robot>\n<link name=></robot>")
+    (tmp_path / "hand").mkdir()
     with pytest.raises(pinik.RobotLoadError, match=words) as caught:
         pinik.load(write(body))
     assert str(caught.value).startswith(str(tmp_path / "r.urdf.xacro"))

@@ -62,10 +62,10 @@ class _Packages:
 
     def __call__(self, name: str) -> str:
         _say(self._stdout, {"find": name})
-        place = json.loads(self._stdin.readline())["place"]
-        if place is None:
-            raise _NoPackageError(f"no package {name!r} was found; name its folder in package_dirs (--package-dir)")
-        return str(place)
+        answer = json.loads(self._stdin.readline())
+        if "why" in answer:
+            raise _NoPackageError(f"{answer['why']}; name its folder in package_dirs (--package-dir)")
+        return str(answer["place"])
 
 
 def main() -> None:
