@@ -54,6 +54,7 @@ class Description:
         xml: The URDF text for Pinocchio: kinematics, inertias and limits, without shapes.
         warnings: What was repaired or left out.
         document: The bytes that were parsed, shapes included (`document.Document.content`).
+        expanded: Whether these bytes are the URDF that xacro made of the file.
     """
 
     name: str
@@ -67,6 +68,7 @@ class Description:
     xml: str
     warnings: tuple[Flaw, ...]
     document: bytes = field(repr=False)
+    expanded: bool = False
 
 
 def read(given: RobotSource) -> Description:
@@ -97,7 +99,8 @@ def read_content(content: bytes, source: Source) -> Description:
         return _described(read_document(content), source)
     except DocumentError as fault:
         # The message of broken XML names line and column itself.
-        line = f" (line {fault.line})" if fault.line and not isinstance(fault, BrokenXMLError) else ""
+        of = " of the expanded file" if source.expanded else ""
+        line = f" (line {fault.line}{of})" if fault.line and not isinstance(fault, BrokenXMLError) else ""
         raise RobotLoadError(fault.message + line, source=source.label, element=fault.owner) from None
 
 
@@ -129,8 +132,9 @@ def _described(document: Document, source: Source) -> Description:
         link_tags=tuple(links),
         meshes=tuple(dict.fromkeys(shape.filename for link in links for shape in link.shapes if shape.filename)),
         xml=written(name, links, joints),
-        warnings=tuple(flaws),
+        warnings=tuple(flaw.of_expansion() for flaw in flaws) if source.expanded else tuple(flaws),
         document=document.content,
+        expanded=source.expanded,
     )
 
 

@@ -28,11 +28,13 @@ class Source:
         given: A path, URDF text, the bytes of a URDF file, or an open file.
         label: What messages call it: its path, or "<text>".
         path: The file to which relative addresses refer; None if there is none.
+        expanded: Whether what is read is the URDF that xacro made of it, so that lines are not those of the file.
     """
 
     given: Any
     label: str
     path: Path | None
+    expanded: bool = False
 
     @classmethod
     def of(cls, given: RobotSource) -> Source:
