@@ -23,7 +23,10 @@ from .unknown import unknown_in_joints
 from .writer import written
 from .xml import BrokenXMLError, DocumentError, Element
 
-__all__ = ["Description", "JointTag", "Mimic", "read", "read_content"]
+__all__ = ["MAX_LINKS", "Description", "JointTag", "Mimic", "read", "read_content"]
+
+# Pinocchio's parser searches all frames for each parent: 10,000 links take a second, 100,000 take minutes.
+MAX_LINKS = 10_000
 
 # What a document is if its root element is not <robot>.
 OTHER_FORMATS = {
@@ -110,6 +113,7 @@ def _described(document: Document, source: Source) -> Description:
     flaws: list[Flaw] = list(document.flaws)
     if not robot.named("link"):
         raise DocumentError(_why_no_links(robot), owner="<robot>", line=robot.line)
+    _check_size(robot)
     check_unique(robot)
     colors = named_colors(robot, flaws, document.content)
     links = [read_link(element, colors, flaws, document.content) for element in robot.named("link")]
@@ -155,6 +159,14 @@ def _check_root(robot: Element) -> None:
                         owner=f"<{element.tag}>",
                         line=element.line,
                     )
+
+
+def _check_size(robot: Element) -> None:
+    """Refuse a robot that is too large, before time is spent on its links and joints."""
+    for tag in ("link", "joint"):
+        count = len(robot.named(tag))
+        if count > MAX_LINKS:
+            raise DocumentError(f"it has {count:,} {tag}s; at most {MAX_LINKS:,} can be loaded")
 
 
 def _why_no_links(robot: Element) -> str:
