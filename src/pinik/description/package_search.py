@@ -94,7 +94,8 @@ class PackageSearch:
         if self._by_manifest is None:
             self._by_manifest = self._named_by_manifests()
         yield from self._by_manifest
-        for folder in dict.fromkeys([*self._given, *(folder for chain in self._above for folder in chain)]):
+        near = [folder for chain in self._above for folder in chain if folder != folder.parent]
+        for folder in dict.fromkeys([*self._given, *near]):
             yield folder.name
             yield from names_in(folder)
         yield from (home.name for home in self._own)
