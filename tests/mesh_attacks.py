@@ -99,8 +99,14 @@ def attacks() -> dict[str, tuple[bytes, str]]:
         "blank.obj": (b" \n", "the file is empty"),
         "cut.stl": (stl(4)[:-60], "cut off: it announces 4 triangles and has 2"),
         "cut_text.stl": (b"solid x\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\n", "cut off: it has no 'endsolid'"),
-        "head.stl": (b"\0" * 40, "cut off"),
-        "billions.stl": (stl(1, 4_000_000_000), "cut off: it announces 4,000,000,000 triangles"),
+        "head.stl": (b"\0" * 40, "this is no STL file"),
+        "billions.stl": (stl(1, 4_000_000_000), "this is no STL file"),
+        "million.stl": (stl(1, 1_000_000), "cut off: it announces 1,000,000 triangles and has 1"),
+        **{
+            f"garbage{i}.{kind}": (text, f"this is no {name} file: ")
+            for i, text in enumerate((b"garbage", b"v 0 0 0\n" * 40))
+            for kind, name in {"stl": "STL", "ply": "PLY", "gltf": "glTF", "glb": "GLB", "off": "OFF"}.items()
+        },
         "none.stl": (stl(0), "it holds no triangles"),
         "nan.obj": (b"v nan 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n", "not finite"),
         "huge.obj": (b"v 1e999 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n", "not finite"),

@@ -179,7 +179,7 @@ def fetch(
             raise InputError(f"are for xacro files, and this is none; got {xacro_args!r}", argument="xacro_args")
         return Fetched(source, content)
     expansion = xacro.expand(path, {**located.xacro_args, **given}, package_dirs)
-    return Fetched(source, expansion.document, expansion.remarks)
+    return Fetched(replace(source, expanded=True), expansion.document, expansion.remarks)
 
 
 def locate(source: RobotSource) -> Located:
@@ -242,7 +242,7 @@ def _unfound(robot: Robot) -> Iterator[Flaw]:
                 f"mesh {address!r}",
                 f"{what}: {found.why}; kinematics works without it",
                 code=found.code,
-                common=f"{what}; kinematics works without it",
+                common=f"{what}: {found.common}; kinematics works without it",
                 mend=found.mend,
                 mesh=address,
             )

@@ -1,6 +1,7 @@
 from __future__ import annotations
 
 import dataclasses
+import itertools
 import shlex
 import subprocess
 import sys
@@ -31,6 +32,16 @@ def test_every_example_in_the_help_works(run, environment, command):
         script = f'pinik() {{ {shlex.quote(sys.executable)} -m pinik "$@"; }}; {example}'
         done = subprocess.run(["bash", "-c", script], env=environment, capture_output=True, timeout=30, check=False)
         assert done.returncode == 0, done.stderr.decode()
+
+
+@pytest.mark.parametrize("command", ["", *COMMANDS])
+def test_lines_of_a_paragraph_end_only_where_the_next_word_has_no_room(run, command, monkeypatch):
+    monkeypatch.setenv("COLUMNS", "70")
+    monkeypatch.setenv("TERMINAL_WIDTH", "70")
+    lines = run(*filter(None, [command]), "--help").out.partition("\u256d")[0].splitlines()[2:]
+    for line, after in itertools.pairwise(lines):
+        if line.strip() and after.strip() and not line.startswith("   ") and not after.startswith("   "):
+            assert len(line.strip()) + len(after.split()[0]) >= 66, line
 
 
 @pytest.mark.parametrize("command", ["", *COMMANDS])

@@ -2,15 +2,22 @@
 
 from __future__ import annotations
 
+import contextlib
+import importlib
 import os
 import signal
+import sys
+import tempfile
+import types
 from collections.abc import Iterator
+from pathlib import Path
 
 import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from urdf_attack.corpus import robots
 from urdf_attack.mutations import Case, mutated
+from urdf_attack.report import Report
 from urdf_attack.workers import Worker
 
 from urdf_texts import chain, link, pair, robot
@@ -60,3 +67,23 @@ def test_the_attack_goes_on_after_a_crash(worker):
     os.kill(worker.process_id, signal.SIGKILL)
     assert worker.judged(case(pair())).kind == "crashed"
     assert worker.judged(case(pair())).kind == "agreed"
+
+
+def test_the_guided_attack_leaves_nothing_in_the_working_directory(tmp_path, monkeypatch):
+    """libFuzzer writes the input that it stopped at wherever its artifact_prefix says."""
+    given: list[str] = []
+    atheris = types.ModuleType("atheris")
+    atheris.instrument_imports = lambda include: contextlib.nullcontext()
+    atheris.Setup = lambda arguments, _one: given.extend(arguments)
+    atheris.Fuzz = lambda: None
+    monkeypatch.setitem(sys.modules, "atheris", atheris)
+    monkeypatch.delitem(sys.modules, "urdf_attack.guided", raising=False)
+    (tmp_path / "here").mkdir()
+    (tmp_path / "temporary").mkdir()
+    monkeypatch.chdir(tmp_path / "here")
+    monkeypatch.setattr(tempfile, "tempdir", str(tmp_path / "temporary"))
+    guided = importlib.import_module("urdf_attack.guided")
+    guided.attack(5, 0, 1.0, Report("", Path("build/attack")))
+    [prefix] = [word.partition("=")[2] for word in given if word.startswith("-artifact_prefix=")]
+    assert Path(prefix).parent == tmp_path / "temporary"
+    assert not any((tmp_path / "here").iterdir())

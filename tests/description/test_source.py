@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import io
+import itertools
 import os
 import pathlib
 import subprocess
 import sys
 import threading
 
+import numpy as np
 import pytest
 
 import pinik
@@ -109,11 +111,16 @@ class Endless(io.RawIOBase):
 
 
 class NotAFile:
-    def __init__(self, gives):
-        self.gives = gives
+    def __init__(self, *gives):
+        self.gives = itertools.cycle(gives)
 
     def read(self, _size):
-        return self.gives
+        return next(self.gives)
+
+
+class WithoutSize:
+    def read(self):
+        return "<robot/>"
 
 
 def closed():
@@ -128,7 +135,13 @@ def closed():
         (io.BufferedReader(Endless()), "too large for a robot description"),
         (closed(), "the file cannot be read: I/O operation on closed file"),
         (io.TextIOWrapper(io.BytesIO(b"<robot name='\xe9'/>"), encoding="ascii"), "open it in binary mode"),
-        (NotAFile([1, 2]), "the file must give text or bytes; it gave list"),
+        (NotAFile([1, 2]), r"the file must give text or bytes; it gave \[1, 2\]"),
+        (NotAFile(5), "the file must give text or bytes; it gave 5"),
+        (NotAFile(None), "the file must give text or bytes; it gave None"),
+        (NotAFile(0), "the file must give text or bytes; it gave 0"),
+        (NotAFile(np.zeros(3)), "the file must give text or bytes; it gave array"),
+        (NotAFile("<robot/>", b"<robot/>"), "the file must give either text or bytes; it gave both"),
+        (WithoutSize(), r"the file's read\(\) must take a size: .*positional argument"),
         (io.StringIO("\ud800<robot/>"), "cannot be encoded"),
         (b"", "empty"),
         (b"\x7fELF\x02\x01", "not XML"),

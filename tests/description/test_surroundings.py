@@ -145,10 +145,14 @@ def test_a_workspace_of_links_is_opened(tmp_path: Path, monkeypatch: pytest.Monk
         ("../meshes/bass.stl", "there is no such file"),
         ("package://arm/meshes/bass.stl", "there is no such file"),
         ("package://legs/meshes/base.stl", "no package 'legs' was found"),
+        ("package://ARM/meshes/Base.STL", "no package 'ARM' was found, but there is 'arm'"),
+        ("package://Hand_Description/palm.stl", "no package 'Hand_Description' was found, but there is 'hand_descr"),
+        ("package://PANDA_description/meshes/x.stl", "no package 'PANDA_description' was found, but there is 'panda"),
     ],
 )
 def test_a_missing_file_is_told_from_one_that_is_spelled_otherwise(tmp_path: Path, address: str, why: str) -> None:
     made(tmp_path / "arm" / "meshes" / "Base.STL")
+    package(tmp_path / "the_hand", "hand_description")
     urdf = made(tmp_path / "arm" / "urdf" / "arm.urdf")
     found = Surroundings(urdf).find(address)
     assert found.path is None
@@ -175,10 +179,60 @@ def test_a_package_xml_that_is_no_file_is_no_package(tmp_path: Path, kind: str) 
     assert time.monotonic() - started < 20
 
 
-def test_a_mesh_that_is_a_pipe_is_not_found(tmp_path: Path) -> None:
-    urdf = made(tmp_path / "arm.urdf")
-    os.mkfifo(tmp_path / "a.stl")
-    assert Surroundings(urdf).find("a.stl").path is None
+@pytest.mark.parametrize("address", ["a.stl", "package://arm/a.stl"])
+@pytest.mark.parametrize(
+    ("kind", "why"),
+    [
+        ("pipe", "this is a pipe or a device, not a mesh"),
+        ("device", "this is a pipe or a device, not a mesh"),
+        ("folder", "this is a directory, not a mesh"),
+        ("lost", "this is a symbolic link that leads nowhere"),
+    ],
+)
+def test_what_stands_in_place_of_a_mesh_is_named_and_not_opened(
+    tmp_path: Path, kind: str, why: str, address: str
+) -> None:
+    urdf = made(tmp_path / "arm" / "arm.urdf")
+    mesh = tmp_path / "arm" / "a.stl"
+    match kind:
+        case "pipe":
+            os.mkfifo(mesh)
+        case "device":
+            mesh.symlink_to("/dev/zero")
+        case "folder":
+            mesh.mkdir()
+        case "lost":
+            mesh.symlink_to("no such file")
+    found = Surroundings(urdf).find(address)
+    assert (found.path, found.why) == (None, why)
+
+
+def test_load_gives_the_reason_of_every_mesh_that_is_not_found(tmp_path: Path) -> None:
+    made(tmp_path / "arm" / "M.stl")
+    addresses = {
+        "m.stl": "there is 'M.stl'",
+        "package://legs/a.stl": "no package 'legs' was found",
+        "package://ARM/M.stl": "no package 'ARM' was found, but there is 'arm'",
+        "C:/robots/a.stl": "it is a path of a Windows machine",
+        "solid://a.stl": "pinik does not know addresses that begin with 'solid://'",
+        "/no/such.stl": "there is no such file",
+    }
+    shapes = (f'<visual><geometry><mesh filename="{address}"/></geometry></visual>' for address in addresses)
+    urdf = made(tmp_path / "arm" / "arm.urdf", robot(link("a", "".join(shapes))))
+    with pytest.warns(pinik.UrdfWarning) as caught:
+        pinik.load(urdf)
+    lines = [str(warning.message) for warning in caught]
+    for address, why in addresses.items():
+        assert [line for line in lines if repr(address) in line and why in line], address
+
+
+def test_thousands_of_packages_that_are_not_found_are_one_line(tmp_path: Path) -> None:
+    shapes = (f'<visual><geometry><mesh filename="package://p{i}/m.stl"/></geometry></visual>' for i in range(500))
+    urdf = made(tmp_path / "arm" / "arm.urdf", robot(link("a", "".join(shapes))))
+    with pytest.warns(pinik.UrdfWarning) as caught:
+        pinik.load(urdf)
+    assert len(caught) == 1
+    assert "no package of this name was found" in str(caught[0].message)
 
 
 def test_thousands_of_missing_meshes_take_no_minutes_and_one_line(tmp_path: Path) -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import re
 import threading
 from collections.abc import Callable
 from pathlib import Path
@@ -137,6 +138,7 @@ def test_a_package_of_package_dirs_comes_first(write: Write, tmp_path: Path) -> 
         ('<xacro:macro name="m" params="n">\n<link name="${n + q}"/></xacro:macro>\n\n<xacro:m n="a"/>', r"\(line 2\)"),
         ('\n<link name="$(arg which)"/>', r"'which' has no value; .*--xacro-arg which:=VALUE\) \(line 2\)"),
         ('<xacro:include filename="$(find nowhere)/x.xacro"/>', r"no package 'nowhere' was found; .*package_dirs"),
+        ('<xacro:include filename="$(find Hand)/x.xacro"/>', r"no package 'Hand' was found, but there is 'hand'; name"),
         ('\n\n\n<xacro:include filename="none.xacro"/>', r"none.xacro cannot be read: No such file .*\(line 4\)"),
         ('\n<link name="a">', r"not XML: mismatched tag \(line 2\)"),
         ('<xacro:include filename="r.urdf.xacro"/>', "files include each other, .* without end"),
@@ -149,15 +151,34 @@ def test_a_package_of_package_dirs_comes_first(write: Write, tmp_path: Path) -> 
         ('<link name="${[0] * 10**10}"/>', "takes more than 2048 MB of memory"),
         ("<link name=\"${'a' * 20_000_000}\"/>", "larger than 16 MB"),
         ("<joint/>", "no <link> elements"),
+        ('\n<xacro:arg name="n"/><l n="$(arg n)"/>', r"xacro: xacro:arg: missing attribute 'default' \(line 2\)"),
+        ('<link name="$(env NO_SUCH)"/>', r"xacro: environment variable 'NO_SUCH' is not set \(line 1\)"),
+        ('<link name="$(eval 1/0)"/>', r"xacro: division by zero \(line 1\)"),
+        ("<link name=\"${dict(a=1)['b']}\"/>", "xacro: there is no key 'b' when evaluating expression"),
+        ('<xacro:include filename="${[]}" ns="a b"/>', "xacro: it cannot be expanded: expected str"),
     ],
 )  # fmt: skip
 def test_an_error_is_said_in_words_with_file_and_line(write: Write, tmp_path: Path, body: str, words: str) -> None:
     (tmp_path / "broken.xacro").write_text("<robot>\n<link name=></robot>")
+    (tmp_path / "hand").mkdir()
     with pytest.raises(pinik.RobotLoadError, match=words) as caught:
         pinik.load(write(body))
     assert str(caught.value).startswith(str(tmp_path / "r.urdf.xacro"))
-    assert "Traceback" not in str(caught.value)
+    assert not re.search(r"Traceback|\w+(Error|Exception): |<class '", str(caught.value))
     assert len(str(caught.value)) < 1500
+
+
+def test_lines_are_those_of_the_expanded_file_and_the_words_say_so(write: Write) -> None:
+    """The lines are those that `xacro FILE` writes below its own heading of XML."""
+    path = write(TWO_LINKS.replace('xyz="0 0 1"', 'xyz="0, 0, 1"'))
+    with pytest.warns(pinik.UrdfWarning, match=r"commas .* \(line 8 of the expanded file\)"):
+        lines = pinik.load(path).description.document.splitlines()
+    assert b'<axis xyz="0, 0, 1"/>' in lines[7]
+    with pytest.raises(pinik.RobotLoadError, match=r"joint 'j': .* \(line [4-8] of the expanded file\)$"):
+        pinik.load(write(TWO_LINKS.replace('xyz="0 0 1"', 'xyz="0 0 z"')))
+    path = write('<link name="a">\n<visual><geometry><box size="1 1 z"/></geometry></visual></link>')
+    with pytest.warns(pinik.UrdfWarning, match=r"'z' is not a number; .* \(line 5 of the expanded file\)"):
+        pinik.load(path)
 
 
 @pytest.mark.parametrize("body", ['<link name="${10**10**10}"/>', '<xacro:include filename="pipe.xacro"/>'])

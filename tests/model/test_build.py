@@ -13,9 +13,10 @@ from numpy.typing import NDArray
 
 from pinik.description import reader as urdf
 from pinik.description.catalog import catalog, find
+from pinik.description.reader import MAX_LINKS
 from pinik.errors import InputError, RobotLoadError
 from pinik.model import build as model_module
-from pinik.model.build import MAX_DEGREES_OF_FREEDOM, MAX_LINKS, build_model
+from pinik.model.build import MAX_DEGREES_OF_FREEDOM, build_model
 from urdf_texts import LIMIT, chain, joint, link, pair, robot
 
 ONE_AXIS = ("revolute", "continuous", "prismatic")
@@ -232,9 +233,17 @@ def test_a_chain_of_thousands_of_fixed_links_loads_where_the_stack_is_small() ->
     assert threading.stack_size() == usual
 
 
-def test_a_chain_longer_than_that_is_refused_in_words() -> None:
-    with pytest.raises(RobotLoadError, match=r"10,001 links; at most 10,000 can be loaded"):
-        build_model(urdf.read(chain(MAX_LINKS, "fixed")))
+def test_a_chain_longer_than_that_is_refused_before_any_link_is_read(monkeypatch: pytest.MonkeyPatch) -> None:
+    for work in ("check_unique", "read_link", "read_joint", "written"):
+        monkeypatch.setattr(urdf, work, lambda *_: pytest.fail("it is too large for this work"))
+    with pytest.raises(RobotLoadError, match=r"it has 10,001 links; at most 10,000 can be loaded"):
+        urdf.read(chain(MAX_LINKS, "fixed"))
+
+
+def test_more_joints_than_links_can_have_are_refused_as_early() -> None:
+    joints = (joint(f"j{i}", "a", "b") for i in range(MAX_LINKS + 1))
+    with pytest.raises(RobotLoadError, match=r"it has 10,001 joints; at most 10,000 can be loaded"):
+        urdf.read(robot(link("a"), link("b"), *joints))
 
 
 def test_a_chain_of_as_many_joints_as_memory_holds_loads() -> None:

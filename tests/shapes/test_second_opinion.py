@@ -106,6 +106,15 @@ class TestDisagreement:
         assert opinion.rotation_difference_rad < 1e-12
         assert str(opinion).startswith("yourdfpy disagrees about 'c': 3 links at 3 configurations, at most 0.2 m")
 
+    def test_of_links_that_only_one_reader_found_is_told_from_placements_that_differ(self, ask):
+        text = robot(*map(link, "abc"), joint("j", "a", "b"), joint("k", "b", "c"))
+        opinion = ask(text, text.replace("<robot", '<robot xmlns="http://example.org"'))
+        assert opinion.unmatched == opinion.disagreeing == ("b", "c")
+        words = (
+            "yourdfpy disagrees about 'b', 'c': only one reader found 'b', 'c'; the other 1 link at 3 configurations, "
+        )
+        assert str(opinion).startswith(words)
+
     @pytest.mark.parametrize("angle", [1e-8, 1e-3, 1.0, math.pi])
     def test_in_orientation_is_measured_from_tiny_angles_to_half_turns(self, ask, angle):
         opinion = ask(pair(origin((1, 2, 3))), pair(origin((1, 2, 3), (0, 0, angle))))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import shutil
 import sys
 import tempfile
 from pathlib import Path
@@ -47,9 +48,9 @@ def attack(count: int, seed: int, minutes: float, report: Report) -> None:
     from .mutations import mutated
     from .sandbox import Sandbox
 
-    report.folder.mkdir(parents=True, exist_ok=True)
     known = robots()
-    judge = Judge(Sandbox(Path(tempfile.mkdtemp(prefix="pinik-attack-"))))
+    folder = Path(tempfile.mkdtemp(prefix="pinik-attack-"))
+    judge = Judge(Sandbox(folder))
     number = 0
 
     def one(data: bytes) -> None:
@@ -61,8 +62,10 @@ def attack(count: int, seed: int, minutes: float, report: Report) -> None:
             report.keep(number, case, outcome)
         if number == count or report.minutes > minutes:
             print(report, flush=True)
+            shutil.rmtree(folder, ignore_errors=True)
             os._exit(1 if report.faults else 0)  # atheris ends the process without Python's own clean-up
 
+    # If an input takes too long or too much memory, libFuzzer ends the process, and names the file with its bytes.
     limits = [
         f"-runs={count}",
         f"-seed={seed + 1}",
@@ -71,5 +74,5 @@ def attack(count: int, seed: int, minutes: float, report: Report) -> None:
         "-max_len=400",
         "-len_control=0",
     ]
-    atheris.Setup([sys.argv[0], *limits, "-verbosity=0", f"-artifact_prefix={report.folder}/"], one)
+    atheris.Setup([sys.argv[0], *limits, "-verbosity=0", f"-artifact_prefix={folder}/"], one)
     atheris.Fuzz()

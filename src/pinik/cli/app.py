@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import inspect
 import sys
 import warnings
 from collections.abc import Callable, Sequence
@@ -44,9 +45,15 @@ def _application() -> typer.Typer:
     )
     epilogs = {"solve": solvers_help(), "track": solvers_help(), "compare": compare.EPILOG}
     for name, command in _COMMANDS.items():
-        app.command(name, epilog=epilogs.get(name))(command)
-    app.callback(invoke_without_command=True)(_pinik)
+        app.command(name, help=_flowing(command.__doc__), epilog=epilogs.get(name))(command)
+    app.callback(invoke_without_command=True, help=_flowing(_pinik.__doc__))(_pinik)
     return app
+
+
+def _flowing(text: str | None) -> str:
+    """A docstring as help, whose paragraphs break where the terminal ends; the lines of examples, indented, stay."""
+    paragraphs = inspect.cleandoc(text or "").split("\n\n")
+    return "\n\n".join(one if one.startswith(" ") else one.replace("\n", " ") for one in paragraphs)
 
 
 def _pinik(

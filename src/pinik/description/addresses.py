@@ -16,7 +16,15 @@ _DRIVE = re.compile(r"^[A-Za-z]:[/\\]")
 
 
 class UnusableAddressError(ValueError):
-    """An address names no file that pinik could look for; the message says why."""
+    """An address names no file that pinik could look for; the message says why.
+
+    Attributes:
+        common: The message without the names in it.
+    """
+
+    def __init__(self, message: str, common: str | None = None) -> None:
+        self.common = message if common is None else common
+        super().__init__(message)
 
 
 @dataclass(frozen=True)
@@ -65,7 +73,8 @@ def read_address(text: str) -> Address:
         case "http" | "https" | "ftp":
             raise UnusableAddressError("it is an address in a network, and pinik opens files of this machine only")
         case other if rest.startswith("//"):
-            raise UnusableAddressError(f"pinik does not know addresses that begin with {other + '://'!r}")
+            cause = f"pinik does not know addresses that begin with {other + '://'!r}"
+            raise UnusableAddressError(cause, "pinik does not know addresses of this kind")
         case _:
             return Address(None, _spellings(text))
 

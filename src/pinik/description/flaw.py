@@ -42,6 +42,7 @@ class Flaw(str):
         mend: What to do about it, in one sentence; empty if there is nothing to do.
         edits: The edits of the document that mend it; empty if there is no mend, or more than one.
         mesh: The address of a mesh that was not found; None for all other flaws.
+        expanded: Whether the line is one of the URDF that xacro made of the file.
     """
 
     element: str
@@ -53,6 +54,7 @@ class Flaw(str):
     mend: str
     edits: tuple[Edit, ...]
     mesh: str | None
+    expanded: bool
 
     def __new__(
         cls,
@@ -66,18 +68,28 @@ class Flaw(str):
         mend: str = "",
         edits: Sequence[Edit] = (),
         mesh: str | None = None,
+        expanded: bool = False,
     ) -> Flaw:
         """The sentence "element: cause (line 12)"."""
         element, cause, common = bounded(element), bounded(cause), bounded(cause if common is None else common)
-        self = super().__new__(cls, f"{element}: {cause}" + (f" (line {line})" if line else ""))
+        self = super().__new__(cls, f"{element}: {cause}{_at(line, expanded)}")
         self.element, self.cause, self.line, self.code = element, cause, line, code
-        self.common = common
+        self.common, self.expanded = common, expanded
         self.why, self.mend, self.edits, self.mesh = why, mend, tuple(edits), mesh
         return self
 
     def __reduce__(self) -> tuple[Any, ...]:
         given = {name: value for name, value in vars(self).items() if name not in ("element", "cause")}
         return partial(type(self), **given), (self.element, self.cause)
+
+    def of_expansion(self) -> Flaw:
+        """The same flaw, in words that say that its line is one of the URDF that xacro made of the file."""
+        given = {name: value for name, value in vars(self).items() if name not in ("element", "cause", "expanded")}
+        return type(self)(self.element, self.cause, **given, expanded=True)
+
+
+def _at(line: int | None, expanded: bool) -> str:
+    return f" (line {line}{' of the expanded file' if expanded else ''})" if line else ""
 
 
 def summarised(warnings: Iterable[str]) -> list[str]:
@@ -98,7 +110,7 @@ def _together(common: str, flaws: Sequence[Flaw]) -> str:
     """One line for flaws of one sort: where they are, how many, what is wrong, and the first one in full."""
     if len(flaws) == 1:
         return flaws[0]
-    places = list(dict.fromkeys(f.element + (f" (line {f.line})" if f.line else "") for f in flaws))
+    places = list(dict.fromkeys(f.element + _at(f.line, f.expanded) for f in flaws))
     more = f" and {len(places) - _MOST_NAMED} more" if len(places) > _MOST_NAMED else ""
     count = f", {len(flaws)} times" if more or len(flaws) > len(places) else ""
     first = "" if flaws[0].cause == common else f" (the first: {flaws[0].cause})"

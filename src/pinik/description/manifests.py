@@ -8,7 +8,7 @@ from pathlib import Path
 
 from ..files import FileError, read_within
 
-__all__ = ["is_package", "manifest_name", "packages_in"]
+__all__ = ["is_package", "manifest_name", "names_in", "packages_in"]
 
 _MANIFEST = "package.xml"
 _MOST_BYTES = 1024**2
@@ -32,15 +32,19 @@ def is_package(folder: Path) -> bool:
     return os.path.isfile(folder / _MANIFEST)
 
 
+def names_in(folder: Path) -> list[str]:
+    """The names of what is directly in a folder, sorted; of a very large folder, the first thousand that are found."""
+    try:
+        with os.scandir(folder) as entries:
+            return sorted(entry.name for entry, _ in zip(entries, range(_MOST_FOLDERS), strict=False))
+    except (OSError, ValueError):
+        return []
+
+
 def packages_in(folder: Path) -> dict[str, list[Path]]:
     """Name → folders of the packages directly in a folder; of a very large folder, those among its first thousand."""
     found: dict[str, list[Path]] = {}
-    try:
-        with os.scandir(folder) as entries:
-            names = [entry.name for entry, _ in zip(entries, range(_MOST_FOLDERS), strict=False)]
-    except (OSError, ValueError):
-        return found
-    for name in sorted(names):
+    for name in names_in(folder):
         package = manifest_name(folder / name)
         if package is not None:
             found.setdefault(package, []).append(folder / name)

@@ -6,8 +6,8 @@ import os
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 
-from .manifests import is_package, manifest_name, packages_in
-from .shares import installed_places, installed_roots
+from .manifests import is_package, manifest_name, names_in, packages_in
+from .shares import example_robot_data, installed_places, installed_roots
 
 __all__ = ["PackageSearch", "is_below"]
 
@@ -41,6 +41,7 @@ class PackageSearch:
         self.roots = tuple(dict.fromkeys(os.path.realpath(folder) for folder in roots))
         self._by_folder_name: dict[str, list[Path]] = {}
         self._by_manifest: dict[str, list[Path]] | None = None
+        self._by_folded_name: dict[str, set[str]] | None = None
 
     def places(self, name: str) -> Iterator[Path]:
         """The folders that may be a package of this name: given ones, those near the URDF, installed ones."""
@@ -50,6 +51,15 @@ class PackageSearch:
         if self._by_manifest is None:
             self._by_manifest = self._named_by_manifests()
         yield from self._by_manifest.get(name, ())
+
+    def other_case(self, name: str) -> str | None:
+        """The name of a package that differs from this one only in upper and lower case, or None."""
+        if self._by_folded_name is None:
+            self._by_folded_name = {}
+            for known in self._names_nearby():
+                self._by_folded_name.setdefault(known.casefold(), set()).add(known)
+        others = sorted(self._by_folded_name.get(name.casefold(), set()) - {name})
+        return next((other for other in others if next(self.places(other), None) is not None), None)
 
     def belongs(self, file: str, package: str | None) -> bool:
         """Whether a file, with symbolic links resolved, lies in the package, or in any that can be found by name."""
@@ -78,6 +88,19 @@ class PackageSearch:
             if home.name == name:
                 yield home
         yield from installed_places(name)
+
+    def _names_nearby(self) -> Iterator[str]:
+        """The names of folders that may be packages, and those in the package.xml files of packages."""
+        if self._by_manifest is None:
+            self._by_manifest = self._named_by_manifests()
+        yield from self._by_manifest
+        near = [folder for chain in self._above for folder in chain if folder != folder.parent]
+        for folder in dict.fromkeys([*self._given, *near]):
+            yield folder.name
+            yield from names_in(folder)
+        yield from (home.name for home in self._own)
+        for root in (*installed_roots(), example_robot_data()):
+            yield from [] if root is None else names_in(root)
 
     def _named_by_manifests(self) -> dict[str, list[Path]]:
         """Name in package.xml → folders, for packages whose folders have other names."""

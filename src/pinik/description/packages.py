@@ -8,6 +8,7 @@ is called "urdf", "robots" or the like. Symbolic links are followed, and what co
 from __future__ import annotations
 
 import os
+import stat
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -28,12 +29,19 @@ class Found:
     Attributes:
         path: The file, or None.
         why: Why there is none, in words; empty if there is one.
+        common: The same without the names in it, equal for all addresses that lead to nothing for the same reason.
         refused: Whether there is a file, but the URDF may not open it.
     """
 
     path: Path | None
     why: str = ""
+    common: str = ""
     refused: bool = False
+
+    @classmethod
+    def nothing(cls, why: str, common: str | None = None, *, refused: bool = False) -> Found:
+        """There is no file that may be opened, and why."""
+        return cls(None, why, why if common is None else common, refused)
 
     @property
     def code(self) -> str:
@@ -77,7 +85,7 @@ class Surroundings:
         try:
             address = read_address(text)
         except UnusableAddressError as fault:
-            return Found(None, str(fault))
+            return Found.nothing(str(fault), fault.common)
         refused = False
         for candidate in self._candidates(address):
             if _is_file(candidate):
@@ -85,12 +93,17 @@ class Surroundings:
                     return Found(candidate)
                 refused = True
         if refused:
-            return Found(None, "it lies outside the folders that this URDF may open", refused=True)
-        return Found(None, self._why_not(address))
+            return Found.nothing("it lies outside the folders that this URDF may open", refused=True)
+        return self._nothing_at(address)
 
     def package(self, name: str) -> Path | None:
         """The folder of a package, or None if the search does not find it."""
         return next(self._search.places(name), None)
+
+    def why_no_package(self, name: str) -> str:
+        """That no package of this name was found, with one whose name differs only in upper and lower case."""
+        near = self._search.other_case(name)
+        return f"no package {name!r} was found" + ("" if near is None else f", but there is {near!r}")
 
     def _candidates(self, address: Address) -> Iterator[Path]:
         if address.package is not None:
@@ -111,15 +124,25 @@ class Surroundings:
             return True
         return self._search.belongs(real, address.package)
 
-    def _why_not(self, address: Address) -> str:
+    def _nothing_at(self, address: Address) -> Found:
         """Why nothing was found, with a file or package whose name differs only in upper and lower case."""
+        for candidate in self._candidates(address):
+            other = _in_its_place(candidate)
+            if other:
+                return Found.nothing(other)
         for candidate in self._candidates(address):
             near = self._other_case(candidate)
             if near is not None and self._may_open(near, address):
-                return f"there is {near.name!r}" if near.parent == candidate.parent else f"there is '{near}'"
-        if address.package is not None and self.package(address.package) is None:
-            return f"no package {address.package!r} was found"
-        return "there is no such file"
+                why = f"there is {near.name!r}" if near.parent == candidate.parent else f"there is '{near}'"
+                return Found.nothing(why, "there is a file whose name differs only in upper and lower case")
+        name = address.package
+        if name is None or self.package(name) is not None:
+            return Found.nothing("there is no such file")
+        if self._search.other_case(name) is None:
+            return Found.nothing(self.why_no_package(name), "no package of this name was found")
+        return Found.nothing(
+            self.why_no_package(name), "there is a package whose name differs only in upper and lower case"
+        )
 
     def _other_case(self, path: Path) -> Path | None:
         """A file whose path differs only in upper and lower case, among the last folders of the path."""
@@ -161,5 +184,21 @@ def _is_file(path: Path) -> bool:
     """Whether a path is a regular file; False for names that no file can have."""
     try:
         return os.path.isfile(path)
+    except ValueError:
+        return False
+
+
+def _in_its_place(path: Path) -> str:
+    """What stands at a path that is no regular file; empty if there is nothing."""
+    try:
+        kind = os.stat(path).st_mode
+    except (OSError, ValueError):
+        return "this is a symbolic link that leads nowhere" if _is_link(path) else ""
+    return "this is a directory, not a mesh" if stat.S_ISDIR(kind) else "this is a pipe or a device, not a mesh"
+
+
+def _is_link(path: Path) -> bool:
+    try:
+        return os.path.islink(path)
     except ValueError:
         return False

@@ -24,7 +24,10 @@ from .unknown import unknown_in_joints
 from .writer import written
 from .xml import BrokenXMLError, DocumentError, Element
 
-__all__ = ["Description", "JointTag", "Mimic", "read", "read_content"]
+__all__ = ["MAX_LINKS", "Description", "JointTag", "Mimic", "read", "read_content"]
+
+# Pinocchio's parser searches all frames for each parent: 10,000 links take a second, 100,000 take minutes.
+MAX_LINKS = 10_000
 
 # What a document is if its root element is not <robot>.
 OTHER_FORMATS = {
@@ -55,6 +58,7 @@ class Description:
         xml: The URDF text for Pinocchio: kinematics, inertias and limits, without shapes.
         warnings: What was repaired or left out.
         document: The bytes that were parsed, shapes included (`document.Document.content`).
+        expanded: Whether these bytes are the URDF that xacro made of the file.
     """
 
     name: str
@@ -68,6 +72,7 @@ class Description:
     xml: str
     warnings: tuple[Flaw, ...]
     document: bytes = field(repr=False)
+    expanded: bool = False
 
 
 def read(given: RobotSource) -> Description:
@@ -98,7 +103,8 @@ def read_content(content: bytes, source: Source) -> Description:
         return _described(read_document(content), source)
     except DocumentError as fault:
         # The message of broken XML names line and column itself.
-        line = f" (line {fault.line})" if fault.line and not isinstance(fault, BrokenXMLError) else ""
+        of = " of the expanded file" if source.expanded else ""
+        line = f" (line {fault.line}{of})" if fault.line and not isinstance(fault, BrokenXMLError) else ""
         raise RobotLoadError(fault.message + line, source=source.label, element=fault.owner) from None
 
 
@@ -108,6 +114,7 @@ def _described(document: Document, source: Source) -> Description:
     flaws: list[Flaw] = list(document.flaws)
     if not robot.named("link"):
         raise DocumentError(_why_no_links(robot), owner="<robot>", line=robot.line)
+    _check_size(robot)
     check_unique(robot)
     colors = named_colors(robot, flaws, document.content)
     links = [read_link(element, colors, flaws, document.content) for element in robot.named("link")]
@@ -130,8 +137,9 @@ def _described(document: Document, source: Source) -> Description:
         link_tags=tuple(links),
         meshes=tuple(dict.fromkeys(shape.filename for link in links for shape in link.shapes if shape.filename)),
         xml=written(name, links, joints),
-        warnings=tuple(flaws),
+        warnings=tuple(flaw.of_expansion() for flaw in flaws) if source.expanded else tuple(flaws),
         document=document.content,
+        expanded=source.expanded,
     )
 
 
@@ -152,6 +160,14 @@ def _check_root(robot: Element) -> None:
                         owner=f"<{element.tag}>",
                         line=element.line,
                     )
+
+
+def _check_size(robot: Element) -> None:
+    """Refuse a robot that is too large, before time is spent on its links and joints."""
+    for tag in ("link", "joint"):
+        count = len(robot.named(tag))
+        if count > MAX_LINKS:
+            raise DocumentError(f"it has {count:,} {tag}s; at most {MAX_LINKS:,} can be loaded")
 
 
 def _why_no_links(robot: Element) -> str:

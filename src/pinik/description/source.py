@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import reprlib
 from dataclasses import dataclass
 from pathlib import Path
 from typing import IO, Any
@@ -30,11 +31,13 @@ class Source:
         given: A path, URDF text, the bytes of a URDF file, or an open file.
         label: What messages call it: its path, or "<text>".
         path: The file to which relative addresses refer; None if there is none.
+        expanded: Whether what is read is the URDF that xacro made of it, so that lines are not those of the file.
     """
 
     given: Any
     label: str
     path: Path | None
+    expanded: bool = False
 
     @classmethod
     def of(cls, given: RobotSource) -> Source:
@@ -91,19 +94,29 @@ def _stream_bytes(file: IO[Any]) -> bytes:
     """What is left to read in an open file; an endless one must not fill up the memory."""
     pieces: list[Any] = []
     size = 0
+    while size <= MAX_BYTES and (piece := _piece(file, MAX_BYTES + 1 - size)):
+        if pieces and type(piece) is not type(pieces[0]):
+            raise DocumentError("the file must give either text or bytes; it gave both")
+        pieces.append(piece)
+        size += len(piece)
+    return _encoded("".join(pieces)) if pieces and isinstance(pieces[0], str) else b"".join(pieces)
+
+
+def _piece(file: IO[Any], most: int) -> str | bytes:
+    """The next piece of an open file."""
     try:
-        while size <= MAX_BYTES and (piece := file.read(MAX_BYTES + 1 - size)):
-            pieces.append(piece)
-            size += len(piece)
+        piece = file.read(most)
     except UnicodeDecodeError as error:
         raise DocumentError(f"the file cannot be read as text ({error}); open it in binary mode") from None
     except (OSError, ValueError) as error:
         raise DocumentError(f"the file cannot be read: {getattr(error, 'strerror', None) or error}") from None
-    if all(isinstance(piece, str) for piece in pieces):
-        return _encoded("".join(pieces))
-    if all(isinstance(piece, bytes) for piece in pieces):
-        return b"".join(pieces)
-    raise DocumentError(f"the file must give text or bytes; it gave {type(pieces[0]).__name__}")
+    except TypeError as error:
+        raise DocumentError(f"the file's read() must take a size: {error}") from None
+    if isinstance(piece, str):
+        return str(piece)
+    if isinstance(piece, (bytes, bytearray, memoryview)):
+        return bytes(piece)
+    raise DocumentError(f"the file must give text or bytes; it gave {reprlib.repr(piece)}")
 
 
 def _file_bytes(path: Path) -> bytes:

@@ -148,8 +148,10 @@ def _conversation(
             answer: dict[str, Any] = json.loads(line)
             if "find" not in answer:
                 return answer
-            place = surroundings.package(answer["find"])
-            _say(process.stdin, {"place": None if place is None else str(place.absolute())})
+            name = answer["find"]
+            place = surroundings.package(name)
+            reply = {"why": surroundings.why_no_package(name)} if place is None else {"place": str(place.absolute())}
+            _say(process.stdin, reply)
     except (BrokenPipeError, json.JSONDecodeError):
         return None
     return None

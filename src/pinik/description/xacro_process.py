@@ -18,6 +18,7 @@ from xml.dom import expatbuilder, minidom
 from xml.parsers.expat import ExpatError
 
 _MOST_REMARKS = 20
+_CLASS = re.compile(r"<class '[^']*'>: ")
 _COLOUR = re.compile(r"\x1b\[[0-9;]*m")
 
 
@@ -62,10 +63,10 @@ class _Packages:
 
     def __call__(self, name: str) -> str:
         _say(self._stdout, {"find": name})
-        place = json.loads(self._stdin.readline())["place"]
-        if place is None:
-            raise _NoPackageError(f"no package {name!r} was found; name its folder in package_dirs (--package-dir)")
-        return str(place)
+        answer = json.loads(self._stdin.readline())
+        if "why" in answer:
+            raise _NoPackageError(f"{answer['why']}; name its folder in package_dirs (--package-dir)")
+        return str(answer["place"])
 
 
 def main() -> None:
@@ -115,7 +116,7 @@ def _expanded(request: dict[str, Any], packages: _Packages) -> dict[str, Any]:
         with open(path, "rb") as file:
             text = file.read()
         made = xacrodoc.XacroDoc.from_string(_parse(text, path), subargs=arguments, resolve_packages=False)
-        document = made.dom.documentElement.toxml()
+        document = made.dom.documentElement.toprettyxml(indent="  ")
     except Exception as error:
         return _fault(error, xacro.filestack)
     return {"document": document, "known": sorted(arguments.known)}
@@ -152,7 +153,7 @@ def _let_copies_keep_their_places() -> None:
 def _fault(error: Exception, files: list[str | None] | None) -> dict[str, Any]:
     """An error in words, with the file and line of the element that was being expanded."""
     file, line = _place(error.__traceback__)
-    words = " ".join(str(error).split()) or type(error).__name__
+    words = " ".join(str(error).split()) or "xacro gives no reason"
     cause: BaseException = error
     while isinstance(getattr(cause, "exc", None), BaseException):  # as xacro wraps errors
         cause = cause.exc  # type: ignore[attr-defined]
@@ -170,8 +171,14 @@ def _fault(error: Exception, files: list[str | None] | None) -> dict[str, Any]:
             words = f"{cause.filename} cannot be read: {cause.strerror}"
         case _ if type(cause).__name__ == "ArgException":
             words = f"the argument {str(cause)!r} has no value; give one in xacro_args (--xacro-arg {cause}:=VALUE)"
+        case KeyError():
+            words = words.replace(str(cause), f"there is no key {cause}", 1)
+        case _ if _CLASS.match(words):  # xacro writes the class of an error, its words, and its words again
+            words = str(cause)
+        case RuntimeError() if cause is error:  # xacro's own, about an attribute that is missing
+            pass
         case _ if cause is error and type(error).__name__ != "XacroException":
-            words = f"{type(error).__name__}: {words}"
+            words = f"it cannot be expanded: {words}"
     return {"fault": words[:1000], "file": file, "line": line}
 
 

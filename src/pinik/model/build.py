@@ -15,16 +15,14 @@ from .joint import Joint, joints_of
 from .order import leaders_first
 from .ranges import set_position_limits
 
-__all__ = ["MAX_DEGREES_OF_FREEDOM", "MAX_LINKS", "build_model"]
+__all__ = ["MAX_DEGREES_OF_FREEDOM", "build_model"]
 
 # pinocchio.Data contains tensors of nv³ numbers, and a solve needs two of them: 0.9 GB at nv = 200, 1.6 GB at 250,
 # 2.7 GB at 300 (the largest resident size of `pinik solve`).
 MAX_DEGREES_OF_FREEDOM = 250
-# The parser searches all frames for each parent: 10,000 links take a second, 100,000 take minutes.
-MAX_LINKS = 10_000
 
 # The parser recurses once for each link of a chain, with 2.1 to 2.4 kB of stack each: an 8 MB stack overflows between
-# 3,500 and 4,000 links. Deep trees are built on a stack with room for twice MAX_LINKS.
+# 3,500 and 4,000 links. Deep trees are built on a stack with room for twice `reader.MAX_LINKS`.
 DEEP_TREE = 100
 DEEP_STACK_BYTES = 64 * 1024 * 1024
 _stack_size_lock = threading.Lock()
@@ -109,11 +107,6 @@ def _check_names(description: Description, root: str) -> None:
 
 
 def _check_size(description: Description, root_freedoms: int) -> None:
-    if len(description.links) > MAX_LINKS:
-        raise RobotLoadError(
-            f"it has {len(description.links):,} links; at most {MAX_LINKS:,} can be loaded",
-            source=description.source,
-        )
     freedoms = root_freedoms + sum(FREEDOMS[joint.kind] for joint in description.joints)
     if freedoms > MAX_DEGREES_OF_FREEDOM:
         raise RobotLoadError(

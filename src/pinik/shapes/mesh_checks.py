@@ -13,7 +13,7 @@ import zipfile
 from collections import Counter
 from typing import Any, Literal, get_args
 
-from ..description.xml import DocumentError, Element, parse
+from ..description.xml import BrokenXMLError, DocumentError, Element, parse
 
 __all__ = ["FORMATS", "MOST_BYTES", "UNDRAWN", "MeshError", "UndrawnCode", "checked"]
 
@@ -89,6 +89,9 @@ def checked(data: bytes, kind: str) -> bytes:
             _check_collada(data)
         case "glb" | "gltf":
             _check_gltf(data, kind)
+        case "off":
+            if b"OFF" not in data:
+                raise MeshError("this is no OFF file: its header is missing", "not-a-mesh")
     return data
 
 
@@ -114,8 +117,10 @@ def _checked_stl(data: bytes) -> bytes:
         if b"endsolid" not in data.lower():
             raise MeshError("the file is cut off: it has no 'endsolid'", "truncated-mesh")
         return data
-    if len(data) < max(needed, 84):
-        held = max(len(data) - 84, 0) // 50
+    if len(data) < 84 or len(data) < MOST_BYTES < needed:
+        raise MeshError("this is no STL file: its header is missing or cut off", "not-a-mesh")
+    if len(data) < needed:
+        held = (len(data) - 84) // 50
         raise MeshError(f"the file is cut off: it announces {announced:,} triangles and has {held:,}", "truncated-mesh")
     return data[:needed]
 
@@ -124,7 +129,8 @@ def _check_ply(data: bytes) -> None:
     """Compare the counts in the header with what can stand in the file."""
     header, end, body = data.partition(b"end_header")
     if not header.lstrip().startswith(b"ply") or not end:
-        raise MeshError("this is no PLY file: its header is missing or cut off", "truncated-mesh")
+        code: UndrawnCode = "truncated-mesh" if data.lstrip().startswith(b"ply") else "not-a-mesh"
+        raise MeshError("this is no PLY file: its header is missing or cut off", code)
     binary = b"format binary" in header
     needed = 0
     sections = _PLY_ELEMENT.split(header)[1:]
@@ -152,7 +158,8 @@ def _check_gltf(data: bytes, kind: str) -> None:
     text = data
     if kind == "glb":
         if data[:4] != b"glTF" or len(data) < 20:
-            raise MeshError("this is no GLB file: its header is missing", "truncated-mesh")
+            code: UndrawnCode = "truncated-mesh" if data.startswith(b"glTF") else "not-a-mesh"
+            raise MeshError("this is no GLB file: its header is missing or cut off", code)
         announced, length = struct.unpack_from("<I", data, 8)[0], struct.unpack_from("<I", data, 12)[0]
         if announced > len(data):
             cause = f"the file is cut off: it announces {announced:,} bytes and has {len(data):,}"
@@ -162,7 +169,7 @@ def _check_gltf(data: bytes, kind: str) -> None:
         tree: Any = json.loads(text)
         counts = [int(accessor["count"]) for accessor in tree.get("accessors", [])]
     except (ValueError, KeyError, TypeError, AttributeError, OverflowError, RecursionError):
-        raise MeshError("its JSON cannot be read") from None
+        raise MeshError("this is no glTF file: its JSON cannot be read", "not-a-mesh") from None
     if min(counts, default=0) < 0 or sum(counts) > _MOST_NUMBERS // 2:
         raise MeshError("it announces more numbers than pinik reads", "mesh-too-large")
 
@@ -174,7 +181,8 @@ def _check_collada(data: bytes) -> None:
     try:
         root = parse(data, most_bytes=MOST_BYTES)
     except DocumentError as fault:
-        where = f" (line {fault.line})" if fault.line else ""
+        # The message of broken XML names line and column itself.
+        where = f" (line {fault.line})" if fault.line and not isinstance(fault, BrokenXMLError) else ""
         raise MeshError(f"{fault.message}{where}") from None
     nodes = {node.attributes.get("id"): node for node in root.walk() if node.tag.rpartition(":")[2] == "node"}
     counts: dict[int, int] = {}

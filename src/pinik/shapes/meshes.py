@@ -95,7 +95,7 @@ def load_shapes(
             for part, (mesh, own) in enumerate(parts):
                 name = f"{link.name}/{visual.index}" + (f"/{part}" if len(parts) > 1 else "")
                 shapes.append(Shape(link.name, name, _placement(visual), mesh, visual.color or own or GREY))
-    return shapes, warnings
+    return shapes, [flaw.of_expansion() for flaw in warnings] if description.expanded else warnings
 
 
 class _MeshNotFoundError(Exception):

@@ -43,6 +43,7 @@ class SecondOpinion:
         position_difference_m: The largest distance between the two placements of a link [m].
         rotation_difference_rad: The largest angle between them [rad].
         disagreeing: Links whose placements differ by more than 1e-9, and links that only one reader found.
+        unmatched: Those of them that only one reader found, so that there is nothing to compare.
         unmoved: Floating and planar joints, which yourdfpy cannot move; they stay neutral.
     """
 
@@ -52,6 +53,7 @@ class SecondOpinion:
     position_difference_m: float | None = None
     rotation_difference_rad: float | None = None
     disagreeing: tuple[str, ...] = ()
+    unmatched: tuple[str, ...] = ()
     unmoved: tuple[str, ...] = ()
 
     @property
@@ -67,7 +69,10 @@ class SecondOpinion:
         if self.unread is not None:
             return f"yourdfpy gives no second opinion: {self.unread}"
         verdict = f"disagrees about {_listed(self.disagreeing)}" if self.disagreeing else "agrees"
-        compared = f"{self.links} links at {self.configurations} configurations"
+        links = f"{self.links} link{'' if self.links == 1 else 's'}"
+        compared = f"{links} at {self.configurations} configurations"
+        if self.unmatched:
+            compared = f"only one reader found {_listed(self.unmatched)}; the other {compared}"
         apart = f"at most {_apart(self.position_difference_m)} m and {_apart(self.rotation_difference_rad)} rad apart"
         unmoved = f"; it cannot move {_listed(self.unmoved)}, which stayed neutral" if self.unmoved else ""
         return f"yourdfpy {verdict}: {compared}, {apart}{unmoved}"
@@ -201,12 +206,14 @@ def _compared(
     turned = 2.0 * np.arcsin(np.minimum(chord, 1.0))
     far = np.maximum(np.linalg.norm(a[..., :3, 3], axis=-1), 1.0)
     same = ((apart <= TOLERANCE * far) & (turned <= TOLERANCE)).all(axis=0)  # False where yourdfpy returns NaN
+    unmatched = tuple(sorted(ours[0].keys() ^ theirs[0].keys()))
     wrong = [name for name, agreed in zip(names, same, strict=True) if not agreed]
     return SecondOpinion(
         links=len(names),
         configurations=len(ours),
         position_difference_m=float(apart.max()),
         rotation_difference_rad=float(turned.max()),
-        disagreeing=(*wrong, *sorted(ours[0].keys() ^ theirs[0].keys())),
+        disagreeing=(*wrong, *unmatched),
+        unmatched=unmatched,
         unmoved=tuple(joint.name for joint in robot.description.joints if joint.kind in NO_AXIS),
     )

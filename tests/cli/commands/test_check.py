@@ -194,3 +194,9 @@ class TestFollowers:
         answer = run("check", urdf(self.LINKS + self.JOINTS.format(parent="b", multiplier=0)), "--json").json
         assert "it is left free" in answer["warnings"][0]
         assert answer["second_opinion"]["disagreeing"] == ["b", "c"]
+
+
+def test_an_empty_name_is_wrong_usage_and_not_the_working_folder(run):
+    result = run("check", "")
+    assert result.status == 2
+    assert "FILE.urdf must be a file, the name of a robot, or -; got an empty text" in result.err

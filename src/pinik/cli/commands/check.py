@@ -15,7 +15,7 @@ from ..reports.check_report import emit_inspection
 from ..reports.inspection import inspect
 from ..reports.mended_file import check_target, write_mended
 from ..terminal import output
-from ..terminal.exits import ExitStatus
+from ..terminal.exits import CommandError, ExitStatus
 
 __all__ = ["check"]
 
@@ -46,15 +46,17 @@ def check(
 ) -> ExitStatus:
     """Check a URDF file for faults, mistakes and missing meshes, and compare pinik's reading with yourdfpy's.
 
-    The exit status is 3 if the file cannot be loaded or, with --strict, if there is any warning, also one that --fix
-    mends. The comparison with yourdfpy does not change it. Of a xacro file, the URDF that it becomes is checked, and
-    that is what --fix writes.
+    The exit status is 3 if the file cannot be loaded. With --strict, any warning makes it 3 as well, even if --fix
+    mends it. The comparison with yourdfpy does not change the exit status. For a xacro file, the URDF that it becomes
+    is checked, and --fix writes that URDF.
 
     Example:
 
       pinik check lion
       pinik check lion --strict
     """
+    if not file:
+        raise CommandError("FILE.urdf must be a file, the name of a robot, or -; got an empty text")
     check_folders(package_dir)
     if fix is not None:
         fix = fix.expanduser()

@@ -151,17 +151,20 @@ def inspect(
     found = lint(description.document, description)
     shapes, about_shapes = _shapes(robot)
     collisions = _missing_collisions(robot, {flaw.mesh for flaw in about_shapes})
+    about = [*found, *about_shapes, *collisions]
+    if description.expanded:
+        about = [flaw.of_expansion() for flaw in about]
     return Inspection(
         file=_STDIN if isinstance(source, bytes) else str(located.source),
         robot=robot.name,
-        flaws=_in_order(robot.warnings, [*found, *about_shapes, *collisions]),
+        flaws=_in_order(robot.warnings, about),
         links=len(description.links),
         joints=len(robot.joints),
         meshes=len(description.meshes),
         shapes=shapes,
         second_opinion=_second_opinion(robot),
         document=fetched.document,
-        expanded=fetched.remarks is not None,
+        expanded=description.expanded,
     )
 
 

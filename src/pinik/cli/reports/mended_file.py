@@ -58,6 +58,10 @@ class MendedFile:
             "left": [_fields(one.flaw) | {"because": shortened(one.why)} for one in left[:MOST_LISTED]],
         }
 
+    @property
+    def _folder(self) -> str:
+        return shortened(str(self.file.parent), _LONGEST)
+
     def emit(self) -> None:
         """Print what was mended, what is left and why."""
         if self.fault or self.mending is None:
@@ -74,7 +78,7 @@ class MendedFile:
         if self.expanded:
             output.emit("  it is the URDF that xacro made of the file, without its macros and arguments")
         if self.moved:
-            output.emit("  its relative addresses of meshes begin at its own folder, which is another one")
+            output.emit(f"  it is not beside the original: relative addresses of meshes begin at {self._folder}")
 
 
 def check_target(target: Path, source: str) -> None:
