@@ -424,7 +424,7 @@ def test_a_missing_targets_file_is_bad_input(run, tmp_path):
     assert "No such file" in result.err
 
 
-@pytest.mark.parametrize("source", ["armm", "none.urdf", str(Path(__file__))])
+@pytest.mark.parametrize("source", ["armm", "none.urdf", str(Path(sys.executable))])
 def test_a_robot_that_cannot_be_loaded_is_status_3(run, source):
     result = run("solve", source, "--frame", "tip", "--position", 0, 0, 1)
     assert (result.status, result.out) == (3, "")

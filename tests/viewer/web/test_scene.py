@@ -100,7 +100,7 @@ def test_vertices_with_the_same_place_and_normal_are_one(tmp_path):
 
 @pytest.mark.parametrize(
     ("rgba", "color", "opacity"),
-    [("1 0.5 0 1", 0xFF8000, 1.0), ("0.2 0.4 0.6 0.25", 0x336699, 0.25), ("7 -1 0 3", 0xFF0000, 1.0)],
+    [("1 0.5 0 1", 0xFF8000, 1.0), ("0.2 0.4 0.6 0.25", 0x336699, 0.25), ("7 -1 0 3", 0xB2B2B2, 1.0)],
 )
 def test_a_part_has_its_colour_and_lets_light_through_where_it_should(rgba, color, opacity):
     message, *_ = decoded(make_shapes(boxes(box(rgba))).commands[0])
