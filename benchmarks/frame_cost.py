@@ -32,7 +32,7 @@ import tornado.netutil
 from pinocchio.visualize import MeshcatVisualizer
 
 import pinik
-from pinik.description.packages import example_robot_data
+from pinik.description.shares import example_robot_data
 from pinik.viewer.simulation.session import Session
 from pinik.viewer.web.guests import Guests
 from pinik.viewer.web.heartbeat import Heartbeat

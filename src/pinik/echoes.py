@@ -10,7 +10,7 @@ MOST = 2000
 """The most characters of a message."""
 QUOTED = 60
 """The most characters of a name or value that a message quotes."""
-MOST_LISTED = 1000
+MOST_REPORTED = 1000
 """The most characters of an entry in a report."""
 MOST_UNBROKEN = 300
 """The most characters of a message without white space between them, such as a name or a path."""
@@ -32,7 +32,7 @@ def one_line(words: str) -> str:
     return _CONTROL.sub(lambda control: control.group().encode("unicode_escape").decode(), joined)
 
 
-def shortened(words: str, most: int = MOST_LISTED) -> str:
+def shortened(words: str, most: int = MOST_REPORTED) -> str:
     """A text of at most `most` characters: a longer one loses its middle, with "…" in its place."""
     if len(words) <= most:
         return words

@@ -5,10 +5,11 @@ from xml.etree import ElementTree
 
 import pytest
 
+from addresses import resolve
 from pinik.description import catalog as robot_catalog
 from pinik.description import reader as urdf
 from pinik.description.catalog import catalog, find
-from pinik.description.packages import example_robot_data, resolve
+from pinik.description.shares import example_robot_data
 from pinik.errors import RobotLoadError, UnknownNameError
 from pinik.model.build import build_model
 

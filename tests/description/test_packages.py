@@ -7,8 +7,9 @@ from pathlib import Path
 
 import pytest
 
+from addresses import resolve
 from pinik.description import shares
-from pinik.description.packages import example_robot_data, resolve
+from pinik.description.shares import example_robot_data
 
 
 @pytest.fixture(autouse=True)

@@ -11,7 +11,8 @@ from pathlib import Path
 import pytest
 
 import pinik
-from pinik.description.packages import Surroundings, resolve
+from addresses import resolve
+from pinik.description.packages import Surroundings
 from urdf_texts import link, robot
 
 

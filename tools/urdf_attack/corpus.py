@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 from random import Random
 
-from pinik.description.packages import example_robot_data
+from pinik.description.shares import example_robot_data
 
 from .document import Node, parsed, subtree
 

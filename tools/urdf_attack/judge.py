@@ -18,7 +18,7 @@ import pinocchio
 
 import pinik
 from pinik.cli.reports.inspection import inspect
-from pinik.description.packages import example_robot_data
+from pinik.description.shares import example_robot_data
 from pinik.extras import MissingExtraError
 from pinik.robot import Robot
 from pinik.shapes.meshes import load_shapes

@@ -10,7 +10,7 @@ from pathlib import Path
 
 from ..errors import UnknownNameError
 from ..files import FileError, read_within
-from .packages import example_robot_data
+from .shares import example_robot_data
 from .xml import MAX_BYTES, DocumentError, parse
 
 __all__ = ["CatalogEntry", "catalog", "find"]

@@ -38,6 +38,7 @@ _MARKUP = re.compile(
 )
 _DECLARATION = re.compile(rb"\s*<\?xml\s[^>]*\?>")
 _DECLARED = re.compile(rb"""(\sencoding\s*=\s*["'])([^"']*)""")
+# The ampersand comes first, because the others contain ampersands.
 _ENTITIES = {"&": "&amp;", "<": "&lt;", ">": "&gt;", '"': "&quot;", "\n": "&#10;", "\r": "&#13;", "\t": "&#9;"}
 
 

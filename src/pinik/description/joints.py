@@ -11,6 +11,7 @@ from .flaw import Flaw
 from .numbers import FARTHEST
 from .part import Part, Vector
 from .slips import misspelt
+from .vocabulary import BOUNDED_KINDS
 from .xml import DocumentError, Element
 
 __all__ = ["ENDLESS", "ONE_AXIS_KINDS", "JointTag", "Mimic", "read_joint"]
@@ -151,7 +152,7 @@ def _read_axis(joint: Part, kind: str) -> Vector:
 
 def _read_limits(joint: Part, limit: Part | None, kind: str) -> tuple[float | None, float | None]:
     """The lower and upper limit; None for each that is not given."""
-    bounded = kind in ("revolute", "prismatic")
+    bounded = kind in BOUNDED_KINDS
     if limit is None:
         if bounded:
             raise joint.fault(f"a {kind} joint needs a <limit> element")

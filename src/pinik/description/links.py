@@ -9,7 +9,7 @@ from .flaw import Flaw
 from .materials import Color
 from .part import Part, Vector
 from .shape_tags import ShapeTag, read_shapes
-from .xml import DocumentError, Element
+from .xml import Element
 
 __all__ = ["INERTIA_ATTRIBUTES", "Inertial", "LinkTag", "read_link"]
 
@@ -81,18 +81,9 @@ def _read_inertial(link: Part) -> Inertial | None:
     inertial = link.only("inertial")
     if inertial is None:
         return None
-    before = len(link.flaws)
-    try:
-        return _checked_inertial(inertial)
-    except DocumentError as fault:
-        del link.flaws[before:]  # what was assumed about an inertial that is left out does not matter
-        at = Element("inertial", {}, fault.line or inertial.element.line, inertial.element.start)
-        link.of(at).flaw(
-            f"{fault.message}; the link is taken as massless",
-            code="bad-inertial",
-            common="<inertial> cannot be read; the link is taken as massless",
-        )
-        return None
+    massless = "the link is taken as massless"
+    common = f"<inertial> cannot be read; {massless}"
+    return inertial.unless_faulty(_checked_inertial, massless, code="bad-inertial", common=common)
 
 
 def _checked_inertial(inertial: Part) -> Inertial:

@@ -32,11 +32,11 @@ def is_package(folder: Path) -> bool:
     return os.path.isfile(folder / _MANIFEST)
 
 
-def names_in(folder: Path) -> list[str]:
-    """The names of what is directly in a folder, sorted; of a very large folder, the first thousand that are found."""
+def names_in(folder: Path, most: int = _MOST_FOLDERS) -> list[str]:
+    """The names of what is directly in a folder, sorted; of a very large folder, the first ones that are found."""
     try:
         with os.scandir(folder) as entries:
-            return sorted(entry.name for entry, _ in zip(entries, range(_MOST_FOLDERS), strict=False))
+            return sorted(entry.name for entry, _ in zip(entries, range(most), strict=False))
     except (OSError, ValueError):
         return []
 

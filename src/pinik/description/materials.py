@@ -7,7 +7,7 @@ from .flaw import Flaw
 from .part import Part
 from .xml import DocumentError, Element
 
-__all__ = ["Color", "color_of", "named_colors"]
+__all__ = ["Color", "color_of", "materials_of_visuals", "named_colors"]
 
 Color = tuple[float, float, float, float]
 """Red, green, blue, opacity, each in 0..1."""
@@ -20,12 +20,7 @@ def named_colors(robot: Element, flaws: list[Flaw], document: bytes) -> dict[str
 
     Flaws in them are added to `flaws`, with edits of `document`.
     """
-    in_links = [
-        material
-        for link in robot.named("link")
-        for visual in link.named("visual")
-        for material in visual.named("material")
-    ]
+    in_links = [material for _, material in materials_of_visuals(robot)]
     colors: dict[str, Color] = {}
     for material in [*robot.named("material"), *in_links]:
         name = material.attributes.get("name", "")
@@ -35,6 +30,16 @@ def named_colors(robot: Element, flaws: list[Flaw], document: bytes) -> dict[str
         if color is not None and name:
             colors.setdefault(name, color)
     return colors
+
+
+def materials_of_visuals(robot: Element) -> list[tuple[Element, Element]]:
+    """(link, material) for each `<material>` in a visual shape, in the file's order."""
+    return [
+        (link, material)
+        for link in robot.named("link")
+        for visual in link.named("visual")
+        for material in visual.named("material")
+    ]
 
 
 def color_of(material: Element, owner: str, flaws: list[Flaw] | None = None, document: bytes = b"") -> Color | None:

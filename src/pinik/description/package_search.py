@@ -7,7 +7,7 @@ from collections.abc import Iterator, Sequence
 from pathlib import Path
 
 from .manifests import is_package, manifest_name, names_in, packages_in
-from .shares import example_robot_data, installed_places, installed_roots
+from .shares import entries, example_robot_data, installed_places, installed_roots
 
 __all__ = ["PackageSearch", "is_below"]
 
@@ -106,8 +106,7 @@ class PackageSearch:
         """Name in package.xml → folders, for packages whose folders have other names."""
         found: dict[str, list[Path]] = {}
         near = [folder for chain in self._above for folder in chain if folder != folder.parent]
-        ros = [Path(entry) for entry in os.environ.get("ROS_PACKAGE_PATH", "").split(os.pathsep) if entry]
-        for folder in dict.fromkeys([*self._given, *near, *ros]):
+        for folder in dict.fromkeys([*self._given, *near, *entries("ROS_PACKAGE_PATH")]):
             for name, places in packages_in(folder).items():
                 found.setdefault(name, []).extend(places)
         return found

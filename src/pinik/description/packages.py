@@ -14,10 +14,10 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from .addresses import Address, UnusableAddressError, read_address
+from .manifests import names_in
 from .package_search import PackageSearch, is_below
-from .shares import example_robot_data
 
-__all__ = ["Found", "Surroundings", "example_robot_data", "resolve"]
+__all__ = ["Found", "Surroundings"]
 
 _MOST_ENTRIES = 5000
 
@@ -160,24 +160,8 @@ class Surroundings:
 
     def _names_in(self, folder: Path) -> dict[str, str]:
         if folder not in self._entries:
-            try:
-                with os.scandir(folder) as entries:
-                    names = [entry.name for entry, _ in zip(entries, range(_MOST_ENTRIES), strict=False)]
-            except (OSError, ValueError):
-                names = []
-            self._entries[folder] = {name.casefold(): name for name in names}
+            self._entries[folder] = {name.casefold(): name for name in names_in(folder, _MOST_ENTRIES)}
         return self._entries[folder]
-
-
-def resolve(
-    address: str,
-    *,
-    urdf_path: Path | None = None,
-    package_dirs: Sequence[os.PathLike[str] | str] = (),
-    allow_outside: bool = False,
-) -> Path | None:
-    """The file at an address in a URDF, or None; for many addresses of one URDF, `Surroundings` is quicker."""
-    return Surroundings(urdf_path, package_dirs, allow_outside).find(address).path
 
 
 def _is_file(path: Path) -> bool:

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Sequence
+from collections.abc import Callable, Collection, Sequence
 from dataclasses import dataclass
+from typing import TypeVar
 
 from ..echoes import QUOTED, shortened
 from .edits import new_value, removed
@@ -14,6 +15,7 @@ from .xml import DocumentError, Element
 __all__ = ["Part", "Vector", "required_name"]
 
 Vector = tuple[float, float, float]
+Value = TypeVar("Value")
 
 _MOST_SHOWN = 4
 _ZERO: Vector = (0.0, 0.0, 0.0)
@@ -72,6 +74,24 @@ class Part:
     def of(self, element: Element, owner: str | None = None) -> Part:
         """A part of this part."""
         return Part(element, self.owner if owner is None else owner, self.flaws, self.document)
+
+    def unless_faulty(self, read: Callable[[Part], Value], loss: str, *, code: str, common: str) -> Value | None:
+        """What `read` makes of this part. If it cannot be read, that is one flaw instead of all in it.
+
+        Args:
+            read: Reads the part; its `DocumentError` says what is wrong.
+            loss: What is assumed then, as the end of a sentence.
+            code: The code of the flaw.
+            common: The cause of the flaw without names.
+        """
+        before = len(self.flaws)
+        try:
+            return read(self)
+        except DocumentError as fault:
+            del self.flaws[before:]  # what was assumed about a part that is left out does not matter
+            line = fault.line or self.element.line
+            self.flaws.append(Flaw(self.owner, f"{fault.message}; {loss}", code=code, line=line, common=common))
+            return None
 
     def only(self, tag: str) -> Part | None:
         """The child with this tag, or None. Of several the first counts, as in urdfdom and yourdfpy."""

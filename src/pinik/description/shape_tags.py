@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import partial
 
 from .materials import Color, color_of
 from .numbers import FARTHEST, Reading
 from .part import Part, Vector
-from .xml import DocumentError, Element
 
 __all__ = ["ShapeTag", "read_shapes"]
 
@@ -61,16 +61,14 @@ def read_shapes(link: Part, tag: str, colors: Mapping[str, Color]) -> tuple[Shap
     shapes = []
     for index, element in enumerate(elements):
         place = f"{link.owner}, {tag} {index + 1}" if len(elements) > 1 else f"{link.owner}, {tag}"
-        part = link.of(element, place)
-        before = len(link.flaws)
-        try:
-            shapes.append(_read_shape(part, index, colors))
-        except DocumentError as fault:
-            del link.flaws[before:]  # what was assumed about a shape that is left out does not matter
-            cause = f"{fault.message}; the shape is left out"
-            common = "a shape that cannot be read is left out"
-            at = Element(element.tag, element.attributes, fault.line or element.line, element.start)
-            link.of(at, place).flaw(cause, code="dropped-shape", common=common)
+        shape = link.of(element, place).unless_faulty(
+            partial(_read_shape, index=index, colors=colors),
+            "the shape is left out",
+            code="dropped-shape",
+            common="a shape that cannot be read is left out",
+        )
+        if shape is not None:
+            shapes.append(shape)
     return tuple(shapes)
 
 

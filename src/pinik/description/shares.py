@@ -9,7 +9,7 @@ import sys
 from collections.abc import Iterator
 from pathlib import Path
 
-__all__ = ["example_robot_data", "installed_places", "installed_roots"]
+__all__ = ["entries", "example_robot_data", "installed_places", "installed_roots"]
 
 # ROS 1 searches packages anywhere below the entries of ROS_PACKAGE_PATH; workspaces nest them this deep.
 NESTED_PACKAGES = ("", "*/", "*/*/")
@@ -32,21 +32,22 @@ def installed_places(name: str) -> Iterator[Path]:
     if robots is not None:
         yield robots.parent.parent / name
         yield robots / name
-    for entry in _entries("ROS_PACKAGE_PATH"):
+    for entry in entries("ROS_PACKAGE_PATH"):
         if entry.name == name:
             yield entry
         for nesting in NESTED_PACKAGES:
             yield from entry.glob(nesting + glob.escape(name))
-    for entry in _entries("AMENT_PREFIX_PATH"):
+    for entry in entries("AMENT_PREFIX_PATH"):
         yield entry / "share" / name
 
 
 def installed_roots() -> list[Path]:
     """The folders below which everything belongs to installed packages."""
     robots = example_robot_data()
-    shares = [entry / "share" for entry in _entries("AMENT_PREFIX_PATH")]
-    return [*([] if robots is None else [robots.parent]), *_entries("ROS_PACKAGE_PATH"), *shares]
+    shares = [entry / "share" for entry in entries("AMENT_PREFIX_PATH")]
+    return [*([] if robots is None else [robots.parent]), *entries("ROS_PACKAGE_PATH"), *shares]
 
 
-def _entries(variable: str) -> list[Path]:
+def entries(variable: str) -> list[Path]:
+    """The folders that an environment variable lists."""
     return [Path(entry) for entry in os.environ.get(variable, "").split(os.pathsep) if entry]

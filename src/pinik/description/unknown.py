@@ -9,7 +9,7 @@ from ..echoes import QUOTED, shortened
 from .edits import moved_to_child, renamed_attribute, renamed_element
 from .flaw import Edit, Flaw
 from .slips import is_sure, meant
-from .vocabulary import ASSUMED, FOREIGN, MAIN_ATTRIBUTES, PLACES, URDF, Word
+from .vocabulary import ASSUMED, BOUNDED_KINDS, FOREIGN, MAIN_ATTRIBUTES, PLACES, URDF, Word
 from .xml import Element
 
 __all__ = ["unknown_in_joints", "unknown_parts"]
@@ -77,7 +77,7 @@ def _places(element: Element, joint: Element) -> bool:
     """Whether an element of a joint decides where links are, so that an unknown name in it matters."""
     if element.tag != "limit":
         return element.tag in _PLACING
-    needs_limits = joint.attributes.get("type") in ("revolute", "prismatic")
+    needs_limits = joint.attributes.get("type") in BOUNDED_KINDS
     return needs_limits and not {"lower", "upper"} <= element.attributes.keys()
 
 

@@ -6,7 +6,10 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from types import MappingProxyType
 
-__all__ = ["ASSUMED", "FOREIGN", "MAIN_ATTRIBUTES", "PLACES", "URDF", "Word"]
+__all__ = ["ASSUMED", "BOUNDED_KINDS", "FOREIGN", "MAIN_ATTRIBUTES", "PLACES", "URDF", "Word"]
+
+BOUNDED_KINDS = ("revolute", "prismatic")
+"""The kinds of joints with a lower and an upper limit."""
 
 
 @dataclass(frozen=True, slots=True)

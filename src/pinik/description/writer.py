@@ -4,23 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
+from .edits import escaped
 from .joints import ENDLESS, JointTag
 from .links import INERTIA_ATTRIBUTES, Inertial, LinkTag
 from .part import Vector
+from .vocabulary import BOUNDED_KINDS
 
 __all__ = ["UNLIMITED", "written"]
 
 # For efforts and velocities that the file does not limit; Pinocchio uses the same number for its root joints.
 UNLIMITED = 1.7976931348623157e308
-_ENTITIES = {
-    "&": "&amp;",  # first, because the others contain ampersands
-    "<": "&lt;",
-    ">": "&gt;",
-    '"': "&quot;",
-    "\n": "&#10;",
-    "\r": "&#13;",
-    "\t": "&#9;",
-}
 
 
 def written(name: str, links: Iterable[LinkTag], joints: Iterable[JointTag]) -> str:
@@ -63,7 +56,7 @@ def _joint(joint: JointTag) -> str:
 
 def _limit(joint: JointTag) -> str:
     """The `<limit>` of a joint; empty if its kind needs none and none is given."""
-    bounded = joint.kind in ("revolute", "prismatic")
+    bounded = joint.kind in BOUNDED_KINDS
     if not bounded and joint.effort is None and joint.velocity is None:
         return ""
     effort = UNLIMITED if joint.effort is None else joint.effort
@@ -83,7 +76,5 @@ def _numbers(vector: Vector) -> str:
 
 
 def _quoted(text: str) -> str:
-    """`text` as the value of an XML attribute, with quotes; like xml.sax.saxutils, which would import urllib."""
-    for character, entity in _ENTITIES.items():
-        text = text.replace(character, entity)
-    return f'"{text}"'
+    """`text` as the value of an XML attribute, with quotes."""
+    return f'"{escaped(text)}"'

@@ -10,6 +10,7 @@ import pinocchio
 from numpy.typing import NDArray
 
 from ..description.reader import Description
+from ..description.vocabulary import BOUNDED_KINDS
 from ..errors import InputError
 
 __all__ = ["Joint", "joints_of"]
@@ -176,7 +177,7 @@ def joints_of(model: pinocchio.Model, description: Description) -> tuple[Joint, 
         tag = tags.get(name)
         leader = owners.setdefault(shape.idx_q, name)
         mimic = None if leader == name else shape.extract()
-        bounded = tag is not None and tag.kind in ("revolute", "prismatic")
+        bounded = tag is not None and tag.kind in BOUNDED_KINDS
         lower, upper = (tag.lower or 0.0, tag.upper or 0.0) if tag and bounded else _FREE
         joints.append(
             Joint(

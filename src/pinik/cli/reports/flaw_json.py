@@ -8,7 +8,7 @@ from ...description.flaw import Flaw
 from ...description.lint.front import NOTES
 from ...echoes import shortened
 
-__all__ = ["MOST_LISTED", "flaw_fields", "shortened"]
+__all__ = ["MOST_LISTED", "flaw_fields"]
 
 MOST_LISTED = 1000
 """The largest number of entries in each list, and of flaws of each sort."""

@@ -13,12 +13,13 @@ from typing import TYPE_CHECKING, Any
 from ...description.flaw import Flaw
 from ...description.lint.front import NOTES, lint
 from ...description.packages import Found
+from ...echoes import shortened
 from ...errors import RobotLoadError, UnknownNameError
 from ...extras import needed_by
 from ...loading import Fetched, Located, fetch, locate
 from ...robot import Robot
 from ...shapes.mesh_checks import UNDRAWN
-from .flaw_json import MOST_LISTED, flaw_fields, shortened
+from .flaw_json import MOST_LISTED, flaw_fields
 
 if TYPE_CHECKING:
     from ...shapes.second_opinion import SecondOpinion

@@ -14,11 +14,12 @@ from ...description.flaw import Flaw
 from ...description.lint.front import NOTES
 from ...description.lint.mending import Mending, mended
 from ...description.xml import DocumentError, parse
+from ...echoes import shortened
 from ..inputs.files import check_file, write_file
 from ..terminal import output
 from ..terminal.exits import CommandError
 from ..terminal.units import counted
-from .flaw_json import MOST_LISTED, shortened
+from .flaw_json import MOST_LISTED
 from .inspection import Inspection
 
 __all__ = ["MendedFile", "check_target", "write_mended"]

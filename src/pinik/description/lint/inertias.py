@@ -9,13 +9,13 @@ from typing import NamedTuple
 import numpy as np
 
 from ..flaw import Flaw
+from ..links import INERTIA_ATTRIBUTES
 from ..xml import Element
 from .plain import joint_values, named, plain_numbers
 
 __all__ = ["inertias"]
 
 _WHY = "Dynamics with this link is wrong, or fails; kinematics does not use it."
-_ENTRIES = ("ixx", "ixy", "ixz", "iyy", "iyz", "izz")
 _ROUNDING = 1e-3  # of the largest moment: files round their inertias
 _SINGULAR = 1e-12  # of the largest moment, or [m²] of the mass: no more than rounding leaves of zero
 _DENSEST = 1e5  # [kg/m³]: four times osmium
@@ -102,5 +102,5 @@ def _inertia(inertial: Element) -> list[float] | None:
     found = inertial.named("inertia")
     if len(found) != 1:
         return None
-    values = [plain_numbers(found[0].attributes.get(entry, "")) for entry in _ENTRIES]
+    values = [plain_numbers(found[0].attributes.get(entry, "")) for entry in INERTIA_ATTRIBUTES]
     return [value[0] for value in values if value] if all(value and len(value) == 1 for value in values) else None

@@ -7,8 +7,9 @@ from collections.abc import Iterator, Sequence
 from ..flaw import Flaw
 from ..joints import JointTag, Mimic
 from ..slips import misspelt
+from ..vocabulary import BOUNDED_KINDS
 from ..xml import Element
-from .plain import BOUNDED, JointValues, joint_values, named
+from .plain import JointValues, joint_values, named
 
 __all__ = ["followers", "limits"]
 
@@ -20,7 +21,7 @@ def limits(robot: Element) -> Iterator[Flaw]:
     """The flaws of the limits of single joints."""
     for joint in joint_values(robot):
         lower, upper = joint.lower, joint.upper
-        if joint.kind not in BOUNDED or lower is None or upper is None or lower > upper:
+        if joint.kind not in BOUNDED_KINDS or lower is None or upper is None or lower > upper:
             continue
         if lower == upper and _is_meant(joint):
             yield Flaw(
@@ -80,7 +81,7 @@ def followers(joints: Sequence[JointTag], robot: Element) -> Iterator[Flaw]:
 
 
 def _range(joint: JointTag) -> tuple[float, float] | None:
-    return (joint.lower or 0.0, joint.upper or 0.0) if joint.kind in BOUNDED else None
+    return (joint.lower or 0.0, joint.upper or 0.0) if joint.kind in BOUNDED_KINDS else None
 
 
 def _kept(follower: JointTag, mimic: Mimic) -> tuple[float, float] | None:

@@ -6,6 +6,7 @@ from collections.abc import Iterator
 
 from ..edits import escaped, start_tag
 from ..flaw import Edit, Flaw
+from ..materials import materials_of_visuals
 from ..xml import Element
 from .plain import named
 
@@ -33,12 +34,7 @@ def similar_names(robot: Element) -> Iterator[Flaw]:
 
 def materials(robot: Element, document: bytes) -> Iterator[Flaw]:
     """Shapes whose material is nowhere defined, and materials that are defined twice with different colours."""
-    in_shapes = [
-        (link, material)
-        for link in robot.named("link")
-        for visual in link.named("visual")
-        for material in visual.named("material")
-    ]
+    in_shapes = materials_of_visuals(robot)
     defined: dict[str, Element] = {}
     for material in [*robot.named("material"), *(material for _, material in in_shapes)]:
         name = material.attributes.get("name", "")

@@ -7,14 +7,10 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 from ...echoes import QUOTED, shortened
+from ..part import Vector
 from ..xml import Element
 
-__all__ = ["BOUNDED", "JointValues", "Vector", "joint_values", "named", "plain_numbers", "plain_vector"]
-
-Vector = tuple[float, float, float]
-
-BOUNDED = ("revolute", "prismatic")
-"""The kinds of joints with a lower and an upper limit."""
+__all__ = ["JointValues", "joint_values", "named", "plain_numbers", "plain_vector"]
 
 
 @dataclass(frozen=True, slots=True)
