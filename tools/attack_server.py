@@ -418,6 +418,7 @@ async def large(port: int, count: int) -> str:
 
     async def pour(name: str, begin: bytes, block: bytes, websocket: bool) -> None:
         client = await (Client.websocket if websocket else Client.connect)(port)
+        taken[name] += 0
         reading = asyncio.create_task(client.reader.read(-1) if not websocket else client.read_to_the_end())
         with suppress(OSError, asyncio.TimeoutError):
             await client.send(begin)
