@@ -2,13 +2,10 @@
 
 from __future__ import annotations
 
-import contextlib
-import importlib
 import os
 import signal
+import subprocess
 import sys
-import tempfile
-import types
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -17,7 +14,6 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from urdf_attack.corpus import robots
 from urdf_attack.mutations import Case, mutated
-from urdf_attack.report import Report
 from urdf_attack.workers import Worker
 
 from urdf_texts import chain, link, pair, robot
@@ -69,21 +65,39 @@ def test_the_attack_goes_on_after_a_crash(worker):
     assert worker.judged(case(pair())).kind == "agreed"
 
 
-def test_the_guided_attack_leaves_nothing_in_the_working_directory(tmp_path, monkeypatch):
-    """libFuzzer writes the input that it stopped at wherever its artifact_prefix says."""
-    given: list[str] = []
-    atheris = types.ModuleType("atheris")
-    atheris.instrument_imports = lambda include: contextlib.nullcontext()
-    atheris.Setup = lambda arguments, _one: given.extend(arguments)
-    atheris.Fuzz = lambda: None
-    monkeypatch.setitem(sys.modules, "atheris", atheris)
-    monkeypatch.delitem(sys.modules, "urdf_attack.guided", raising=False)
-    (tmp_path / "here").mkdir()
-    (tmp_path / "temporary").mkdir()
-    monkeypatch.chdir(tmp_path / "here")
-    monkeypatch.setattr(tempfile, "tempdir", str(tmp_path / "temporary"))
-    guided = importlib.import_module("urdf_attack.guided")
-    guided.attack(5, 0, 1.0, Report("", Path("build/attack")))
-    [prefix] = [word.partition("=")[2] for word in given if word.startswith("-artifact_prefix=")]
-    assert Path(prefix).parent == tmp_path / "temporary"
-    assert not any((tmp_path / "here").iterdir())
+ATHERIS = """
+import contextlib, sys
+
+def instrument_imports(include):
+    return contextlib.nullcontext()
+
+def Setup(arguments, one):
+    print(*arguments, sep="\\n")
+
+def Fuzz():
+    pass
+"""
+
+
+def test_the_guided_attack_leaves_nothing_in_the_working_directory(tmp_path):
+    """libFuzzer writes the input that it stopped at wherever its artifact_prefix says.
+
+    The attack bounds the memory of its process, so it gets a process of its own.
+    """
+    here, temporary, modules = tmp_path / "here", tmp_path / "temporary", tmp_path / "modules"
+    for folder in (here, temporary, modules):
+        folder.mkdir()
+    (modules / "atheris.py").write_text(ATHERIS)
+    code = (
+        "from pathlib import Path\n"
+        "from urdf_attack import guided\n"
+        "from urdf_attack.report import Report\n"
+        "guided.attack(5, 0, 1.0, Report('', Path('build/attack')))"
+    )
+    surroundings = {**os.environ, "TMPDIR": str(temporary), "PYTHONPATH": os.pathsep.join([str(modules), *sys.path])}
+    command = [sys.executable, "-W", "ignore", "-c", code]
+    done = subprocess.run(command, cwd=here, env=surroundings, capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr
+    [prefix] = [word.partition("=")[2] for word in done.stdout.split() if word.startswith("-artifact_prefix=")]
+    assert Path(prefix).parent == temporary
+    assert not any(here.iterdir())
