@@ -12,6 +12,7 @@ import pinik
 from by_hand import ZOO, axis, limit, link_placements, mimic, origin, random_placement, random_rotation
 from pinik import InputError, Kinematics, Target, Tolerance, UnknownNameError
 from pinik.problem.problem import Problem
+from pinik.problem.rows import shortest_rotation
 from robots import load_quietly
 from urdf_texts import joint, link, pair, robot
 
@@ -375,6 +376,12 @@ class TestExtremes:
         assert abs(at.e @ direction) < 1e-6  # about an axis across
         assert np.isfinite(at.J).all()
 
+    @pytest.mark.parametrize("a", np.vstack([np.eye(3), -np.eye(3)]).tolist(), ids=str)
+    def test_the_shortest_rotation_to_the_opposite_is_half_a_turn_that_leads_there(self, a):
+        turn, angle = shortest_rotation(np.array(a), -np.array(a))
+        assert angle == math.pi
+        np.testing.assert_allclose(pinocchio.exp3(turn) @ a, -np.array(a), atol=1e-12)
+
     def test_an_axis_along_its_direction_is_no_way_off(self, arm):
         q = arm.poses["reach"]
         direction = arm.placement("tip", q).rotation[:, 2]
@@ -453,6 +460,19 @@ def test_retargeting_is_the_same_as_starting_anew(arm):
     np.testing.assert_array_equal(at.e, anew.e)
     np.testing.assert_array_equal(at.J, anew.J)
     np.testing.assert_array_equal(at.free, anew.free)
+
+
+def test_retargeting_keeps_the_options_of_the_problem(arm):
+    other = [Target("bone3", (1, 1, 1))]
+    options = {"locked": ["bone1_x"], "target_jacobian": True, "tolerance": Tolerance(0.5, 0.25)}
+    kinematics = Kinematics.of(Problem(arm, [Target("tip", (1, 0, 0))], **options))
+    kinematics.retarget(other)
+    anew = Kinematics.of(Problem(arm, other, **options))
+    q = arm.random(14)
+    assert kinematics.problem.tolerance == Tolerance(0.5, 0.25)
+    np.testing.assert_array_equal(kinematics.linearize(q).J, anew.linearize(q).J)
+    usual = Kinematics(arm, other, locked=["bone1_x"]).linearize(q)
+    assert np.abs(kinematics.linearize(q).J - usual.J).max() > 0.1
 
 
 def test_linearizing_leaves_the_configuration_alone(arm):

@@ -240,6 +240,16 @@ class TestProof:
             (0, 0.05, 0.2, True), abs=1e-12
         )
 
+    def test_counts_how_far_a_slide_runs_beside_the_joint_before_it(self):
+        text = robot(
+            *(link(name) for name in "abc"),
+            joint("turn", "a", "b", axis(0, 0, 1), kind="continuous", limit=""),
+            joint("slide", "b", "c", origin((0.3, 0, 0)), axis(0, 1, 0), kind="prismatic", limit=limit(-0.1, 0.4)),
+        )
+        loaded = load_quietly(text)
+        assert proof(loaded, Target("c", (0, 0.1, 0))) == pytest.approx((0, 0.2, 0.3, True), abs=1e-12)
+        assert proof(loaded, Target("c", (0, 0.7, 0))) == pytest.approx((0, 0.2, 0.5, False), abs=1e-12)
+
     def test_counts_a_slide_under_the_first_hinge(self):
         text = robot(
             *(link(name) for name in "abc"),

@@ -2,6 +2,7 @@ from __future__ import annotations
 
 import json
 import math
+import pickle
 from typing import Any
 
 import numpy as np
@@ -252,7 +253,7 @@ class TestEquality:
         {"axis": "x", "at": (1, 2, 3)},
     )
 
-    @pytest.mark.parametrize("pair", SAME, ids=str)
+    @pytest.mark.parametrize("pair", SAME)
     def test_the_same_question_asked_otherwise_is_equal_and_hashes_equal(self, pair):
         one, other = (Target("tip", **fields) for fields in pair)
         assert one == other
@@ -269,6 +270,69 @@ class TestEquality:
         target = Target("tip", (1, 2, 3))
         assert hash(target) != hash(target.moved_to((3, 2, 1)))
         assert target.moved_to((3, 2, 1)) == Target("tip", (3, 2, 1)) != target
+
+
+class TestMovedTo:
+    M, N = (random_placement(np.random.default_rng(seed)) for seed in (5, 6))
+
+    def test_a_placement_takes_the_parts_that_the_target_asks_for(self):
+        for place in (self.N, self.N.tolist(), pinocchio.SE3(self.N)):
+            assert Target("tip", placement=self.M).moved_to(place) == Target("tip", placement=self.N)
+            assert Target("tip", rotation=self.M[:3, :3]).moved_to(place) == Target("tip", rotation=self.N[:3, :3])
+            assert Target("tip", (1, 2, 3)).moved_to(place) == Target("tip", self.N[:3, 3])
+
+    @pytest.mark.parametrize(
+        ("fields", "place", "words"),
+        [
+            ({"axis": "x", "direction": (0, 0, 1)}, np.eye(4), "asks for an axis's direction; give a Target"),
+            ({"rpy": (0, 0, 0)}, (1, 2, 3), "asks for an orientation too; give an SE3 or a 4×4 matrix"),
+            ({"position": (1, 2, 3)}, [1, 2, "3"], "position must be 3 finite numbers"),
+            ({"position": (1, 2, 3)}, [1, None, 3], "position must have numbers where the target asks for them"),
+            ({"position": (1, 2, 3)}, np.eye(3), "placement must be 4×4 finite numbers"),
+            ({"position": (1, 2, 3)}, [[1, 2], [3]], "placement must be 4×4 finite numbers"),
+            ({"position": (1, 2, 3)}, np.ma.masked_array([1, 2, 3], [0, 0, 1]), "place"),
+        ],
+    )
+    def test_a_place_that_is_none_is_refused_in_words_that_name_the_target(self, fields, place, words):
+        with pytest.raises(InputError, match=f"target 'tip':? {words}"):
+            Target("tip", **fields).moved_to(place)
+
+
+class TestAlone:
+    @pytest.mark.parametrize(
+        "orientation",
+        [{"rpy": (1, 2, 3)}, {"axis": "x", "direction": (0, 0, 1)}, {"axis": (1, 1, 0), "at": (1, 2, 3)}],
+    )
+    def test_a_part_is_the_target_without_the_other_part(self, orientation):
+        position = (1, None, 3)
+        others: dict[str, Any] = {"tool": (0, 0, 0.1), "relative_to": "base", "weight": 2.0, "tolerance": (0.1, 0.2)}
+        both = Target("tip", position, **orientation, **others)
+        assert {both: both.shape}  # what it remembers must not go over to its parts
+        place, turn = Target("tip", position, **others), Target("tip", **orientation, **others)
+        for part, alone, other in (("position", place, turn), ("orientation", turn, place)):
+            assert both.alone(part) == alone == alone.alone(part)
+            assert both.alone(part).shape == alone.shape
+            assert other.alone(part) is None
+
+
+class TestPickles:
+    @pytest.mark.parametrize(
+        "fields",
+        [
+            {"position": (1, None, 3), "weight": 0.5},
+            {"placement": random_placement(np.random.default_rng(7)), "tolerance": ((0.1, 0.2, 0.3), 0.4)},
+            {"axis": "y", "at": (1, 2, 3), "tool": random_placement(np.random.default_rng(8)), "relative_to": "base"},
+        ],
+    )
+    def test_take_a_target_there_and_back(self, fields):
+        target = Target("tip", **fields)
+        assert {target: target.shape}  # what a target remembers is left out
+        again = pickle.loads(pickle.dumps(target))
+        assert vars(again).keys() == vars(Target("tip", **fields)).keys()
+        assert again == target
+        assert (again.shape, again.tolerance) == (target.shape, target.tolerance)
+        for value in vars(again).values():
+            assert not isinstance(value, np.ndarray) or not value.flags.writeable
 
 
 class TestJson:
@@ -315,10 +379,16 @@ class TestJson:
             Target.from_dict({"frame": "tip", "positon": [1, 2, 3]})
         assert "quat_xyzw" in caught.value.valid
 
-    @pytest.mark.parametrize("fields", [{}, {"position": [1, 2, 3]}])
-    def test_without_a_frame_is_refused(self, fields):
-        with pytest.raises(InputError, match="a target must name its frame"):
+    @pytest.mark.parametrize(
+        ("fields", "got"), [({}, "nothing"), ({"position": [1, 2, 3], "weight": 2}, "position, weight")]
+    )
+    def test_without_a_frame_is_refused(self, fields, got):
+        with pytest.raises(InputError, match=f"a target must name its frame; got only {got}$"):
             Target.from_dict(fields)
+
+    @pytest.mark.parametrize("tolerance", [[0.1, 0.2], [[0.1, 0.2, 0.3], 0.4]])
+    def test_writes_a_tolerance_as_it_was_given(self, tolerance):
+        assert Target("tip", (1, 2, 3), tolerance=tolerance).to_dict()["tolerance"] == tolerance
 
     @pytest.mark.parametrize("fields", [None, [1, 2, 3], "tip", 3])
     def test_that_is_no_object_is_refused(self, fields):

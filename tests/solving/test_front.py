@@ -356,7 +356,6 @@ def test_a_target_sent_in_moves_while_it_runs(method, arm):
         ({"damp": 3}, "no keyword 'damp'; did you mean 'damping'. .the method is 'dls'."),
         ({"engine": "cuda"}, "no engine 'cuda'"),
     ],
-    ids=str,
 )
 def test_bad_input_is_refused_in_words(options, words, arm):
     keywords = {"position": [0.3, 0.1, 0.8]} | options

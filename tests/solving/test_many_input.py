@@ -82,7 +82,6 @@ def test_what_is_no_question_is_refused_in_words(name, panda):
         ({"engine": "cuda"}, "no engine 'cuda'"),
         ({"damp": 1}, "no keyword 'damp'"),
     ],
-    ids=str,
 )
 def test_bad_options_are_refused_in_words(options, words, panda):
     with pytest.raises(pinik.PinikError, match=words):

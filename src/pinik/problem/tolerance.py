@@ -9,7 +9,7 @@ from typing import NamedTuple, Self
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ..checks import as_array, as_vector
+from ..checks import as_array, as_finite_number, as_vector
 from ..errors import InputError
 
 __all__ = ["TargetError", "Tolerance", "largest_of"]
@@ -48,7 +48,7 @@ class Tolerance(NamedTuple):
             return cls()
         if isinstance(value, (tuple, list)) and len(value) == 2 and np.ndim(value[0]) == 1:
             x, y, z = as_array(value[0], (3,), f"{what} position", "a box, in metres").tolist()
-            angle = float(as_array(value[1], (), f"{what} orientation", "radians"))
+            angle = as_finite_number(value[1], f"{what} orientation")
             if min(x, y, z, angle) > 0.0:
                 return cls((x, y, z), angle)
             raise InputError(f"must be three positive lengths and a positive angle; got {value!r}", argument=what)
