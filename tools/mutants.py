@@ -32,7 +32,7 @@ TESTS = {
         *(f"--ignore=tests/solving/test_{name}.py" for name in ("attack", "polish", "track_equivalence")),
         *("-k", "not ctrl_c"),
     ],
-    "description": ["tests/description/test_reader.py", "tests/description/test_packages.py", "tests/test_loading.py"],
+    "description": ["tests/description", "--ignore=tests/description/test_attack.py", "tests/test_loading.py"],
 }
 
 
