@@ -39,6 +39,7 @@ JOINT_TYPES = (
     "",
 )
 MOST_ELEMENTS = 20_000
+MOST_REPEATED = 30
 DEEPEST = 50
 
 
@@ -136,7 +137,8 @@ def _duplicate(random: Random, robot: Node, parent: Node, element: Node) -> None
 
 
 def _repeat(random: Random, robot: Node, parent: Node, element: Node) -> None:
-    parent.children.extend([element] * random.choice((2, 10, 300)))
+    few = sum(1 for _ in element.walk()) < MOST_REPEATED
+    parent.children.extend([element] * random.choice((2, 10, 300 if few else 10)))
 
 
 def _move(random: Random, robot: Node, parent: Node, element: Node) -> None:
