@@ -24,7 +24,7 @@ class _Guided(Random):
         super().__init__(0)
 
     def random(self) -> float:
-        return float(self._bytes.ConsumeProbability())
+        return self.getrandbits(53) * 2.0**-53  # ConsumeProbability may return 1.0
 
     def getrandbits(self, k: int, /) -> int:
         return int(self._bytes.ConsumeUInt((k + 7) // 8)) & ((1 << k) - 1)
