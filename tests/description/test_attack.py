@@ -81,8 +81,8 @@ class FuzzedDataProvider:
         taken, self.data = self.data[:count], self.data[count:]
         return int.from_bytes(taken, "little")
 
-    def ConsumeProbability(self):
-        return self.ConsumeUInt(8) / (2**64 - 1)
+    def remaining_bytes(self):
+        return len(self.data)
 
 def Setup(arguments, one):
     global attacked
