@@ -24,6 +24,8 @@ Array = NDArray[np.float64]
 
 TOLERANCE = (1e-4, 1e-3)  # [m], [rad]: pinik's default
 ON_TOP = 1e-6  # [m]: nearer to the point that it should look at, a frame looks at it (docs/targets.md)
+UNIT = 1e-6  # how far a quaternion or (cos, sin) may be from unit length
+_CIRCLE = {1: 1, 2: 0, 4: 2, 7: 3}  # count of entries of q → where the (cos, sin) or quaternion in them begins
 AXES = {"x": (1, 0, 0), "y": (0, 1, 0), "z": (0, 0, 1), "-x": (-1, 0, 0), "-y": (0, -1, 0), "-z": (0, 0, -1)}
 
 
@@ -113,6 +115,30 @@ def is_inside(robot: pinik.Robot, q: ArrayLike) -> bool:
     """Whether `q` is inside every limit of the robot's file."""
     plain, angles, _, off = _read(robot, np.asarray(q, dtype=np.float64))
     return not off and not plain.outside(angles)
+
+
+def outside_rows(robot: pinik.Robot, q: Array) -> tuple[dict[str, float], dict[str, float]]:
+    """How far configurations (n, nq) are outside what is allowed.
+
+    Returns:
+        Joint → its largest distance from its limits in the robot's file [rad or m], and joint → that of its (cos, sin)
+        or quaternion from unit length; both for the joints that are outside only.
+    """
+    angles: dict[str, Array] = {}
+    off: dict[str, float] = {}
+    for name, entries, several in _layout(robot):
+        own = q[:, entries]
+        circle = own[:, _CIRCLE[own.shape[1]] :]
+        if circle.shape[1] and not (np.abs(np.linalg.norm(circle, axis=1) - 1.0) <= UNIT).all():
+            off[name] = float(np.abs(np.linalg.norm(circle, axis=1) - 1.0).max())
+        if not several:
+            angles[name] = own[:, 0] if own.shape[1] == 1 else np.arctan2(own[:, 1], own[:, 0])
+    limits = _plain(robot.description.document, robot.root).limits(angles)
+    outside = {}
+    for name, (lower, upper) in limits.items():
+        if not ((lower <= angles[name]) & (angles[name] <= upper)).all():
+            outside[name] = float(np.maximum(lower - angles[name], angles[name] - upper).max())
+    return outside, off
 
 
 def plain_placement(robot: pinik.Robot, frame: str, q: ArrayLike, relative_to: str | None = None) -> pinocchio.SE3:
@@ -260,8 +286,8 @@ def _read(robot: pinik.Robot, q: Array) -> tuple[PlainRobot, dict[str, float], d
     off: dict[str, float] = {}
     for name, entries, several in _layout(robot):
         own = q[entries]
-        circle = own[{1: 1, 2: 0, 4: 2, 7: 3}[len(own)] :]
-        if len(circle) and not abs(np.linalg.norm(circle) - 1.0) <= 1e-6:
+        circle = own[_CIRCLE[len(own)] :]
+        if len(circle) and not abs(np.linalg.norm(circle) - 1.0) <= UNIT:
             off[name] = float(np.linalg.norm(circle) - 1.0)
         if several:
             free[name] = own

@@ -17,8 +17,8 @@ FREEDOMS = {"revolute": 1, "continuous": 1, "prismatic": 1, "fixed": 0, "floatin
 
 
 def random_tree(rng: np.random.Generator) -> str:
-    """The text of a tree with 1 to 60 joints; its links are l0, l1, …"""
-    count = 1 + int(MOST_JOINTS * rng.random() ** 2)
+    """The text of a tree with 1 to 60 joints, 15 on average; its links are l0, l1, …"""
+    count = 1 + int(MOST_JOINTS * rng.random() ** 3)
     size = 10.0 ** rng.uniform(-2.0, 1.0) if rng.random() < 0.3 else 0.3  # [m]
     likely = rng.dirichlet([3.0, 1.0, 1.0, 0.7, 0.15, 0.15])
     stretch = rng.choice([0.0, 0.1, 0.6])  # how often a joint hangs on another link than the last one

@@ -2,8 +2,8 @@
 
     python tools/attack_solves.py --count 1000000 --seed 0
 
-`tests/solve_attack.py` says what is asked and what must hold. Every fault is printed with the number of its robot, and
-`--robot NUMBER` makes that robot again; the exit status is 1 if there was a fault.
+`tests/random_questions.py` says what is asked, and `tests/solve_attack.py` what must hold. Every fault is printed with
+the number of its robot, and `--robot NUMBER` makes that robot again; the exit status is 1 if there was a fault.
 """
 
 from __future__ import annotations
@@ -44,14 +44,18 @@ def main() -> int:
         counts["robots"] += 1
         if time.perf_counter() - said > 60.0:
             said = time.perf_counter()
-            print(f"{counts['solves']:,} solves, {faults} faults, {said - began:.0f} s", file=sys.stderr, flush=True)
+            print(_progress(counts["solves"], faults, said - began), file=sys.stderr, flush=True)
         if counts["solves"] >= asked.count or faults >= MOST_FAULTS:
             break
     for name, count in sorted(counts.items()):
         print(f"{count:>9,} {name}")
     memory = int(Path("/proc/self/statm").read_text().split()[1]) * os.sysconf("SC_PAGE_SIZE") / 1e6
-    print(f"{faults} faults in {time.perf_counter() - began:.0f} s; {memory:.0f} MB resident")
+    print(f"{_progress(counts['solves'], faults, time.perf_counter() - began)}; {memory:.0f} MB resident")
     return 1 if faults else 0
+
+
+def _progress(solves: int, faults: int, seconds: float) -> str:
+    return f"{solves:,} solves, {solves / seconds:.0f} a second: {faults} faults in {seconds:.0f} s"
 
 
 if __name__ == "__main__":

@@ -15,7 +15,6 @@ import sys
 from pathlib import Path
 
 from urdf_attack.report import Report
-from urdf_attack.workers import Worker, case_of
 
 CHUNK = 500
 
@@ -36,6 +35,8 @@ def main() -> int:
         from urdf_attack.guided import attack
 
         attack(given.count, given.seed, given.minutes, report)
+    from urdf_attack.workers import Worker, case_of  # imports pinik, which atheris must do itself
+
     worker = Worker()
     try:
         for begin in range(given.first, given.first + given.count, CHUNK):

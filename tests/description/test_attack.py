@@ -18,6 +18,7 @@ from urdf_attack.workers import Worker
 
 from urdf_texts import chain, link, pair, robot
 
+TOOL = Path(__file__).parents[2] / "tools" / "attack_urdf.py"
 ROBOTS = robots()
 
 
@@ -69,35 +70,45 @@ ATHERIS = """
 import contextlib, sys
 
 def instrument_imports(include):
+    assert "pinik" not in sys.modules, "pinik would not be instrumented"
     return contextlib.nullcontext()
 
+class FuzzedDataProvider:
+    def __init__(self, data):
+        self.data = data
+
+    def ConsumeUInt(self, count):
+        taken, self.data = self.data[:count], self.data[count:]
+        return int.from_bytes(taken, "little")
+
+    def remaining_bytes(self):
+        return len(self.data)
+
 def Setup(arguments, one):
+    global attacked
+    attacked = one
     print(*arguments, sep="\\n")
 
 def Fuzz():
-    pass
+    for data in (b"", b"\\x00" * 400, b"\\xff" * 400, bytes(range(256)), bytes(range(255, 0, -1))):
+        attacked(data)
 """
 
 
-def test_the_guided_attack_leaves_nothing_in_the_working_directory(tmp_path):
-    """libFuzzer writes the input that it stopped at wherever its artifact_prefix says.
+def test_the_guided_attack_instruments_pinik_and_leaves_nothing_in_the_working_directory(tmp_path):
+    """A stand-in for atheris runs the command on a few inputs; pinik must not be imported before atheris watches.
 
-    The attack bounds the memory of its process, so it gets a process of its own.
+    libFuzzer writes the input that it stopped at wherever its artifact_prefix says.
     """
     here, temporary, modules = tmp_path / "here", tmp_path / "temporary", tmp_path / "modules"
     for folder in (here, temporary, modules):
         folder.mkdir()
     (modules / "atheris.py").write_text(ATHERIS)
-    code = (
-        "from pathlib import Path\n"
-        "from urdf_attack import guided\n"
-        "from urdf_attack.report import Report\n"
-        "guided.attack(5, 0, 1.0, Report('', Path('build/attack')))"
-    )
     surroundings = {**os.environ, "TMPDIR": str(temporary), "PYTHONPATH": os.pathsep.join([str(modules), *sys.path])}
-    command = [sys.executable, "-W", "ignore", "-c", code]
+    command = [sys.executable, "-W", "ignore", str(TOOL), "--atheris", "--count", "5"]
     done = subprocess.run(command, cwd=here, env=surroundings, capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stderr
+    assert "5 inputs" in done.stdout
     [prefix] = [word.partition("=")[2] for word in done.stdout.split() if word.startswith("-artifact_prefix=")]
     assert Path(prefix).parent == temporary
     assert not any(here.iterdir())

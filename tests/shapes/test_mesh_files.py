@@ -132,15 +132,18 @@ def test_a_mesh_of_many_copies_is_counted_before_it_is_copied(tmp_path: Path) ->
     assert "triangles, and pinik draws at most" in flaw
 
 
-def test_all_meshes_of_a_robot_together_are_bounded(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_all_shapes_of_a_robot_together_are_bounded(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("pinik.shapes.meshes.MOST_TRIANGLES", 500)
     trimesh.creation.icosphere(2).export(tmp_path / "a.stl")  # 320 triangles
     shape = '<visual><geometry><mesh filename="a.stl" scale="{0} {0} {0}"/></geometry></visual>'
-    visuals = shape.format(1) + shape.format(2) + "<visual><geometry><sphere radius='1'/></geometry></visual>"
+    ball, box = (
+        f"<visual><geometry><{kind}/></geometry></visual>" for kind in ('sphere radius="1"', 'box size="1 1 1"')
+    )
+    visuals = shape.format(1) + shape.format(2) + ball + box
     (tmp_path / "r.urdf").write_text(f'<robot name="r"><link name="a">{visuals}</link></robot>')
-    shapes, (flaw,) = load_shapes(tmp_path / "r.urdf")
-    assert len(shapes) == 2
-    assert flaw.code == "mesh-too-large"
+    shapes, flaws = load_shapes(tmp_path / "r.urdf")
+    assert [shape.name for shape in shapes] == ["a/0", "a/3"]
+    assert [flaw.code for flaw in flaws] == ["mesh-too-large"] * 2
 
 
 def test_a_texture_that_is_missing_says_nothing(tmp_path: Path, caplog: pytest.LogCaptureFixture) -> None:

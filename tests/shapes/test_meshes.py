@@ -45,6 +45,16 @@ def test_a_primitive_has_its_size_about_its_own_origin(geometry, extents, volume
     assert mesh.volume == pytest.approx(volume, rel=0.03)
 
 
+@pytest.mark.parametrize(("radius", "length"), [(0.001, 5.0), (2.0, 0.3), (0.5, 1e-9)])
+def test_a_capsule_is_closed_and_everywhere_its_radius_from_its_axis(radius, length):
+    mesh = only(urdf_with(visual(f'<capsule radius="{radius}" length="{length}"/>'))).mesh
+    axis = np.zeros_like(mesh.vertices)
+    axis[:, 2] = np.clip(mesh.vertices[:, 2], -0.5 * length, 0.5 * length)
+    assert mesh.is_watertight
+    assert np.linalg.norm(mesh.vertices - axis, axis=1) == pytest.approx(radius, rel=1e-9)
+    assert mesh.volume == pytest.approx(math.pi * radius**2 * (length + 4.0 / 3.0 * radius), rel=0.02)
+
+
 def test_a_shape_sits_where_its_origin_says():
     origin = '<origin xyz="1 2 3" rpy="0.1 0.2 0.3"/>'
     shape = only(urdf_with(visual('<sphere radius="1"/>', origin)))

@@ -13,6 +13,7 @@ __all__ = ["robots"]
 
 MESH = "package://victim/meshes/ok.stl"
 PARTS_OF_EACH = 3
+MOST_JOINTS = (1, 2, 4)
 
 
 def robots() -> list[Node]:
@@ -21,11 +22,15 @@ def robots() -> list[Node]:
     own = Path(__file__).parents[2] / "urdf"
     examples = example_robot_data()
     files = [*sorted(own.glob("*.urdf")), *(sorted(examples.glob("*/*/*.urdf")) if examples else [])]
-    everything = Path(__file__).with_name("everything.urdf")
-    found = [parsed(everything.read_bytes())] * len(files)
+    everything = parsed(Path(__file__).with_name("everything.urdf").read_bytes())
+    found = []
     for file in files:
-        robot = parsed(file.read_bytes())
-        links = [part.written["name"] for part in robot.children if part.tag == "link"]
-        for _ in range(min(PARTS_OF_EACH, len(links))):
-            found.append(subtree(robot, random.choice(links), random.choice((2, 4, 6)), mesh=MESH))
+        found += [everything, *_parts(everything, random), *_parts(parsed(file.read_bytes()), random)]
     return found
+
+
+def _parts(robot: Node, random: Random) -> list[Node]:
+    """Random parts of a robot, each from one of its links on."""
+    links = [part.written["name"] for part in robot.children if part.tag == "link"]
+    roots = random.choices(links, k=min(PARTS_OF_EACH, len(links)))
+    return [subtree(robot, root, random.choice(MOST_JOINTS), mesh=MESH) for root in roots]

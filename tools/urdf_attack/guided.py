@@ -17,16 +17,19 @@ __all__ = ["attack"]
 
 
 class _Guided(Random):
-    """Random numbers that are read from the bytes which atheris chose; zeros after their end."""
+    """Random numbers that are read from the bytes which atheris chose; always the same ones after their end."""
 
     def __init__(self, data: bytes) -> None:
         self._bytes = atheris.FuzzedDataProvider(data)
+        self._rest = Random(0)
         super().__init__(0)
 
     def random(self) -> float:
-        return float(self._bytes.ConsumeProbability())
+        return self.getrandbits(53) * 2.0**-53  # ConsumeProbability may return 1.0
 
     def getrandbits(self, k: int, /) -> int:
+        if not self._bytes.remaining_bytes():
+            return self._rest.getrandbits(k)
         return int(self._bytes.ConsumeUInt((k + 7) // 8)) & ((1 << k) - 1)
 
     def seed(self, *_: object, **__: object) -> None:

@@ -10,6 +10,7 @@ import traceback
 import warnings
 from collections.abc import Iterator
 from contextlib import contextmanager
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -18,7 +19,9 @@ import pinocchio
 
 import pinik
 from pinik.cli.reports.inspection import inspect
+from pinik.description.links import LinkTag
 from pinik.description.shares import example_robot_data
+from pinik.description.xacro import is_xacro
 from pinik.extras import MissingExtraError
 from pinik.robot import Robot
 from pinik.shapes.meshes import load_shapes
@@ -33,6 +36,7 @@ __all__ = ["Judge"]
 ROUNDED = 1e-7  # [m and rad]
 LONGEST_MESSAGE = 2_000
 INSPECTED = 8  # every so many inputs are given to `pinik check` too
+EXPANDED = 4  # every so many xacro files are expanded, which takes a process; the others are given as bytes
 MEMORY = 2 * 1024**3  # [B] on top of what the libraries need
 
 
@@ -44,6 +48,8 @@ class Judge:
         self._opened: list[str] = []
         self._watching = False
         self._count = 0
+        self._agreed: set[int] = set()
+        self._drawn: set[int] = set()
         self._allowed = self._folders()
         self._plain_robot()
         sys.addaudithook(self._watch)
@@ -55,28 +61,30 @@ class Judge:
         sandbox = self._sandbox
         document = sandbox.filled(case.written)
         sandbox.robot.write_bytes(document)
-        source: str = str(sandbox.robot)
+        source: str | bytes = str(sandbox.robot)
         if case.as_text:
             text = document.decode("utf-8", "surrogatepass")
             source = text if text.lstrip("\ufeff \t\r\n").startswith("<") else source
         self._opened.clear()
         self._count += 1
+        if self._count % EXPANDED and is_xacro(sandbox.robot, document):
+            source = document
         try:
             with self._watched(), warnings.catch_warnings():
                 warnings.simplefilter("error")
                 warnings.simplefilter("ignore", pinik.UrdfWarning)
                 outcome, robot = self._loaded(source, case)
                 if robot is not None and case.shapes:
-                    load_shapes(robot)
+                    self._draw(robot)
                 if self._count % INSPECTED == 0:
-                    inspect(str(sandbox.robot), [])
+                    inspect(source if isinstance(source, bytes) else str(sandbox.robot), [])
         except Exception as fault:
             return self._raised(fault)
         if self._opened:
             return Outcome("opened", self._opened[0], f"opened {self._opened[0]}")
         return outcome if robot is None else self._second_opinion(robot, case)
 
-    def _loaded(self, source: str, case: Case) -> tuple[Outcome, Robot | None]:
+    def _loaded(self, source: str | bytes, case: Case) -> tuple[Outcome, Robot | None]:
         try:
             robot = pinik.load(source)
         except MissingExtraError as error:  # a xacro file, whose reader is an extra
@@ -90,7 +98,28 @@ class Judge:
             return Outcome("refused", words, _shape(error.cause)), None
         return Outcome("agreed"), robot
 
+    def _draw(self, robot: Robot) -> None:
+        """Read the shapes of the links whose shapes are none of those that were read before."""
+        news = tuple(link for link in robot.description.link_tags if _shapes_of(link) not in self._drawn)
+        whole, robot.description = robot.description, replace(robot.description, link_tags=news)
+        try:
+            load_shapes(robot)
+        finally:
+            robot.description = whole
+        self._drawn.update(map(_shapes_of, news))
+
     def _second_opinion(self, robot: Robot, case: Case) -> Outcome:
+        """Compare the placements, once for all robots with the same links and joints that are meant to be the same."""
+        description = robot.description
+        key = hash((case.meant, description.root, description.links, description.joints))
+        if key in self._agreed:
+            return Outcome("agreed")
+        outcome = self._compared(robot, case)
+        if outcome.kind == "agreed":
+            self._agreed.add(key)
+        return outcome
+
+    def _compared(self, robot: Robot, case: Case) -> Outcome:
         rng = np.random.default_rng(0)
         for q in (robot.neutral(), robot.random(rng)):
             pinocchio.framesForwardKinematics(robot.model, robot.data, q)
@@ -153,6 +182,11 @@ class Judge:
             # Folders above the robot may be packages, which only their manifest tells.
             if not path.startswith(self._allowed) and os.path.basename(path) != "package.xml" and path != os.devnull:
                 self._opened.append(path[:200])
+
+
+def _shapes_of(link: LinkTag) -> int:
+    """A number for the visual shapes of a link, wherever they stand in the file."""
+    return hash(tuple(replace(shape, line=0) for shape in link.visuals))
 
 
 def _agrees(opinion: SecondOpinion, robot: Robot) -> bool:

@@ -39,6 +39,8 @@ JOINT_TYPES = (
     "",
 )
 MOST_ELEMENTS = 20_000
+LONGEST_REPEATED = 3_000  # characters of what may come 300 times
+LONGEST_HARMLESS = 15_000_000  # characters
 DEEPEST = 50
 
 
@@ -87,7 +89,9 @@ def mutated(random: Random, robots: Sequence[Node]) -> Case:
 
 
 def _is_plain_xml(text: str) -> bool:
-    """Whether this is well-formed XML of a depth that a robot has."""
+    """Whether this is well-formed XML of a size and depth that a robot has."""
+    if len(text) > LONGEST_HARMLESS:
+        return False
     depth = 0
     try:
         for event, _ in ElementTree.iterparse(io.BytesIO(text.encode()), events=("start", "end")):
@@ -136,7 +140,8 @@ def _duplicate(random: Random, robot: Node, parent: Node, element: Node) -> None
 
 
 def _repeat(random: Random, robot: Node, parent: Node, element: Node) -> None:
-    parent.children.extend([element] * random.choice((2, 10, 300)))
+    short = len(element.render()) <= LONGEST_REPEATED
+    parent.children.extend([element] * random.choice((2, 10, 300 if short else 10)))
 
 
 def _move(random: Random, robot: Node, parent: Node, element: Node) -> None:

@@ -13,7 +13,7 @@ from .outcome import FAULTS, Outcome
 __all__ = ["Report"]
 
 SHOWN = 12
-EVERY = 500
+EVERY = 10_000
 
 
 class Report:
@@ -47,8 +47,7 @@ class Report:
         found[outcome.signature] += 1
         done = self.kinds.total()
         if done % EVERY == 0:
-            rate = done / (self.minutes * 60)
-            print(f"{done:,} inputs, {rate:.0f} a second: {self._counts()}", file=sys.stderr)
+            print(self._progress(), file=sys.stderr)
         return outcome.is_fault and found[outcome.signature] == 1
 
     def keep(self, number: int, case: Case, outcome: Outcome) -> None:
@@ -60,10 +59,12 @@ class Report:
         name.with_suffix(".txt").write_text(f"{outcome.words}\n{outcome.signature}\nas text: {case.as_text}\n")
 
     def __str__(self) -> str:
-        lines = [f"{self._title}: {self.kinds.total():,} inputs in {self.minutes:.1f} min: {self._counts()}"]
+        lines = [f"{self._title}, {self.minutes:.1f} min: {self._progress()}"]
         for kind, found in self._signatures.items():
             lines += [f"{times:>9,} {kind}: {signature}" for signature, times in found.most_common(SHOWN) if signature]
         return "\n".join(lines)
 
-    def _counts(self) -> str:
-        return ", ".join(f"{count:,} {kind}" for kind, count in self.kinds.most_common())
+    def _progress(self) -> str:
+        done = self.kinds.total()
+        counts = ", ".join(f"{count:,} {kind}" for kind, count in self.kinds.most_common())
+        return f"{done:,} inputs, {done / (self.minutes * 60):.0f} a second: {counts}"

@@ -11,6 +11,7 @@ import os
 import stat
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from pathlib import Path
 
 from .addresses import Address, UnusableAddressError, read_address
@@ -74,11 +75,16 @@ class Surroundings:
         package_dirs: Sequence[os.PathLike[str] | str] = (),
         allow_outside: bool = False,
     ) -> None:
+        self._urdf_path = urdf_path
         self._base = Path() if urdf_path is None else urdf_path.parent
         self._package_dirs = tuple(map(Path, package_dirs))
-        self._search = PackageSearch(urdf_path, self._package_dirs)
         self._allow_outside = allow_outside
         self._entries: dict[Path, dict[str, str]] = {}
+
+    @cached_property
+    def _search(self) -> PackageSearch:
+        """The search, which reads folders when it is made, and so is made for the first address only."""
+        return PackageSearch(self._urdf_path, self._package_dirs)
 
     def find(self, text: str) -> Found:
         """The file at an address: "package://name/rest", "$(find name)/rest", "file:///path", or a path."""

@@ -134,12 +134,10 @@ class _Builder:
         )
 
     def _refuse_xinclude(self, tag: str, attributes: dict[str, str], line: int) -> None:
-        for name, value in attributes.items():
-            declared, _, prefix = name.partition(":")
-            if declared == "xmlns" and value == XINCLUDE:
-                self._xinclude_prefixes.add(prefix)
-        prefix, colon, _ = tag.partition(":")
-        if (prefix if colon else "") in self._xinclude_prefixes:
+        if XINCLUDE in attributes.values():
+            names = (name for name, value in attributes.items() if value == XINCLUDE)
+            self._xinclude_prefixes.update(name[6:] for name in names if name == "xmlns" or name.startswith("xmlns:"))
+        if (tag.partition(":")[0] if ":" in tag else "") in self._xinclude_prefixes:
             raise DocumentError("external references (XInclude) are refused", owner=f"<{tag}>", line=line)
 
     def _line(self) -> int:

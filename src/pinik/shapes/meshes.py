@@ -28,7 +28,7 @@ from .mesh_checks import MeshError, UndrawnCode
 
 __all__ = ["Color", "Shape", "load_shapes"]
 
-MOST_TRIANGLES = 20_000_000  # of all mesh files of a robot, each counted as often as it is used
+MOST_TRIANGLES = 20_000_000  # of all shapes of a robot; a mesh file counts as often as it is used
 GREY: Color = (0.7, 0.7, 0.7, 1.0)
 
 
@@ -84,11 +84,11 @@ def load_shapes(
     known = isinstance(robot_or_urdf, RobotModel)
     warnings = [] if known else [flaw for flaw in description.warnings if flaw.code == "dropped-shape"]
     shapes: list[Shape] = []
-    files = _MeshFiles(Surroundings(description.path, folders, allow_outside))
+    meshes = _Meshes(Surroundings(description.path, folders, allow_outside))
     for link in description.link_tags:
         for visual in link.visuals:
             try:
-                parts = _parts(visual, files)
+                parts = meshes.of(visual)
             except Exception as fault:  # a shape never stops kinematics, and trimesh may raise anything
                 warnings.append(_flaw(f"link {link.name!r}", visual.line, fault))
                 continue
@@ -106,21 +106,36 @@ class _MeshNotFoundError(Exception):
         super().__init__(said if found.why == "there is no such file" else f"{said}: {found.why}")
 
 
-class _MeshFiles:
-    """The mesh files of one robot: each is read once, and their triangles together are bounded."""
+class _Meshes:
+    """The meshes of one robot's shapes: each file is read once, and their triangles together are bounded."""
 
     def __init__(self, surroundings: Surroundings) -> None:
         self._surroundings = surroundings
         self._read: dict[str, list[triangles.Part] | Exception] = {}
         self._left = MOST_TRIANGLES
 
-    def parts(self, address: str, scale: NDArray[np.float64]) -> list[triangles.Part]:
-        """The meshes in a file, scaled.
+    def of(self, visual: ShapeTag) -> list[triangles.Part]:
+        """The meshes of one visual shape, each with its own colour if it has one.
 
         Raises:
             MeshError: It cannot be used, or there would be too many triangles.
             _MeshNotFoundError: There is no such file, or the URDF may not open it.
         """
+        match visual.kind, visual.size:
+            case "box", size:
+                mesh = triangles.box(np.array(size))
+            case "sphere", (radius,):
+                mesh = triangles.sphere(radius)
+            case "cylinder", (radius, length):
+                mesh = triangles.cylinder(radius, length)
+            case "capsule", (radius, length):
+                mesh = triangles.capsule(radius, length)
+            case _:
+                return [(triangles.scaled(mesh, np.array(visual.size)), c) for mesh, c in self._file(visual.filename)]
+        self._count([mesh])
+        return [(mesh, None)]
+
+    def _file(self, address: str) -> list[triangles.Part]:
         if address not in self._read:
             try:
                 self._read[address] = self._new(address)
@@ -129,10 +144,15 @@ class _MeshFiles:
         parts = self._read[address]
         if isinstance(parts, Exception):
             raise parts
-        self._left -= sum(len(mesh.faces) for mesh, _ in parts)
-        if self._left < 0:
-            raise MeshError(f"all meshes together have more than {MOST_TRIANGLES:,} triangles", "mesh-too-large")
-        return [(triangles.scaled(mesh, scale), color) for mesh, color in parts]
+        self._count(mesh for mesh, _ in parts)
+        return parts
+
+    def _count(self, meshes: Iterable[trimesh.Trimesh]) -> None:
+        """Count the triangles of a shape, unless there are too many."""
+        count = sum(len(mesh.faces) for mesh in meshes)
+        if count > self._left:
+            raise MeshError(f"all shapes together have more than {MOST_TRIANGLES:,} triangles", "mesh-too-large")
+        self._left -= count
 
     def _new(self, address: str) -> list[triangles.Part]:
         found = self._surroundings.find(address)
@@ -159,17 +179,3 @@ def _placement(visual: ShapeTag) -> NDArray[np.float64]:
     placement[:3, :3] = pinocchio.rpy.rpyToMatrix(np.array(visual.rpy))
     placement[:3, 3] = visual.xyz
     return placement
-
-
-def _parts(visual: ShapeTag, files: _MeshFiles) -> list[triangles.Part]:
-    """The meshes of one visual shape, each with its own colour if it has one."""
-    match visual.kind, visual.size:
-        case "box", size:
-            return [(triangles.box(np.array(size)), None)]
-        case "sphere", (radius,):
-            return [(triangles.sphere(radius), None)]
-        case "cylinder", (radius, length):
-            return [(triangles.cylinder(radius, length), None)]
-        case "capsule", (radius, length):
-            return [(triangles.capsule(radius, length), None)]
-    return files.parts(visual.filename, np.array(visual.size))

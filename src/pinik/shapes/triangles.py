@@ -46,7 +46,9 @@ def cylinder(radius: float, length: float) -> trimesh.Trimesh:
 
 def capsule(radius: float, length: float) -> trimesh.Trimesh:
     """A capsule about the origin, along z [m]; as in URDF's cylinder, `length` does not include the caps."""
-    return _creased(trimesh.creation.capsule(length, radius))
+    unit = _unit_capsule()
+    end = np.sign(unit.vertices[:, 2:]) * (0.0, 0.0, 1.0)  # of the axis, which is where the caps have their centres
+    return trimesh.Trimesh(radius * (unit.vertices - end) + 0.5 * length * end, unit.faces.copy(), process=False)
 
 
 def scaled(mesh: trimesh.Trimesh, scale: NDArray[np.float64]) -> trimesh.Trimesh:
@@ -72,6 +74,12 @@ def _unit_sphere() -> trimesh.Trimesh:
 @functools.cache
 def _unit_cylinder() -> trimesh.Trimesh:
     return _creased(trimesh.creation.cylinder(1.0, 1.0))
+
+
+@functools.cache
+def _unit_capsule() -> trimesh.Trimesh:
+    """A capsule of radius 1 and length 2."""
+    return _creased(trimesh.creation.capsule(2.0, 1.0, count=(16, 32)))
 
 
 def _stretched(unit: trimesh.Trimesh, along: NDArray[np.float64]) -> trimesh.Trimesh:

@@ -261,6 +261,11 @@ class TestAttackers:
         boxes = "".join(f'<visual><geometry><box size="1 1 {1 + i}"/></geometry></visual>' for i in range(5000))
         assert self.checked(run, write(robot(link("a", boxes))))["shapes"] == 5000
 
+    def test_thousands_of_capsules(self, run, write):
+        capsule = '<visual><geometry><capsule radius="1" length="{}"/></geometry></visual>'
+        capsules = "".join(capsule.format(1 + i) for i in range(5000))
+        assert self.checked(run, write(robot(link("a", capsules))))["shapes"] == 5000
+
     def test_thousands_of_slips(self, run, write):
         slips = "".join(
             f'<visual><orign xyz="{i} 0 0"/></visual><Link{i} a="b"/><visual><Origin/></visual>' for i in range(5000)
