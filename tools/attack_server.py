@@ -467,6 +467,15 @@ async def empty(port: int, count: int) -> str:
     return "; ".join(await asyncio.gather(*(attacker(*kinds[k % 4]) for k in range(8))))
 
 
+async def bystander(port: int, count: int) -> str:
+    """No attack: a loop that keeps this process as busy as the attacks do, to tell what the machine itself costs."""
+    until = time.perf_counter() + count
+    while time.perf_counter() < until:
+        sum(range(20_000))
+        await asyncio.sleep(0)
+    return "the server was left alone"
+
+
 HOSTS = (
     *("evil.example", "127.0.0.1.evil.example", "127.0.0.1:7007;script-src *", "127.0.0.1:1 ws://evil.example", "a b"),
     *(
@@ -538,6 +547,7 @@ ATTACKS: dict[str, tuple[Attack, int]] = {
     "large": (large, 5),
     "empty": (empty, 2_000_000),
     "strangers": (strangers, 3_000),
+    "bystander": (bystander, 10),
 }
 """Name → attack, and its full size."""
 
