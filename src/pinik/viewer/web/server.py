@@ -188,7 +188,7 @@ class _Animation(_Download):
             self.set_header("Retry-After", "5")
             raise tornado.web.HTTPError(503, reason=f"At most {_DOWNLOADS} animations are sent at one time")
         async with self._downloads:
-            page = self.show.animation().encode()
+            page = self.show.animation()
             self.name("text/html; charset=utf-8", "animation.html")
             self.set_header("Content-Length", str(len(page)))
             for start in range(0, len(page), _PIECE):  # piece by piece, so that a slow client has no copy of its own
