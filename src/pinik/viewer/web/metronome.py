@@ -15,8 +15,9 @@ _LONGEST_LAG = 0.5  # [s]; beats that are later than this are left out
 class Metronome:
     """Calls `beat` at a steady pace, in the loop of this thread.
 
-    Beats that come late are made up for: at once, as long as that takes no more than a period, and otherwise as soon as
-    the loop has done what else there is. So neither many short pieces of other work nor a long one slow the pace.
+    Beats that come late are made up for: at once, as long as that takes no more than a period or what the other work
+    since the last beat has taken, and then as soon as the loop has done what else there is. So beats get half of the
+    time if they need it, and beats that are slow themselves do not hold up other work.
     """
 
     def __init__(
@@ -30,7 +31,7 @@ class Metronome:
             clock: A function that returns the time in seconds.
         """
         self._beat, self._period, self._clock = beat, 1.0 / per_second, clock
-        self._due = 0.0
+        self._due = self._ended = 0.0
         self._next: object | None = None
 
     @property
@@ -41,7 +42,8 @@ class Metronome:
     def start(self) -> None:
         """Beat from now on; the first beat is due in one period."""
         self.stop()
-        self._due = self._clock() + self._period
+        self._ended = self._clock()
+        self._due = self._ended + self._period
         self._wait()
 
     def stop(self) -> None:
@@ -57,12 +59,14 @@ class Metronome:
         """Beat once, and make up for beats that are missing."""
         began = self._clock()
         self._due = max(self._due, began - _LONGEST_LAG)
+        until = began + max(self._period, began - self._ended)
         try:
             while True:
                 self._due += self._period
                 self._beat()
-                if not (self.runs and self._due <= self._clock() < began + self._period):
+                if not (self.runs and self._due <= self._clock() < until):
                     break
         finally:  # whatever a beat raises, the loop reports it, and the next one comes
+            self._ended = self._clock()
             if self.runs:
                 self._wait()
