@@ -280,7 +280,7 @@ async def malformed(port: int, count: int) -> str:
 
 async def persistent(port: int, count: int) -> str:
     """The same, on 16 connections at a time, and on a new one whenever one is closed."""
-    ammunition, ends = Ammunition(count), Counter[str]()
+    ammunition, ends = Ammunition(count, 120.0), Counter[str]()
 
     async def attacker() -> None:
         messages = malformed_messages()
