@@ -156,9 +156,21 @@ def test_what_is_too_large_is_not_read(view):
     assert max(sizes) < 50.0  # of 100 MB
 
 
-def test_floods_of_pings_and_pongs_are_ended_in_words(view):
-    answer = attack(view, attack_server.empty, 8_000)
-    assert "(1008, 'more than 200 pings a second')" in answer
+@pytest.mark.parametrize("opcode", [attack_server.PING, attack_server.PONG])
+def test_a_flood_of_pings_or_pongs_is_ended_in_words(view, opcode):
+    async def flood(port, count):
+        client = await Client.websocket(port)
+        reading = asyncio.create_task(client.read_to_the_end())
+        await client.send(frame(opcode, b"") * count)
+        await reading
+        await client.close()
+        return client
+
+    assert attack(view, flood, 5_000).closed_with == (1008, "more than 200 pings a second")
+
+
+def test_floods_of_empty_frames_on_eight_connections_leave_the_good_client_in_peace(view):
+    assert attack(view, attack_server.empty, 8_000).count("1000 sent") == 8
 
 
 def test_too_many_requests_are_refused_in_words(view, monkeypatch):
