@@ -30,7 +30,9 @@ ONLY_THERE = {
     "PIL": {"picture.picture"},
     "meshcat": set(),  # of meshcat the page takes the JavaScript; the Python package brings IPython and ZeroMQ
     "zmq": set(),
-    "tornado": {f"viewer.web.{name}" for name in ("server", "tab", "door", "heartbeat", "later", "live_view")},
+    "tornado": {
+        f"viewer.web.{name}" for name in ("server", "tab", "door", "connection", "metronome", "later", "live_view")
+    },
     "umsgpack": {"viewer.web.scene", "viewer.web.shape_cache"},
 }
 HEAVY = {"yourdfpy", "trimesh", "scipy", "PIL", "meshcat", "matplotlib", "typer", "rich", "tornado", "umsgpack"}

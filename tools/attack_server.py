@@ -102,8 +102,9 @@ class Client:
         self.closed_with: tuple[int, str] | None = None
 
     @classmethod
-    async def connect(cls, port: int) -> Client:
-        return cls(*await asyncio.open_connection("127.0.0.1", port))
+    async def connect(cls, port: int, address: str = "127.0.0.1") -> Client:
+        """Connect from an address of this machine."""
+        return cls(*await asyncio.open_connection("127.0.0.1", port, local_addr=(address, 0)))
 
     @classmethod
     async def websocket(cls, port: int, **headers: str) -> Client:
@@ -279,7 +280,7 @@ async def malformed(port: int, count: int) -> str:
 
 async def persistent(port: int, count: int) -> str:
     """The same, on 16 connections at a time, and on a new one whenever one is closed."""
-    ammunition, ends = Ammunition(count), Counter[str]()
+    ammunition, ends = Ammunition(count, 120.0), Counter[str]()
 
     async def attacker() -> None:
         messages = malformed_messages()
@@ -467,6 +468,69 @@ async def empty(port: int, count: int) -> str:
     return "; ".join(await asyncio.gather(*(attacker(*kinds[k % 4]) for k in range(8))))
 
 
+async def fragments(port: int, count: int) -> str:
+    """Fragments without content, on 48 connections: a message that never ends and never grows."""
+    ammunition, ends = Ammunition(count, 20.0), Counter[str]()
+
+    async def attacker() -> None:
+        client = await Client.websocket(port)
+        reading = asyncio.create_task(client.read_to_the_end())
+        block = frame(0, b"", final=False) * 1000
+        with suppress(asyncio.TimeoutError):
+            going = await client.send(frame(TEXT, b"", final=False))
+            while going and ammunition.take(1000):
+                going = await asyncio.wait_for(client.send(block), 5.0)
+        client.writer.transport.abort()
+        await reading
+        ends[str(client.closed_with)] += 1
+
+    await asyncio.gather(*(attacker() for _ in range(48)))
+    return f"{ammunition.used} sent; ends: {dict(ends)}"
+
+
+async def trickle(port: int, count: int) -> str:
+    """Requests whose long heads come byte by byte, on 48 connections."""
+    ammunition, ends = Ammunition(count, 20.0), Counter[str]()
+
+    async def attacker() -> None:
+        while ammunition.take(0):
+            client = await Client.connect(port)
+            client.writer.write(request(port, X="x" * 60_000)[:60_000])
+            with suppress(*REFUSED):
+                while ammunition.take() and await client.send(b"x"):
+                    await asyncio.sleep(0)
+            ends["closed" if ammunition.take(0) else "open"] += 1
+            client.writer.transport.abort()
+
+    await asyncio.gather(*(attacker() for _ in range(48)))
+    return f"{ammunition.used} sent; ends: {dict(ends)}"
+
+
+async def crowd(port: int, count: int) -> str:
+    """Requests for the state in a loop, on a connection from each of a hundred addresses."""
+    ammunition, answers = Ammunition(count, 20.0), Counter[str]()
+
+    async def attacker(address: str) -> None:
+        client = await Client.connect(port, address)
+        with suppress(*REFUSED):
+            while ammunition.take():
+                status, _, body = await client.ask(request(port, "/api/state"))
+                answers[str(status) if status == 200 else body.decode().strip()] += 1
+        await client.close()
+
+    await asyncio.gather(*(attacker(f"127.0.1.{k + 1}") for k in range(100)))
+    return str(dict(answers))
+
+
+async def bystander(port: int, count: int) -> str:
+    """No attack: a loop that keeps this process as busy as the attacks do, to tell what the machine itself costs."""
+    until = time.perf_counter() + count
+    while time.perf_counter() < until:
+        sum(range(20_000))
+        await asyncio.sleep(0)
+    return "the server was left alone"
+
+
 HOSTS = (
     *("evil.example", "127.0.0.1.evil.example", "127.0.0.1:7007;script-src *", "127.0.0.1:1 ws://evil.example", "a b"),
     *(
@@ -538,6 +602,10 @@ ATTACKS: dict[str, tuple[Attack, int]] = {
     "large": (large, 5),
     "empty": (empty, 2_000_000),
     "strangers": (strangers, 3_000),
+    "fragments": (fragments, 20_000_000),
+    "trickle": (trickle, 200_000),
+    "crowd": (crowd, 10_000),
+    "bystander": (bystander, 10),
 }
 """Name → attack, and its full size."""
 

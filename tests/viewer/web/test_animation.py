@@ -109,7 +109,7 @@ def test_the_page_holds_all_that_is_played(two_link, page):
     robot["name"] = AWKWARD
     shapes = Shapes(((0, "/pinik/shapes/0/0"),), (b"\x83\xff\x00",), ("a </script> is left out",))
     recording = recorded(small_frame(k) for k in range(4))
-    html = animation_page(hello, robot, shapes, state, recording, page)
+    html = animation_page(hello, robot, shapes, state, recording, page).decode()
     document = json.loads(content(html, "script", id="recording"))
     assert {key: document.pop(key) for key in ("hello", "robot", "state")} == {
         "hello": hello,
@@ -140,7 +140,7 @@ def test_the_page_holds_all_that_is_played(two_link, page):
 
 def test_nothing_is_left_to_be_fetched(two_link, page):
     hello, robot, state = messages(two_link)
-    html = animation_page(hello, robot, Shapes((), (), ()), state, Recording(), page)
+    html = animation_page(hello, robot, Shapes((), (), ()), state, Recording(), page).decode()
     assert [attributes for _, attributes, _ in Scripts(html).found if {"src", "href"} & set(attributes)] == []
 
 
@@ -149,7 +149,7 @@ def test_meshcats_script_cannot_end_its_element(two_link, page, tmp_path, monkey
     script.write_text('const a = "</SCRIPT><p>", b = "<!--<script>", c = a < b, d = "</div>";', "utf-8")
     monkeypatch.setattr(animation, "meshcat_script", lambda: script)
     hello, robot, state = messages(two_link)
-    html = animation_page(hello, robot, Shapes((), (), ()), state, Recording(), page)
+    html = animation_page(hello, robot, Shapes((), (), ()), state, Recording(), page).decode()
     (text,) = [each[2] for each in Scripts(html).found if each[0] == "script" and not each[1]]
     assert text == r'const a = "\x3c/SCRIPT><p>", b = "\x3c!--\x3cscript>", c = a < b, d = "</div>";'
 
@@ -183,7 +183,7 @@ def test_a_browser_plays_the_file_with_meshcats_own_viewer(panda, page, tmp_path
     shapes = make_shapes(panda)
     recording = recorded(small_frame(k, generation=5, joints=10) for k in range(4))
     file = tmp_path / "animation.html"
-    file.write_text(animation_page(hello, robot, shapes, state, recording, page), "utf-8")
+    file.write_bytes(animation_page(hello, robot, shapes, state, recording, page))
     tab.goto(file.as_uri())
     tab.wait_for_function("document.title.startsWith('{')")
     told = json.loads(tab.title())
@@ -212,7 +212,7 @@ def saved(two_link, tmp_path):
         clock.now = step / 60
         show.tick()
     file = tmp_path / "animation.html"
-    file.write_text(show.animation(), "utf-8")
+    file.write_bytes(show.animation())
     return file.as_uri()
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import socket
+import time
 from contextlib import suppress
 
 import attack_server
@@ -40,6 +41,16 @@ def attack(view, attacker, count=1):
         return answer
 
     return asyncio.run(asyncio.wait_for(held(), PATIENCE))
+
+
+async def its_end(view, client):
+    """The server's end of a client's websocket."""
+    name = client.writer.get_extra_info("sockname")
+    while True:
+        for seated in list(view._show._seats._seats):
+            if seated.request.connection.context.address == name:
+                return seated.ws_connection
+        await asyncio.sleep(0.02)
 
 
 def talk(view, conversation):
@@ -145,9 +156,21 @@ def test_what_is_too_large_is_not_read(view):
     assert max(sizes) < 50.0  # of 100 MB
 
 
-def test_floods_of_pings_and_pongs_are_ended_in_words(view):
-    answer = attack(view, attack_server.empty, 40_000)
-    assert "(1008, 'more than 200 pings a second')" in answer
+@pytest.mark.parametrize("opcode", [attack_server.PING, attack_server.PONG])
+def test_a_flood_of_pings_or_pongs_is_ended_in_words(view, opcode):
+    async def flood(port, count):
+        client = await Client.websocket(port)
+        reading = asyncio.create_task(client.read_to_the_end())
+        await client.send(frame(opcode, b"") * count)
+        await reading
+        await client.close()
+        return client
+
+    assert attack(view, flood, 5_000).closed_with == (1008, "more than 200 pings a second")
+
+
+def test_floods_of_empty_frames_on_eight_connections_leave_the_good_client_in_peace(view):
+    assert attack(view, attack_server.empty, 8_000).count("1000 sent") == 8
 
 
 def test_too_many_requests_are_refused_in_words(view, monkeypatch):
@@ -156,6 +179,37 @@ def test_too_many_requests_are_refused_in_words(view, monkeypatch):
         answer = attack(other, attack_server.requests("/api/animation.html"), 20)
     assert "'200'" in answer
     assert "Too many requests from this address" in answer
+
+
+def test_a_crowd_of_addresses_shares_one_budget(view, monkeypatch):
+    monkeypatch.setattr(guests, "_ALL_REQUESTS_AT_ONCE", 20.0)
+    monkeypatch.setattr(guests, "_ALL_REQUESTS_PER_SECOND", 20.0)
+    with pinik.live(view.robot, ["dls"], port=0) as other:
+        answer = attack(other, attack_server.crowd, 100)
+    assert "'200'" in answer
+    assert "Too many requests from all addresses together" in answer
+
+
+def test_fragments_without_content_are_read_slowly(view):
+    """They are neither messages nor pings, and cost as much."""
+    read = []
+
+    async def flood(port, count):
+        client = await Client.websocket(port)
+        await client.send(frame(1, b"", final=False) + frame(0, b"", final=False) * count)
+        server = await its_end(view, client)
+        before, began = server._wire_bytes_in, time.monotonic()
+        await asyncio.sleep(1.0)
+        read.append((server._wire_bytes_in - before) / 6 / (time.monotonic() - began))
+        await client.close()
+
+    attack(view, flood, 50_000)
+    assert 0 < read[0] < 2_000  # frames; of their pieces, 4000 are read in a second
+
+
+def test_a_head_that_never_ends_is_not_read_to_the_end(view):
+    answer = attack(view, attack_server.trickle, 2_000)
+    assert "closed" in answer
 
 
 def test_a_storm_of_connections_is_let_in_slowly(view):

@@ -38,3 +38,12 @@ def test_addresses_that_owe_nothing_are_forgotten():
         guests.enter(f"10.{k // 256}.0.{k % 256}")
         guests.leave(f"10.{k // 256}.0.{k % 256}")
     assert len(guests._guests) <= 256
+
+
+def test_all_addresses_together_have_a_budget_of_requests():
+    clock = Clock()
+    guests = Guests(clock)
+    guests.all_requests.spend(1200.0)
+    assert guests.all_requests.delay == 0.0
+    guests.all_requests.spend(600.0)
+    assert guests.all_requests.delay == pytest.approx(2.0)

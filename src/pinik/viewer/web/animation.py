@@ -26,8 +26,8 @@ def animation_page(
     state: Mapping[str, Any],
     recording: Recording,
     page: Path = _PAGE,
-) -> str:
-    """Build one HTML file that plays a recording without a server.
+) -> bytes:
+    """Build one HTML file (UTF-8) that plays a recording without a server.
 
     Args:
         hello, robot, state: The current messages of these types.
@@ -43,44 +43,53 @@ def animation_page(
         "robot": robot,
         "shapes": shapes.message(robot["generation"]),
         "state": state,
-        "commands": list(map(_base64, shapes.commands)),
         "frames": _base64(recording.frames),
         "frame_bytes": recording.frame_bytes,
         "frames_per_second": FRAMES_PER_SECOND,
     }
     pieces = {
-        "title": html.escape(f"{robot['name']} – pinik"),
-        "recording": _json_in_html(document),
-        **_fixed_pieces(page, max(file.stat().st_mtime_ns for file in page.iterdir())),
+        "title": html.escape(f"{robot['name']} – pinik").encode(),
+        "recording": b'%s, "commands": %s}' % (_json_in_html(document)[:-1], _commands(shapes)),
     }
-    # A single pass, so that a placeholder inside one of the pieces is never replaced.
-    player = (page / "player.html").read_text("utf-8")
-    return re.sub(r"\{\{(\w+)\}\}", lambda place: pieces[place[1]], player)
+    player = _player(page, max(file.stat().st_mtime_ns for file in page.iterdir()))
+    return b"".join(pieces[part] if isinstance(part, str) else part for part in player)
+
+
+# What is the same in all animations is kept, because making it would hold up the session's steps.
 
 
 @lru_cache(maxsize=1)
-def _fixed_pieces(page: Path, changed: int) -> dict[str, str]:
-    """Return what is the same in all animations, kept because it takes long; `changed` is the files' date."""
+def _player(page: Path, changed: int) -> list[bytes | str]:
+    """Return the player in parts, and the names of the pieces that are still missing; `changed` is the files' date."""
     modules = {
         f"pinik/{module.name}": f"data:text/javascript;base64,{_base64(module.read_bytes())}"
         for module in sorted(page.glob("*.js"))
     }
-    return {
-        "style": (page / "style.css").read_text("utf-8"),
+    pieces = {
+        "style": (page / "style.css").read_bytes(),
         "importmap": _json_in_html({"imports": modules}),
         "meshcat": _script_in_html(meshcat_script().read_text("utf-8")),
     }
+    # Every second part is a name. The pieces are not searched for names, so one that looks like a place stays as it is.
+    parts = re.split(r"\{\{(\w+)\}\}", (page / "player.html").read_text("utf-8"))
+    return [pieces.get(part, part) if index % 2 else part.encode() for index, part in enumerate(parts)]
+
+
+@lru_cache(maxsize=1)
+def _commands(shapes: Shapes) -> bytes:
+    """Return the commands of a robot's shapes as JSON, in base64."""
+    return _json_in_html(list(map(_base64, shapes.commands)))
 
 
 def _base64(data: bytes) -> str:
     return base64.b64encode(data).decode("ascii")
 
 
-def _json_in_html(value: object) -> str:
+def _json_in_html(value: object) -> bytes:
     """Return JSON that cannot end the script element around it or open a comment in it."""
-    return json.dumps(value, allow_nan=False).replace("<", "\\u003c")
+    return json.dumps(value, allow_nan=False).replace("<", "\\u003c").encode()
 
 
-def _script_in_html(text: str) -> str:
+def _script_in_html(text: str) -> bytes:
     """Do the same for JavaScript, where these words can occur only in strings, patterns and comments."""
-    return re.sub(r"<(?=/script|script|!--)", r"\\x3c", text, flags=re.IGNORECASE)
+    return re.sub(r"<(?=/script|script|!--)", r"\\x3c", text, flags=re.IGNORECASE).encode()

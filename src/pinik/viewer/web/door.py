@@ -3,45 +3,25 @@
 from __future__ import annotations
 
 import socket
-from collections.abc import Callable, Iterable
+from collections.abc import Iterable
 
 from tornado.httpserver import HTTPServer
 from tornado.ioloop import IOLoop, PeriodicCallback
-from tornado.iostream import IOStream
 
 from .budget import Budget
+from .connection import Connection, reading_budget
 from .guests import Guests
 
 __all__ = ["Door"]
 
 _CONNECTIONS_PER_SECOND = 100.0
 _CONNECTIONS_AT_ONCE = 200.0
-_LARGEST_READ = 1_000_000  # bytes that wait to be read by the server; no message or request is that long
 _PATIENCE = 30.0  # [s] without progress in sending
 _FAREWELL = 0.5  # [s] for a refused client to read why
 _REFUSAL = (
     b"HTTP/1.1 503 Service Unavailable\r\nContent-Type: text/plain; charset=utf-8\r\nRetry-After: 5\r\n"
     b"Connection: close\r\nContent-Length: %d\r\n\r\n"
 )
-
-
-class _Stream(IOStream):
-    """A connection that tells when it is closed, and when it has last sent anything."""
-
-    def __init__(self, connection: socket.socket, closed: Callable[[_Stream], None]) -> None:
-        super().__init__(connection, max_buffer_size=_LARGEST_READ)
-        self._tell_closed = closed
-        self.sent_at = self.io_loop.time()
-
-    def write_to_fd(self, data: memoryview) -> int:
-        count = super().write_to_fd(data)
-        if count:
-            self.sent_at = self.io_loop.time()
-        return count
-
-    def close_fd(self) -> None:
-        super().close_fd()
-        self._tell_closed(self)
 
 
 class Door:
@@ -57,7 +37,8 @@ class Door:
         self._loop = IOLoop.current()
         self._listening = list(sockets)
         self._budget = Budget(_CONNECTIONS_PER_SECOND, _CONNECTIONS_AT_ONCE)
-        self._streams: dict[_Stream, str] = {}
+        self._reading = reading_budget()
+        self._streams: dict[Connection, str] = {}
         self._sweep = PeriodicCallback(self._close_stalled, 1000.0 * _PATIENCE / 3.0)
         self._resuming: object | None = None
         self._resume()
@@ -104,11 +85,11 @@ class Door:
         if refusal:
             self._refuse(connection, refusal)
             return
-        stream = _Stream(connection, self._closed)
+        stream = Connection(connection, self._reading, self._closed)
         self._streams[stream] = host
         self._server.handle_stream(stream, address)
 
-    def _closed(self, stream: _Stream) -> None:
+    def _closed(self, stream: Connection) -> None:
         self._guests.leave(self._streams.pop(stream))
 
     def _refuse(self, connection: socket.socket, words: str) -> None:

@@ -1,4 +1,4 @@
-"""Who is connected: the open connections of each address, and its budget of requests."""
+"""Who is connected: the open connections of each address, and the budgets of requests."""
 
 from __future__ import annotations
 
@@ -13,6 +13,8 @@ _PER_ADDRESS = 64  # connections; a browser opens about six, and one more for ea
 _IN_ALL = 128
 _REQUESTS_PER_SECOND = 100.0  # the page with all its modules takes about fifty
 _REQUESTS_AT_ONCE = 400.0
+_ALL_REQUESTS_PER_SECOND = 300.0
+_ALL_REQUESTS_AT_ONCE = 1200.0
 _REMEMBERED = 256  # addresses
 
 
@@ -23,12 +25,17 @@ class _Guest:
 
 
 class Guests:
-    """Counts the connections of each address, and keeps one budget of requests for each."""
+    """Counts the connections of each address, and keeps one budget of requests for each.
+
+    Attributes:
+        all_requests: The budget of the requests of all addresses together.
+    """
 
     def __init__(self, clock: Callable[[], float] = time.monotonic) -> None:
         self._clock = clock
         self._guests: dict[str, _Guest] = {}
         self._connections = 0
+        self.all_requests = Budget(_ALL_REQUESTS_PER_SECOND, _ALL_REQUESTS_AT_ONCE, clock)
 
     def __len__(self) -> int:
         return self._connections

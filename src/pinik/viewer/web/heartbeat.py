@@ -5,9 +5,8 @@ from __future__ import annotations
 import time
 from collections.abc import Callable
 
-from tornado.ioloop import PeriodicCallback
-
 from ..simulation.session import STEPS_PER_SECOND
+from .metronome import Metronome
 
 __all__ = ["Heartbeat"]
 
@@ -31,28 +30,28 @@ class Heartbeat:
             clock: A function that returns the time in seconds.
         """
         self._tick, self._watched, self._clock = tick, watched, clock
-        self._beats = PeriodicCallback(self._beat, 1000.0 / STEPS_PER_SECOND)
+        self._metronome = Metronome(self._beat, STEPS_PER_SECOND)
         self.wake()
 
     @property
     def rests(self) -> bool:
         """Whether nobody watches or has asked lately."""
-        return not self._beats.is_running()
+        return not self._metronome.runs
 
     def wake(self) -> None:
         """Note that somebody asks for something, and beat on."""
         self._used = self._clock()
         if self.rests:
-            self._beats.start()
+            self._metronome.start()
 
     def stop(self) -> None:
         """Beat no more."""
-        self._beats.stop()
+        self._metronome.stop()
 
     def _beat(self) -> None:
         if self._watched():
             self._used = self._clock()
         elif self._clock() - self._used > _AWAKE:
-            self._beats.stop()
+            self._metronome.stop()
             return
         self._tick()

@@ -188,7 +188,7 @@ class LiveView:
         Raises:
             OSError: The file cannot be written.
         """
-        write_whole(path, self._do(self._show.animation).encode())
+        write_whole(path, self._do(self._show.animation))
 
     def _do(self, work: Callable[[], T]) -> T:
         """Call `work` in the server's thread, between two steps, and return its result."""

@@ -23,6 +23,7 @@ from .tab import LARGEST_MESSAGE, WebSocket
 __all__ = ["make_server"]
 
 PAGE = Path(__file__).parents[1] / "page"
+_LARGEST_HEAD = 16_384  # bytes; a browser's has about one thousand
 _LARGEST_BODY = 1024  # bytes; no request needs one
 _PATIENCE = 30.0  # [s] for a whole request, and between two requests of a connection
 _LONGEST_DELAY = 2.0  # [s]; a request that would have to wait longer is refused
@@ -64,7 +65,11 @@ def make_server(
         log_function=lambda handler: None,
     )
     return tornado.httpserver.HTTPServer(
-        application, idle_connection_timeout=_PATIENCE, body_timeout=_PATIENCE, max_body_size=_LARGEST_BODY
+        application,
+        idle_connection_timeout=_PATIENCE,
+        body_timeout=_PATIENCE,
+        max_header_size=_LARGEST_HEAD,
+        max_body_size=_LARGEST_BODY,
     )
 
 
@@ -83,13 +88,15 @@ class _Guarded(tornado.web.RequestHandler):
             raise tornado.web.HTTPError(403, reason="This server does not have that name")
         if self.request.headers.get("Sec-Fetch-Site") == "cross-site" and not self.open_to_pages:
             raise tornado.web.HTTPError(403, reason="Other pages may not load this")
-        budget = self._guests.budget(self.request.remote_ip or "")
-        delay = budget.delay
-        await asyncio.sleep(min(delay, _LONGEST_DELAY))
+        own, all_requests = self._guests.budget(self.request.remote_ip or ""), self._guests.all_requests
+        delay, whose = max((own.delay, "from this address"), (all_requests.delay, "from all addresses together"))
         if delay > _LONGEST_DELAY:
+            await asyncio.sleep(_LONGEST_DELAY)
             self.set_header("Retry-After", "5")
-            raise tornado.web.HTTPError(429, reason="Too many requests from this address; try again in a few seconds")
-        budget.spend(self.cost)
+            raise tornado.web.HTTPError(429, reason=f"Too many requests {whose}; try again in a few seconds")
+        own.spend(self.cost)  # at once, so that those who wait are answered one after the other and not all together
+        all_requests.spend(self.cost)
+        await asyncio.sleep(delay)
 
     def set_default_headers(self) -> None:
         self.set_header("X-Content-Type-Options", "nosniff")
@@ -188,7 +195,7 @@ class _Animation(_Download):
             self.set_header("Retry-After", "5")
             raise tornado.web.HTTPError(503, reason=f"At most {_DOWNLOADS} animations are sent at one time")
         async with self._downloads:
-            page = self.show.animation().encode()
+            page = self.show.animation()
             self.name("text/html; charset=utf-8", "animation.html")
             self.set_header("Content-Length", str(len(page)))
             for start in range(0, len(page), _PIECE):  # piece by piece, so that a slow client has no copy of its own

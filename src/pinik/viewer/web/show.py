@@ -238,8 +238,8 @@ class Show:
             "setup": write_setup(self.session),
         }
 
-    def animation(self) -> str:
-        """Return the last seconds as one HTML file that plays without a server."""
+    def animation(self) -> bytes:
+        """Return the last seconds as one HTML file (UTF-8) that plays without a server."""
         shapes = self._shapes or Shapes((), (), ())
         return animation_page(self._hello, self._robot, shapes, self.state(), self.recording)
 
