@@ -7,7 +7,8 @@ from dataclasses import dataclass
 
 from ...errors import RobotLoadError
 from ..document import read_document
-from ..edits import as_utf_8, edited, overlap
+from ..edits import edited, overlap
+from ..encodings import as_utf_8
 from ..flaw import Edit, Flaw
 from ..reader import Description, read
 from ..xml import DocumentError
