@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+import contextlib
 import re
 from dataclasses import dataclass
 
 from ..echoes import QUOTED, shortened
-from .encodings import UTF_16, as_utf_8_somehow, declared_encoding
+from .encodings import UTF_16, as_utf_8, as_utf_8_somehow, declared_encoding
 from .flaw import Flaw
 from .xml import BrokenXMLError, DocumentError, Element, parse
 
@@ -23,7 +24,7 @@ class Document:
     Attributes:
         root: The root element.
         content: The bytes that were parsed: those of the file, with spaces in place of what does not belong to it; in
-            UTF-8 if the declaration names another encoding than that of the file.
+            UTF-8 if the file is in UTF-16, or in another encoding than its declaration names.
         flaws: What had to be assumed; `content` does not have these flaws any more.
     """
 
@@ -53,7 +54,10 @@ def read_document(given: bytes) -> Document:
 
 
 def _without_surroundings(content: bytes, flaws: list[Flaw]) -> bytes:
-    """The document, with spaces for null bytes at its end and for text before it."""
+    """The document, with spaces for null bytes at its end and for text before it; in UTF-8 if it is in UTF-16."""
+    if content.startswith(UTF_16):
+        with contextlib.suppress(DocumentError):  # the parser says what is wrong with it
+            content = as_utf_8(content)
     if not content.startswith(UTF_16):
         whole = content.rstrip(b"\0 \t\r\n")
         if b"\0" in content[len(whole) :]:

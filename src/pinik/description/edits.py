@@ -15,6 +15,7 @@ __all__ = [
     "edited",
     "escaped",
     "moved_to_child",
+    "new_attribute",
     "new_value",
     "overlap",
     "removed",
@@ -137,7 +138,7 @@ def renamed_attribute(document: bytes, element: Element, attribute: str, name: s
 
 
 def new_value(document: bytes, element: Element, attribute: str, value: str) -> tuple[Edit, ...]:
-    """The edit that gives an attribute another value; none if it cannot be found, as in a document in UTF-16."""
+    """The edit that gives an attribute another value; none if it is not found, as in an empty document."""
     try:
         place = start_tag(document, element).attributes.get(attribute)
     except ValueError:
@@ -145,8 +146,17 @@ def new_value(document: bytes, element: Element, attribute: str, value: str) -> 
     return () if place is None else (Edit(*place.value, escaped(value)),)
 
 
+def new_attribute(document: bytes, element: Element, attribute: str, value: str) -> tuple[Edit, ...]:
+    """The edit that gives an element an attribute that it does not have; none if the element is not found."""
+    try:
+        _, end = start_tag(document, element).name
+    except ValueError:
+        return ()
+    return (Edit(end, end, f' {attribute}="{escaped(value)}"'),)
+
+
 def removed(document: bytes, element: Element) -> tuple[Edit, ...]:
-    """The edit that takes an element out; none if it cannot be found, as in a document in UTF-16."""
+    """The edit that takes an element out; none if it is not found, as in an empty document."""
     try:
         start, _, end = whole_element(document, element)
     except ValueError:
