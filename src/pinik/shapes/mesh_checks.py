@@ -14,6 +14,7 @@ from collections import Counter
 from typing import Any, Literal, get_args
 
 from ..description.xml import BrokenXMLError, DocumentError, Element, parse
+from ..echoes import QUOTED, shortened
 
 __all__ = ["FORMATS", "MOST_BYTES", "UNDRAWN", "MeshError", "UndrawnCode", "checked"]
 
@@ -136,7 +137,8 @@ def _check_ply(data: bytes) -> None:
     sections = _PLY_ELEMENT.split(header)[1:]
     for name, count, properties in zip(sections[::3], sections[1::3], sections[2::3], strict=True):
         if not count.isdigit() or len(count) > 12:
-            raise MeshError(f"its number of {name.decode(errors='replace')[:40]} elements is no whole number")
+            of = shortened(name.decode(errors="replace"), QUOTED)
+            raise MeshError(f"its number of {of} elements is no whole number")
         words = [line.split() for line in properties.splitlines() if line.strip().startswith(b"property")]
         sizes = [_PLY_SIZES.get(line[1].decode("ascii", "replace"), 1) for line in words if len(line) > 1]
         needed += int(count) * max(sum(sizes) if binary else len(words), 1)

@@ -16,6 +16,7 @@ from numpy.typing import ArrayLike, NDArray
 from trimesh.exchange.load import mesh_loaders
 
 from ..description.materials import Color
+from ..echoes import shortened
 from ..files import FileError, read_within
 from .mesh_checks import MOST_BYTES, MeshError, checked
 from .neighbours import Neighbours
@@ -117,7 +118,7 @@ def _meshes(data: bytes, kind: str, neighbours: Neighbours) -> list[trimesh.Trim
     except MeshError:
         raise
     except Exception as fault:  # trimesh and its readers raise anything
-        words = " ".join(str(fault).split())[:200]
+        words = shortened(" ".join(str(fault).split()), 200)
         raise MeshError(f"it cannot be read as .{kind}: {words or type(fault).__name__}") from None
     if not meshes:
         raise MeshError("it holds no triangles", "empty-mesh")
