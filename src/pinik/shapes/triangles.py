@@ -18,7 +18,7 @@ from trimesh.exchange.load import mesh_loaders
 from ..description.materials import Color
 from ..echoes import shortened
 from ..files import FileError, read_within
-from .mesh_checks import MOST_BYTES, MeshError, checked
+from .mesh_checks import MOST_BYTES, NOT_FINITE, MeshError, checked
 from .neighbours import Neighbours
 
 __all__ = ["Part", "box", "capsule", "cylinder", "read_file", "scaled", "sphere"]
@@ -133,7 +133,7 @@ def _meshes(data: bytes, kind: str, neighbours: Neighbours) -> list[trimesh.Trim
 def _check_finite(vertices: ArrayLike, faces: ArrayLike) -> None:
     corners = np.asarray(vertices, dtype=float)[np.asarray(faces, dtype=np.int64).ravel()]
     if not np.isfinite(corners).all():
-        raise MeshError("it has corners that are not finite numbers (NaN or infinite)", "nan-in-mesh")
+        raise MeshError(NOT_FINITE, "nan-in-mesh")
 
 
 def _check_size(scene: trimesh.Scene) -> None:
