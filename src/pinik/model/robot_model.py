@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import warnings
 from collections.abc import Mapping, Sequence
 from functools import cached_property, partial
 from pathlib import Path
@@ -15,13 +16,13 @@ from numpy.typing import ArrayLike, NDArray
 from ..checks import as_finite_number
 from ..description import reader as urdf
 from ..description.packages import Surroundings
-from ..errors import InputError
+from ..errors import InputError, UrdfWarning
 from ..rotations import as_se3
 from .angles import set_angles
 from .build import build_model
 from .configurations import random_configuration
 from .named_model import NamedModel
-from .poses import read_poses
+from .poses import Poses, read_poses
 from .ranges import configuration_limits, velocity_limits
 
 __all__ = ["RobotModel"]
@@ -115,18 +116,24 @@ class RobotModel(NamedModel):
         SRDF file there are no poses. The file is read when the poses are first asked for.
 
         Raises:
-            RobotLoadError: The SRDF file cannot be read; or a pose in it has no number for a joint, or one outside its
-                limits, sets a joint in two ways, or misspells its name; the message names the pose and the joint.
+            RobotLoadError: The SRDF file cannot be read; or a pose in it has no number for a joint, sets a joint in two
+                ways, or misspells its name; the message names the pose and the joint.
+
+        Warns:
+            UrdfWarning: A pose is left out, as it sets a joint outside its limits.
         """
-        poses = {name: q.copy() for name, q in self._poses.items()}
+        for words in self.srdf_poses.left_out:
+            warnings.warn(f"{self.name}: {words}", UrdfWarning, stacklevel=2)
+        poses = {name: q.copy() for name, q in self.srdf_poses.by_name.items()}
         for q in poses.values():
             q.setflags(write=False)
         return poses
 
     @cached_property
-    def _poses(self) -> dict[str, Array]:
+    def srdf_poses(self) -> Poses:
+        """What `poses` reads, and which poses it leaves out; the errors are the same."""
         if self._srdf is None:
-            return {}
+            return Poses()
         names = {joint.name for joint in self.description.joints}
         return read_poses(self._srdf, self.model, self.joints, names)
 
