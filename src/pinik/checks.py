@@ -1,19 +1,16 @@
-"""Checks of arguments: numbers, vectors, rotations and placements. Errors name the argument and the requirement."""
+"""Checks of arguments: numbers, names, arrays, vectors and points. Errors name the argument and the requirement."""
 
 from __future__ import annotations
 
 import contextlib
 import math
-import sys
-import warnings
 from collections.abc import Callable, Iterable
 from typing import Any
 
 import numpy as np
-import pinocchio
 from numpy.typing import ArrayLike, NDArray
 
-from .errors import InputError, InputWarning
+from .errors import InputError
 
 __all__ = [
     "as_array",
@@ -27,21 +24,12 @@ __all__ = [
     "as_point",
     "as_points",
     "as_positive_number",
-    "as_rotation",
-    "as_rotations",
-    "as_se3",
     "as_unit_vector",
     "as_vector",
 ]
 
 FARTHEST = 1e9  # [m]: beyond it, squared distances lose all precision
 
-# Of rotation matrices. The first is the largest entry of R Rᵀ − I, the others differences to the nearest rotation.
-_EXACT = 1e-14
-_UNSAID_CHANGE = 1e-6  # replaced in silence up to here, such as numbers in single precision
-_FARTHEST_ROTATION = 1e-3  # refused from here on; numbers rounded to three digits are nearer
-
-_IDENTITY = np.eye(3)
 _NUMBERS_IN_MEMORY = frozenset("bhilqnHILQNefdg")  # formats of memoryviews; bytes have "B"
 _NO_NUMBERS = (str, bytes, bytearray, bool, np.bool_, complex, np.complexfloating)
 
@@ -206,89 +194,11 @@ def as_unit_vector(value: ArrayLike, what: str) -> Array:
     return np.array(vector / np.linalg.norm(vector))
 
 
-def as_rotation(value: ArrayLike, what: str) -> Array:
-    """`value` as a rotation matrix (3, 3); a rounded one is replaced by the nearest rotation.
-
-    Args:
-        value: The matrix. How far it is from the nearest rotation is measured by the largest difference of an entry.
-        what: The argument's name in messages.
-
-    Raises:
-        InputError: It is more than 1e-3 from the nearest rotation.
-
-    Warns:
-        InputWarning: It is more than 1e-6 from it.
-    """
-    matrix = as_array(value, (3, 3), what, "a rotation matrix")
-    small = np.abs(matrix).max() < 2.0  # otherwise the product could overflow
-    if small and np.abs(matrix.dot(matrix.T) - _IDENTITY).max() < _EXACT and _determinant(matrix) > 0.0:
-        return matrix
-    rotation, change = _nearest_rotations(matrix)
-    if change > _FARTHEST_ROTATION:
-        raise InputError(
-            f"must be a rotation matrix (orthonormal, determinant +1), or one whose entries are rounded by at most "
-            f"{_FARTHEST_ROTATION:g}; an entry is {change:.2g} away from the nearest one; got {matrix.tolist()}",
-            argument=what,
-        )
-    if change > _UNSAID_CHANGE:
-        _warn(f"{what} is replaced by the nearest rotation matrix; the largest change of an entry is {change:.1g}")
-    return rotation
-
-
 def as_points(values: ArrayLike, what: str) -> Array:
     """`values` as points (n, 3) [m], each checked as by `as_point`."""
     points = as_many(values, (3,), what)
     _refuse_the_first(np.abs(points).max(axis=1, initial=0.0) > FARTHEST, points, as_point, what)
     return points
-
-
-def as_rotations(values: ArrayLike, what: str, indices: NDArray[np.int64] | None = None) -> Array:
-    """`values` as rotation matrices (n, 3, 3), each checked and replaced as by `as_rotation`; one warning for all.
-
-    Args:
-        values: The matrices.
-        what: What messages call them.
-        indices: Their indices in messages (n,), if they are some of many; 0, 1, … when None.
-    """
-    matrices = as_many(values, (3, 3), what)
-    a, b, c = np.ascontiguousarray(
-        matrices.transpose(1, 2, 0)
-    )  # the rows of all matrices: much faster than N small products
-    with np.errstate(over="ignore", invalid="ignore"):
-        off = np.zeros(len(matrices))
-        for one, other, product in ((a, a, 1.0), (b, b, 1.0), (c, c, 1.0), (a, b, 0.0), (a, c, 0.0), (b, c, 0.0)):
-            off = np.maximum(off, np.abs((one * other).sum(axis=0) - product))
-        turned = np.stack((a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]))
-        exact = (off < _EXACT) & ((turned * c).sum(axis=0) > 0.0)
-    inexact = np.flatnonzero(~exact)
-    if len(inexact) == 0:
-        return matrices
-    rotations, changes = _nearest_rotations(matrices[inexact])
-    for k in inexact[changes > _FARTHEST_ROTATION][:1]:
-        as_rotation(matrices[k], f"{what}[{k}]")
-    matrices[inexact] = rotations
-    changed = inexact[changes > _UNSAID_CHANGE]
-    if len(changed) > 0:
-        first = changed[0] if indices is None else indices[changed[0]]
-        ones = f"{len(changed)} are replaced by the nearest rotation matrix, first {what}[{first}]"
-        _warn(f"{what}: {ones}; the largest change of an entry is {changes.max():.1g}")
-    return matrices
-
-
-def _nearest_rotations(matrices: Array) -> tuple[Array, Array]:
-    """The nearest rotations (…, 3, 3), and the largest difference of an entry (…)."""
-    left, _, right = np.linalg.svd(matrices)
-    left[..., 2] *= np.sign(np.linalg.det(left @ right))[..., np.newaxis]  # −1 where the matrix mirrors
-    rotations = np.array(left @ right)
-    return rotations, np.abs(matrices - rotations).max(axis=(-2, -1))
-
-
-def _warn(message: str) -> None:
-    """Warn at the line outside pinik that called."""
-    level, frame = 1, sys._getframe()
-    while frame.f_back is not None and frame.f_globals["__name__"].partition(".")[0] == __package__:
-        level, frame = level + 1, frame.f_back
-    warnings.warn(message, InputWarning, stacklevel=level)
 
 
 def _refuse_the_first(
@@ -297,20 +207,3 @@ def _refuse_the_first(
     """Run the check of a single value on the first wrong one, which raises the error."""
     for k in np.flatnonzero(wrong)[:1]:
         check(values[k], f"{what}[{k}]")
-
-
-def _determinant(matrix: Array) -> float:
-    """The determinant of a 3×3 matrix; numpy takes ten times as long for so few numbers."""
-    (a, b, c), (d, e, f), (g, h, i) = matrix.tolist()
-    return float(a * (e * i - f * h) + b * (f * g - d * i) + c * (d * h - e * g))
-
-
-def as_se3(value: pinocchio.SE3 | ArrayLike, what: str) -> pinocchio.SE3:
-    """`value`, a `pinocchio.SE3` or a homogeneous 4×4 matrix, as a new SE3; a rounded rotation as by `as_rotation`."""
-    matrix = value.homogeneous if isinstance(value, pinocchio.SE3) else value
-    array = as_array(matrix, (4, 4), what, "an SE3 or a homogeneous matrix")
-    if np.abs(array[3] - (0.0, 0.0, 0.0, 1.0)).max() > 1e-9:
-        raise InputError(
-            f"must be a homogeneous matrix, whose last row is 0 0 0 1; got {array[3].tolist()}", argument=what
-        )
-    return pinocchio.SE3(as_rotation(array[:3, :3], what), as_point(array[:3, 3], what))

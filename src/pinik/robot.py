@@ -15,7 +15,7 @@ from .problem.targets import Target
 from .problem.tolerance import Tolerance
 from .solvers.registry import Method
 from .solving import batch
-from .solving.front import answer
+from .solving.answer import answer
 from .solving.native.recalling import recalling
 from .solving.solution import Solution
 from .solving.words import UNWEIGHTED

@@ -9,7 +9,6 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from pinik.description.edits import (
-    as_utf_8,
     edited,
     escaped,
     moved_to_child,
@@ -20,7 +19,7 @@ from pinik.description.edits import (
     whole_element,
 )
 from pinik.description.flaw import Edit
-from pinik.description.xml import DocumentError, parse
+from pinik.description.xml import parse
 
 NAMES = st.sampled_from(["robot", "link", "Link", "a-b", "ä", "_x.1"])
 VALUES = st.text(st.sampled_from(" ab>'\"&é/=<x!-\t\n"), max_size=8)
@@ -132,31 +131,6 @@ def test_edits_that_overlap_are_told_apart_from_neighbours():
     assert not overlap([insertion], [insertion])
     with pytest.raises(ValueError, match="two edits overlap"):
         edited(b"0123456789", [Edit(0, 5, ""), Edit(4, 6, "")])
-
-
-@pytest.mark.parametrize("encoding", ["utf-16", "utf-16-le", "utf-16-be", "iso-8859-1", "windows-1252"])
-def test_a_document_in_another_encoding_becomes_the_same_one_in_utf_8(encoding):
-    declared = f'<?xml version="1.0" encoding="{"utf-16" if "16" in encoding else encoding}"?>\n<robot name="é"/>'
-    given = declared.encode(encoding)
-    content = as_utf_8(given)
-    assert content.decode("utf-8").lstrip("\ufeff") == declared.replace(declared.split('"')[3], "utf-8")
-    assert parse(content).attributes == {"name": "é"}
-
-
-def test_a_document_in_utf_8_stays_as_it_is():
-    for document in (
-        b"<a/>",
-        b'<?xml version="1.0" encoding="UTF-8"?><a/>',
-        b"\xef\xbb\xbf<a/>",
-        b"\n <?xml version='1.0'?><a/>",
-    ):
-        assert as_utf_8(document) is document
-
-
-@pytest.mark.parametrize("document", [b'<?xml version="1.0" encoding="nonsense"?><a/>', b"\xff\xfe<"])
-def test_bytes_that_are_not_in_their_encoding_are_an_error_in_words(document):
-    with pytest.raises(DocumentError, match="its encoding cannot be read"):
-        as_utf_8(document)
 
 
 @given(VALUES)

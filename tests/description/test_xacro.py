@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+import trimesh
 
 import pinik
 from pinik.description import xacro
@@ -120,6 +121,18 @@ def test_packages_and_meshes_are_found_from_the_xacro_file(write: Write, tmp_pat
     assert loaded.description.path == path
     drawn, flaws = load_shapes(loaded)
     assert (len(drawn), flaws) == (3, [])
+
+
+def test_dirname_is_the_folder_of_the_file_in_which_it_stands(write: Write, tmp_path: Path) -> None:
+    box = '<link name="{}"><visual><geometry><mesh filename="$(dirname)/{}.stl"/></geometry></visual></link>'
+    write(box.format("b", "near"), "parts/part.xacro")
+    fixed = '<joint name="j" type="fixed"><parent link="a"/><child link="b"/></joint>'
+    path = write(f'{box.format("a", "far")}<xacro:include filename="$(dirname)/parts/part.xacro"/>{fixed}')
+    for file in ("far.stl", "parts/near.stl"):
+        trimesh.creation.box((1, 1, 1)).export(tmp_path / file)
+    loaded = pinik.load(path, strict=True)
+    assert loaded.description.meshes == (str(tmp_path / "far.stl"), str(tmp_path / "parts" / "near.stl"))
+    assert len(load_shapes(loaded)[0]) == 2
 
 
 def test_a_package_of_package_dirs_comes_first(write: Write, tmp_path: Path) -> None:

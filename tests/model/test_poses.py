@@ -55,12 +55,12 @@ def test_what_is_no_number_is_an_error_that_names_pose_and_joint(posed, name, va
     ("name", "value", "range_"),
     [("hinge", "99", "-1..1"), ("hinge", "-1.002", "-1..1"), ("slide", "6.3", "0..2"), ("wrist", "0.5", "2..6")],
 )
-def test_a_number_outside_the_limits_is_an_error_that_names_them(posed, name, value, range_):
+def test_a_pose_with_a_number_outside_the_limits_is_left_out_with_a_warning_that_names_them(posed, name, value, range_):
     loaded = posed((name, value))
-    with pytest.raises(
-        pinik.RobotLoadError, match=f"pose 'home', joint '{name}'.*within its limits {range_}; got {value}"
-    ):
-        _ = loaded.poses
+    words = rf"r: pose 'home' is left out: joint '{name}': .* limits {range_}; got {value} \(line 2 of r\.srdf\)"
+    with pytest.warns(pinik.UrdfWarning, match=words):
+        assert list(loaded.poses) == ["calm"]
+    assert pinik.draw(loaded, size=(40, 30)).size == (40, 30)  # in silence
 
 
 @pytest.mark.parametrize(
@@ -161,9 +161,9 @@ def test_the_catalogue_s_poses_are_inside_the_limits(name):
 
 
 @pytest.mark.parametrize("name", sorted(BENT_TOO_FAR))
-def test_the_catalogue_s_poses_beyond_the_file_s_own_limits_are_refused_by_name(name):
-    with pytest.raises(pinik.RobotLoadError, match=r"pose 'half_sitting', joint '.LEG_.*must be within its limits"):
-        _ = load_quietly(name).poses
+def test_the_catalogue_s_poses_beyond_the_file_s_own_limits_are_left_out_by_name(name):
+    with pytest.warns(pinik.UrdfWarning, match=r"pose 'half_sitting' is left out: joint '.LEG_.* within its limits"):
+        assert "half_sitting" not in load_quietly(name).poses
 
 
 def test_a_name_of_any_length_is_shortened_in_the_error(posed):

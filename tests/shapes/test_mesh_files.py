@@ -87,6 +87,28 @@ def test_a_unit_that_is_none_never_gives_a_shape_that_is_no_shape(tmp_path: Path
         assert np.isfinite(shape.mesh.vertices).all()
 
 
+@pytest.mark.parametrize("number", ["nan", "NaN", "-nan(ind)", "-1.#IND", "inf", "1e400"])
+@pytest.mark.parametrize("kind", ["dae", "obj"])
+def test_a_corner_that_is_no_finite_number_is_named_and_not_moved_to_0(tmp_path: Path, kind: str, number: str) -> None:
+    if kind == "dae":
+        (tmp_path / "a.dae").write_bytes(collada(numbers=f"0 0 0 1 0 0 0 {number} 3"))
+    else:
+        (tmp_path / "a.obj").write_text(f"v 0 0 0\nv 1 0 0\nv 0 {number} 3\nf 1 2 3\n")
+    shapes, (flaw,) = shapes_of(tmp_path, f"a.{kind}")
+    assert shapes == []
+    if kind == "dae" or ("(" not in number and "#" not in number):
+        assert (flaw.code, "not finite numbers" in flaw) == ("nan-in-mesh", True)
+
+
+def test_normals_that_are_no_numbers_leave_a_collada_shape_as_it_is(tmp_path: Path) -> None:
+    normals = b"""<source id="m"><float_array id="b" count="9">nan nan nan 0 0 1 0 0 1</float_array><technique_common>
+    <accessor source="#b" count="3" stride="3"><param name="X" type="float"/><param name="Y" type="float"/>
+    <param name="Z" type="float"/></accessor></technique_common></source><vertices id"""
+    (tmp_path / "a.dae").write_bytes(collada(numbers="0 0 0 1 0 0 0 2 3").replace(b"<vertices id", normals))
+    ((shape,), flaws) = shapes_of(tmp_path, "a.dae")
+    assert (flaws, shape.mesh.extents.tolist()) == ([], [1, 2, 3])
+
+
 def test_what_follows_the_triangles_of_a_binary_stl_is_ignored(tmp_path: Path) -> None:
     (tmp_path / "a.stl").write_bytes(stl(2) + b"\0\0 rest")
     ((shape,), flaws) = shapes_of(tmp_path, "a.stl")

@@ -1,4 +1,4 @@
-// Placements and Jacobians of one frame at many configurations; follows RobotModel.placement and RobotModel.jacobian.
+// Placements and Jacobians of one frame at many configurations; follows NamedModel.placement and NamedModel.jacobian.
 #pragma once
 
 #include <algorithm>

@@ -2,18 +2,18 @@
 
 from __future__ import annotations
 
+import contextlib
 import re
 from dataclasses import dataclass
 
 from ..echoes import QUOTED, shortened
+from .encodings import UTF_16, as_utf_8, as_utf_8_somehow, declared_encoding
 from .flaw import Flaw
 from .xml import BrokenXMLError, DocumentError, Element, parse
 
-__all__ = ["Document", "declared_as_utf_8", "read_document"]
+__all__ = ["Document", "read_document"]
 
-_DECLARED = re.compile(rb"""(<\?xml[^>]*?\sencoding\s*=\s*["'])([^"'>]*)""")
 _COMMENT = re.compile(rb"<!--.*?-->", re.DOTALL)
-_UTF_16 = (b"\xff\xfe", b"\xfe\xff", b"<\0", b"\0<")
 _BEGINNINGS = (b"<?xml", b"<robot", b"<!--")
 
 
@@ -24,7 +24,7 @@ class Document:
     Attributes:
         root: The root element.
         content: The bytes that were parsed: those of the file, with spaces in place of what does not belong to it; in
-            UTF-8 if the declaration names another encoding than that of the file.
+            UTF-8 if the file is in UTF-16, or in another encoding than its declaration names.
         flaws: What had to be assumed; `content` does not have these flaws any more.
     """
 
@@ -54,14 +54,17 @@ def read_document(given: bytes) -> Document:
 
 
 def _without_surroundings(content: bytes, flaws: list[Flaw]) -> bytes:
-    """The document, with spaces for null bytes at its end and for text before it."""
-    if not content.startswith(_UTF_16):
+    """The document, with spaces for null bytes at its end and for text before it; in UTF-8 if it is in UTF-16."""
+    if content.startswith(UTF_16):
+        with contextlib.suppress(DocumentError):  # the parser says what is wrong with it
+            content = as_utf_8(content)
+    if not content.startswith(UTF_16):
         whole = content.rstrip(b"\0 \t\r\n")
         if b"\0" in content[len(whole) :]:
             _note(flaws, "null bytes at its end are ignored", code="junk-around", line=whole.count(b"\n") + 1)
             content = whole + content[len(whole) :].replace(b"\0", b" ")
     blank = len(content) - len(content.lstrip(b"\xef\xbb\xbf \t\r\n"))
-    if not content.startswith((b"<", *_UTF_16), blank):
+    if not content.startswith((b"<", *UTF_16), blank):
         begins = min((place for word in _BEGINNINGS if (place := content.find(word)) > 0), default=0)
         if begins and b"\0" not in content[:begins]:
             _note(flaws, "text before its first element is ignored", code="junk-around", line=1)
@@ -91,29 +94,14 @@ def _mended(content: bytes, fault: BrokenXMLError, flaws: list[Flaw]) -> bytes |
 
 
 def _in_utf_8(content: bytes, flaws: list[Flaw]) -> bytes | None:
-    """The document in UTF-8, decoded as it declares, else as UTF-8, else as Latin-1; None if it holds null bytes."""
-    declared = _DECLARED.search(content[:400])
-    name = declared[2].decode("latin-1") if declared else "utf-8"
+    """The document in UTF-8, in whatever encoding it is; None if it holds null bytes."""
     if b"\0" in content:
         return None
-    try:
-        text = content.decode(name)
-    except (UnicodeError, LookupError):
-        try:
-            text, taken = content.decode("utf-8"), "UTF-8"
-        except UnicodeDecodeError:
-            text, taken = content.decode("latin-1"), "Latin-1"
-        _note(
-            flaws,
-            f"its bytes are not {shortened(name, QUOTED)!r}, as it declares; they are read as {taken}",
-            code="encoding",
-        )
-    return declared_as_utf_8(text.encode("utf-8"))
-
-
-def declared_as_utf_8(content: bytes) -> bytes:
-    """The document with "utf-8" in its declaration, if that names an encoding."""
-    return _DECLARED.sub(rb"\g<1>utf-8", content, count=1)
+    mended, taken = as_utf_8_somehow(content)
+    if taken:
+        name = shortened(declared_encoding(content), QUOTED)
+        _note(flaws, f"its bytes are not {name!r}, as it declares; they are read as {taken}", code="encoding")
+    return mended
 
 
 def _blank(content: bytes, start: int, end: int) -> bytes:

@@ -7,15 +7,15 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
 from .flaw import Edit
-from .xml import DocumentError, Element
+from .xml import Element
 
 __all__ = [
     "Attribute",
     "StartTag",
-    "as_utf_8",
     "edited",
     "escaped",
     "moved_to_child",
+    "new_attribute",
     "new_value",
     "overlap",
     "removed",
@@ -36,8 +36,6 @@ _MARKUP = re.compile(
     rb"" + _NAME + rb""")(?:"[^"]*"|'[^']*'|[^"'>])*+>)""",
     re.DOTALL,
 )
-_DECLARATION = re.compile(rb"\s*<\?xml\s[^>]*\?>")
-_DECLARED = re.compile(rb"""(\sencoding\s*=\s*["'])([^"']*)""")
 # The ampersand comes first, because the others contain ampersands.
 _ENTITIES = {"&": "&amp;", "<": "&lt;", ">": "&gt;", '"': "&quot;", "\n": "&#10;", "\r": "&#13;", "\t": "&#9;"}
 
@@ -140,7 +138,7 @@ def renamed_attribute(document: bytes, element: Element, attribute: str, name: s
 
 
 def new_value(document: bytes, element: Element, attribute: str, value: str) -> tuple[Edit, ...]:
-    """The edit that gives an attribute another value; none if it cannot be found, as in a document in UTF-16."""
+    """The edit that gives an attribute another value; none if it is not found, as in an empty document."""
     try:
         place = start_tag(document, element).attributes.get(attribute)
     except ValueError:
@@ -148,8 +146,17 @@ def new_value(document: bytes, element: Element, attribute: str, value: str) -> 
     return () if place is None else (Edit(*place.value, escaped(value)),)
 
 
+def new_attribute(document: bytes, element: Element, attribute: str, value: str) -> tuple[Edit, ...]:
+    """The edit that gives an element an attribute that it does not have; none if the element is not found."""
+    try:
+        _, end = start_tag(document, element).name
+    except ValueError:
+        return ()
+    return (Edit(end, end, f' {attribute}="{escaped(value)}"'),)
+
+
 def removed(document: bytes, element: Element) -> tuple[Edit, ...]:
-    """The edit that takes an element out; none if it cannot be found, as in a document in UTF-16."""
+    """The edit that takes an element out; none if it is not found, as in an empty document."""
     try:
         start, _, end = whole_element(document, element)
     except ValueError:
@@ -200,29 +207,3 @@ def escaped(text: str) -> str:
     for character, entity in _ENTITIES.items():
         text = text.replace(character, entity)
     return text
-
-
-def as_utf_8(document: bytes) -> bytes:
-    """The document in UTF-8, with a declaration that says so; unchanged if it is in UTF-8 already.
-
-    Raises:
-        DocumentError: The encoding that it declares is unknown, or its bytes are not in it.
-    """
-    if document.startswith((b"\xff\xfe", b"\xfe\xff")):
-        encoding = "utf-16"
-    elif document[:4].replace(b"\0", b"") in (b"<", b"<?", b"<r") and b"\0" in document[:4]:
-        encoding = "utf-16-be" if document[:1] == b"\0" else "utf-16-le"
-    else:
-        declaration = _DECLARATION.match(document.removeprefix(b"\xef\xbb\xbf"))
-        declared = _DECLARED.search(declaration[0]) if declaration else None
-        encoding = declared[2].decode("latin-1") if declared else "utf-8"
-    if encoding.lower().replace("_", "-") in ("utf-8", "utf8", "us-ascii", "ascii"):
-        return document
-    try:
-        content = document.decode(encoding).encode("utf-8")
-    except (LookupError, UnicodeError) as error:
-        raise DocumentError(f"its encoding cannot be read ({error})") from None
-    declaration = _DECLARATION.match(content)
-    if declaration is None:
-        return content
-    return _DECLARED.sub(rb"\g<1>utf-8", declaration[0], count=1) + content[declaration.end() :]

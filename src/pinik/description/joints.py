@@ -11,7 +11,7 @@ from .flaw import Flaw
 from .numbers import FARTHEST
 from .part import Part, Vector
 from .slips import misspelt
-from .vocabulary import BOUNDED_KINDS
+from .vocabulary import BOUNDED_KINDS, URDF
 from .xml import DocumentError, Element
 
 __all__ = ["ENDLESS", "ONE_AXIS_KINDS", "JointTag", "Mimic", "read_joint"]
@@ -19,6 +19,7 @@ __all__ = ["ENDLESS", "ONE_AXIS_KINDS", "JointTag", "Mimic", "read_joint"]
 # [rad or m]: how SDF and Gazebo write that there is no limit; larger ones are read as infinite.
 ENDLESS = 1e16
 
+_MOST_IGNORED = 4
 _ROUNDING = 4.0 * sys.float_info.epsilon
 JOINT_KINDS = ("revolute", "continuous", "prismatic", "fixed", "floating", "planar")
 ONE_AXIS_KINDS = ("revolute", "continuous", "prismatic")
@@ -168,7 +169,7 @@ def _read_limits(joint: Part, limit: Part | None, kind: str) -> tuple[float | No
     if unsaid:
         bounds = f"{lower or 0.0:g}..{upper or 0.0:g}"
         cause = f"<limit> has no {' and no '.join(unsaid)}, which is read as 0: its range is {bounds}"
-        limit.flaw(cause, code="absent-limit")
+        limit.flaw(cause + _ignored(limit.element), code="absent-limit")
     low, high = lower or 0.0, upper or 0.0
     if low > high:
         note = f" (no {absent[0]} is given, which is read as 0)" if absent else ""
@@ -177,6 +178,13 @@ def _read_limits(joint: Part, limit: Part | None, kind: str) -> tuple[float | No
         )
         raise limit.fault(f"{cause}{high:g}..{low:g}, or one of them is wrong")
     return lower, upper
+
+
+def _ignored(limit: Element) -> str:
+    """The attributes of a limit that URDF does not know, as the rest of a sentence."""
+    known = URDF["limit"].attributes
+    names = [f"{shortened(name, QUOTED)}=" for name in limit.attributes if name not in known and ":" not in name]
+    return f"; URDF does not know its {' and '.join(names[:_MOST_IGNORED])}" if names else ""
 
 
 def _bounds(limit: Part, kind: str) -> list[float | None]:

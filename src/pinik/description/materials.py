@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from ..echoes import QUOTED, shortened
 from .flaw import Flaw
+from .numbers import Reading
 from .part import Part
 from .xml import DocumentError, Element
 
@@ -81,10 +82,11 @@ def _within_one(part: Part, values: tuple[float, ...]) -> Color:
         red, green, blue, opacity = (min(value, 1.0) for value in values)
         how = "cut to 1"
     text = shortened(part.element.attributes["rgba"], QUOTED)
-    part.flaw(
+    part.misread(
+        "rgba",
         f'<color rgba="{text}"> has numbers above 1, which are {how}',
+        Reading((red, green, blue, opacity)).exact,
         code="bright-color",
         common=f"its colour has numbers above 1, which are {how}",
-        mend=f'Write rgba="{red:.4g} {green:.4g} {blue:.4g} {opacity:.4g}".',
     )
     return red, green, blue, opacity

@@ -182,6 +182,8 @@ def _in_its_place(path: Path) -> str:
     """What stands at a path that is no regular file; empty if there is nothing."""
     try:
         kind = os.stat(path).st_mode
+    except PermissionError:
+        return "a folder on the way to it cannot be read: permission denied"
     except (OSError, ValueError):
         return "this is a symbolic link that leads nowhere" if _is_link(path) else ""
     return "this is a directory, not a mesh" if stat.S_ISDIR(kind) else "this is a pipe or a device, not a mesh"

@@ -14,10 +14,12 @@ from ..echoes import QUOTED, shortened
 from ..errors import RobotLoadError
 from .addresses import uses_find
 from .document import Document, read_document
+from .edits import new_attribute
 from .flaw import Flaw
 from .joints import JointTag, Mimic, read_joint
 from .links import LinkTag, read_link
 from .materials import named_colors
+from .slips import misspelt
 from .source import RobotSource, Source
 from .tree import check_unique, resolved_mimics, root_link
 from .unknown import unknown_in_joints
@@ -125,8 +127,7 @@ def _described(document: Document, source: Source) -> Description:
     name = robot.attributes.get("name")
     if name is None:
         name = source.path.stem if source.path else "robot"
-        cause = f"has no name; the robot is named {name!r}"
-        flaws.append(Flaw("<robot>", cause, code="no-name", line=robot.line, mend=f"Write <robot name={name!r}>."))
+        flaws.append(_nameless(robot, name, document.content))
     return Description(
         name=name,
         source=source.label,
@@ -141,6 +142,13 @@ def _described(document: Document, source: Source) -> Description:
         document=document.content,
         expanded=source.expanded,
     )
+
+
+def _nameless(robot: Element, name: str, document: bytes) -> Flaw:
+    """That `<robot>` has no name. If one is misspelt, the flaw of the misspelling has the edits."""
+    edits = () if "name" in misspelt(robot) else new_attribute(document, robot, "name", name)
+    cause = f"has no name; the robot is named {name!r}"
+    return Flaw("<robot>", cause, code="no-name", line=robot.line, mend=f"Write <robot name={name!r}>.", edits=edits)
 
 
 def _check_root(robot: Element) -> None:

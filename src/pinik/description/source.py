@@ -11,7 +11,7 @@ from typing import IO, Any
 from ..echoes import shortened
 from ..errors import RobotLoadError
 from ..files import FileError, read_within
-from .document import declared_as_utf_8
+from .encodings import declared_as_utf_8
 from .xml import MAX_BYTES, DocumentError
 
 __all__ = ["RobotSource", "Source", "is_document", "is_source"]

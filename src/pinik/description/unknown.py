@@ -74,11 +74,14 @@ def unknown_in_joints(robot: Element) -> list[Flaw]:
 
 
 def _places(element: Element, joint: Element) -> bool:
-    """Whether an element of a joint decides where links are, so that an unknown name in it matters."""
+    """Whether an element of a joint decides where links are, so that an unknown name in it matters.
+
+    The flaw of a limit that is missing names the unknown attributes beside it.
+    """
     if element.tag != "limit":
         return element.tag in _PLACING
     needs_limits = joint.attributes.get("type") in BOUNDED_KINDS
-    return needs_limits and not {"lower", "upper"} <= element.attributes.keys()
+    return needs_limits and bool(element.children) and not {"lower", "upper"} <= element.attributes.keys()
 
 
 def _is_known(element: Element) -> bool:

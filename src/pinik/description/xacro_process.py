@@ -110,6 +110,7 @@ def _expanded(request: dict[str, Any], packages: _Packages) -> dict[str, Any]:
     xacro.parse = _parse
     xacro.print_location = lambda: None
     _let_copies_keep_their_places()
+    _let_dirname_be_known()
     xacro.init_stacks(path)
     arguments = _Arguments(request["arguments"])
     try:
@@ -148,6 +149,19 @@ def _let_copies_keep_their_places() -> None:
         return copy
 
     minidom._clone_node = clone  # type: ignore[attr-defined]
+
+
+def _let_dirname_be_known() -> None:
+    """Tell xacro the file of `$(dirname)`: the one that is being read, where its relative includes begin too."""
+    import xacro
+
+    original = xacro.eval_extension
+
+    def evaluated(text: str) -> Any:
+        xacro.substitution_args_context["filename"] = xacro.filestack[-1]
+        return original(text)
+
+    xacro.eval_extension = evaluated
 
 
 def _fault(error: Exception, files: list[str | None] | None) -> dict[str, Any]:

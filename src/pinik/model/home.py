@@ -26,7 +26,7 @@ def home_configuration(robot: RobotModel) -> Array:
     An SRDF file with a fault counts as none.
     """
     try:
-        poses = robot.poses
+        poses = robot.srdf_poses.by_name
     except RobotLoadError:  # nobody asked for a pose
         poses = {}
     limits = Limits.of(robot)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Collection, Iterable
+from dataclasses import dataclass, field
 from pathlib import Path
 
 import numpy as np
@@ -18,7 +19,7 @@ from ..errors import RobotLoadError
 from ..files import FileError, read_within
 from .joint import Joint
 
-__all__ = ["read_poses"]
+__all__ = ["Poses", "read_poses"]
 
 Array = NDArray[np.float64]
 
@@ -27,12 +28,30 @@ _TURN = 2.0 * math.pi
 _MOST_NEAR = 3
 
 
-def read_poses(srdf: Path, model: pinocchio.Model, joints: Iterable[Joint], names: Collection[str]) -> dict[str, Array]:
-    """The poses in an SRDF file: name → q (nq,). Joints that a pose does not mention are neutral.
+@dataclass(frozen=True)
+class Poses:
+    """The poses in an SRDF file.
+
+    Attributes:
+        by_name: Name → q (nq,).
+        left_out: Which poses are left out because they break the limits, in one sentence each.
+    """
+
+    by_name: dict[str, Array] = field(default_factory=dict)
+    left_out: tuple[str, ...] = ()
+
+
+class _BeyondLimitsError(DocumentError):
+    """A pose sets a joint outside its limits."""
+
+
+def read_poses(srdf: Path, model: pinocchio.Model, joints: Iterable[Joint], names: Collection[str]) -> Poses:
+    """The poses in an SRDF file. Joints that a pose does not mention are neutral.
 
     States of the same name for several groups are one pose. Followers, and joints that the robot does not have, are
     skipped, as robots with fewer joints share the SRDF. An angle outside the limits is taken at the limit if it is at
-    most 1e-3 [rad or m] away, as files round their numbers, or turned by whole turns to inside the limits.
+    most 1e-3 [rad or m] away, as files round their numbers, or turned by whole turns to inside the limits; a pose with
+    one that is farther off is left out.
 
     Args:
         srdf: The SRDF file.
@@ -42,8 +61,8 @@ def read_poses(srdf: Path, model: pinocchio.Model, joints: Iterable[Joint], name
 
     Raises:
         RobotLoadError: The file cannot be read, or is not XML; or a pose has something else than numbers for a joint,
-            or a number outside its limits; or it sets a joint in two ways, or one that is misspelt; or there are two
-            states of the same name and group. The message names the pose and the joint.
+            or sets it in two ways, or one that is misspelt; or there are two states of the same name and group. The
+            message names the pose and the joint.
     """
     try:
         robot = parse(read_within(srdf, MAX_BYTES, "an SRDF file"))
@@ -55,15 +74,19 @@ def read_poses(srdf: Path, model: pinocchio.Model, joints: Iterable[Joint], name
     states: dict[str, list[Element]] = {}
     for state in robot.named("group_state"):
         states.setdefault(state.attributes.get("name", ""), []).append(state)
-    poses = {}
+    poses: dict[str, Array] = {}
+    left_out: list[str] = []
     for name, parts in states.items():
+        pose = f"pose {shortened(name, QUOTED)!r}"
         try:
             poses[name] = _pose(_settings(parts), model, by_name, names)
+        except _BeyondLimitsError as fault:
+            left_out.append(f"{pose} is left out: {fault.owner}: {fault.message} (line {fault.line} of {srdf.name})")
         except DocumentError as fault:
             message = f"{fault.message} (line {fault.line})"
-            element = f"pose {shortened(name, QUOTED)!r}" + (f", {fault.owner}" if fault.owner else "")
+            element = pose + (f", {fault.owner}" if fault.owner else "")
             raise RobotLoadError(message, source=str(srdf), element=element) from None
-    return poses
+    return Poses(poses, tuple(left_out))
 
 
 def _settings(states: Iterable[Element]) -> list[Element]:
@@ -142,10 +165,9 @@ def _within_limits(setting: Element, joint: Joint, angle: float, model: pinocchi
         nearest = min(max(same, lower), upper)
         if abs(same - nearest) <= _ROUNDING:
             return nearest
-    raise _fault(setting, f"its value must be within its limits {lower:g}..{upper:g}; got {angle:g}")
+    cause = f"its value must be within its limits {lower:g}..{upper:g}; got {angle:g}"
+    raise _fault(setting, cause, _BeyondLimitsError)
 
 
-def _fault(setting: Element, cause: str) -> DocumentError:
-    return DocumentError(
-        cause, owner=f"joint {shortened(setting.attributes.get('name', ''), QUOTED)!r}", line=setting.line
-    )
+def _fault(setting: Element, cause: str, kind: type[DocumentError] = DocumentError) -> DocumentError:
+    return kind(cause, owner=f"joint {shortened(setting.attributes.get('name', ''), QUOTED)!r}", line=setting.line)

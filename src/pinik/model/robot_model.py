@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-import threading
+import warnings
 from collections.abc import Mapping, Sequence
 from functools import cached_property, partial
 from pathlib import Path
@@ -13,16 +13,16 @@ import numpy as np
 import pinocchio
 from numpy.typing import ArrayLike, NDArray
 
-from ..checks import as_finite_number, as_se3
+from ..checks import as_finite_number
 from ..description import reader as urdf
 from ..description.packages import Surroundings
-from ..errors import InputError, UnknownNameError
+from ..errors import InputError, UrdfWarning
+from ..rotations import as_se3
 from .angles import set_angles
 from .build import build_model
-from .configurations import checked, checked_many, random_configuration
-from .jacobians import as_reference_frame, frame_jacobian, relative_jacobian
-from .joint import Joint, joints_of
-from .poses import read_poses
+from .configurations import random_configuration
+from .named_model import NamedModel
+from .poses import Poses, read_poses
 from .ranges import configuration_limits, velocity_limits
 
 __all__ = ["RobotModel"]
@@ -30,7 +30,7 @@ __all__ = ["RobotModel"]
 Array = NDArray[np.float64]
 
 
-class RobotModel:
+class RobotModel(NamedModel):
     """A robot, loaded from a URDF by `pinik.load`: a Pinocchio model whose joints and frames are addressed by name.
 
     A *configuration* `q` is Pinocchio's own vector (nq,): a continuous joint takes two entries, (cos, sin), and a
@@ -40,22 +40,11 @@ class RobotModel:
 
     All methods check their arguments, and none modifies them. Robots can be pickled and used from several threads.
 
-    Attributes:
-        name: The name in the catalogue, or the name that the URDF gives.
-        model: The `pinocchio.Model`, for use with Pinocchio's own functions; do not modify it. Its position limits are
-            those of the robot.
-        description: The checked URDF.
+    Attributes, besides those of every `NamedModel`:
         root: How the root link is attached to the world: "fixed", "free_flyer" or "planar".
         package_dirs: The folders that are searched first for the packages of meshes.
         allow_outside: Whether the URDF may open meshes outside its own folder, its packages and `package_dirs`.
         warnings: What was repaired or left out while loading.
-        joints: All movable joints in the model's order, including followers and the root joint. Pinocchio reads the
-            tree depth first and the joints of a link by name, except that leaders come before their followers.
-        joint_names: The names of the one-axis joints that are not followers, in the model's order.
-        frame_names: The names of all frames, in the model's order.
-        mimics: Follower → (leader, multiplier, offset), where follower = multiplier · leader + offset. The leader of a
-            chain is the joint at its end, which follows no other. Where Pinocchio's model cannot have that joint before
-            its followers, it follows one of them instead, and a warning says so; all angles stay as the file says.
         lower, upper: Joint limits (n_joints,) in the order of `joint_names` [rad or m], infinite where there are none.
             Those of a leader also keep its followers inside their limits.
         velocity_limits: The largest velocities (n_joints,) that the file gives, in the order of `joint_names` [rad/s or
@@ -74,25 +63,16 @@ class RobotModel:
         srdf: Path | None = None,
         allow_outside: bool = False,
     ) -> None:
-        self.description = description
-        self.name = name or description.name
+        model, model_warnings = build_model(description, root=root, mimic=mimic)
+        super().__init__(name or description.name, model, description)
         self.root = root
         self.package_dirs = tuple(Path(folder) for folder in package_dirs)
         self.allow_outside = allow_outside
-        self.model, model_warnings = build_model(description, root=root, mimic=mimic)
         self.warnings = (*description.warnings, *model_warnings)
         self._mimic = mimic
         self._srdf = srdf
-        self._local = threading.local()
-        self._frames = _frames_by_name(self.model)
-        self.frame_names = tuple(self._frames)
-        self.joints = joints_of(self.model, description)
-        self._joints_by_name = {joint.name: joint for joint in self.joints}
-        self._settable = tuple(j for j in self.joints if j.has_one_axis and j.leader is None)
-        self.joint_names = tuple(j.name for j in self._settable)
-        self.mimics = {j.name: (j.leader, j.multiplier, j.offset) for j in self.joints if j.leader is not None}
         self.lower_q, self.upper_q = configuration_limits(self.model, self.joints)
-        first_entries = [joint.idx_q for joint in self._settable]
+        first_entries = [self.joint(name).idx_q for name in self.joint_names]
         self.lower, self.upper = self.lower_q[first_entries], self.upper_q[first_entries]
         self.velocity_limits = velocity_limits(self.joint_names, self.joints, description)
         for limits in (self.lower, self.upper, self.lower_q, self.upper_q, self.velocity_limits):
@@ -124,18 +104,6 @@ class RobotModel:
         return Surroundings(self.description.path, self.package_dirs, self.allow_outside)
 
     @property
-    def data(self) -> Any:
-        """The `pinocchio.Data` of the calling thread, which `placement` and `jacobian` use."""
-        if not hasattr(self._local, "data"):
-            self._local.data = self.model.createData()
-        return self._local.data
-
-    @property
-    def local(self) -> threading.local:
-        """This thread's own storage, for this class and for what others keep with a robot."""
-        return self._local
-
-    @property
     def urdf(self) -> str:
         """The robot as URDF text, as Pinocchio reads it: checked and with plain numbers, without shapes."""
         return self.description.xml
@@ -148,62 +116,26 @@ class RobotModel:
         SRDF file there are no poses. The file is read when the poses are first asked for.
 
         Raises:
-            RobotLoadError: The SRDF file cannot be read; or a pose in it has no number for a joint, or one outside its
-                limits, sets a joint in two ways, or misspells its name; the message names the pose and the joint.
+            RobotLoadError: The SRDF file cannot be read; or a pose in it has no number for a joint, sets a joint in two
+                ways, or misspells its name; the message names the pose and the joint.
+
+        Warns:
+            UrdfWarning: A pose is left out, as it sets a joint outside its limits.
         """
-        poses = {name: q.copy() for name, q in self._poses.items()}
+        for words in self.srdf_poses.left_out:
+            warnings.warn(f"{self.name}: {words}", UrdfWarning, stacklevel=2)
+        poses = {name: q.copy() for name, q in self.srdf_poses.by_name.items()}
         for q in poses.values():
             q.setflags(write=False)
         return poses
 
     @cached_property
-    def _poses(self) -> dict[str, Array]:
+    def srdf_poses(self) -> Poses:
+        """What `poses` reads, and which poses it leaves out; the errors are the same."""
         if self._srdf is None:
-            return {}
+            return Poses()
         names = {joint.name for joint in self.description.joints}
         return read_poses(self._srdf, self.model, self.joints, names)
-
-    def frame_id(self, name: str) -> int:
-        """The index of a frame in the model. If a link and a joint share the name, it is the link's.
-
-        Raises:
-            UnknownNameError: No such frame; the message lists near names.
-        """
-        try:
-            return self._frames[name]
-        except (KeyError, TypeError):
-            raise UnknownNameError("frame", name, self.frame_names) from None
-
-    def joint(self, name: str) -> Joint:
-        """The movable joint of this name.
-
-        Raises:
-            UnknownNameError: No such joint; the message lists near names.
-        """
-        try:
-            return self._joints_by_name[name]
-        except (KeyError, TypeError):
-            fixed = any(tag.name == name and tag.kind == "fixed" for tag in self.description.joints)
-            hint = "it is a fixed joint" if fixed else ""
-            raise UnknownNameError("joint", name, self._joints_by_name, hint) from None
-
-    def settable_joint(self, name: str) -> Joint:
-        """The joint of this name, which must not be a follower.
-
-        Raises:
-            UnknownNameError: No such joint; the message lists near names.
-            InputError: The joint mimics another one; the message names that one.
-        """
-        joint = self.joint(name)
-        if joint.leader is not None:
-            raise InputError(
-                f"joint {name!r} mimics {joint.leader!r} and does not move by itself; set {joint.leader!r} instead"
-            )
-        return joint
-
-    def neutral(self) -> Array:
-        """The neutral configuration (nq,): joints that are not followers at 0, joint placements the identity."""
-        return np.array(pinocchio.neutral(self.model))
 
     def random(self, rng: np.random.Generator | int | None = None) -> Array:
         """A random configuration (nq,) inside the limits.
@@ -284,82 +216,3 @@ class RobotModel:
         """
         values = self.check_configuration(q)
         return {j.name: j.placement(values) for j in self.joints if not j.has_one_axis}
-
-    def check_configuration(self, q: ArrayLike, what: str = "q") -> Array:
-        """Check that `q` is a configuration of this robot, and return a copy as float64.
-
-        Quaternions and (cos, sin) pairs are normalised.
-
-        Args:
-            q: The configuration (nq,).
-            what: What the error message calls it.
-
-        Raises:
-            InputError: A wrong shape, a number that is not finite, or a quaternion or (cos, sin) pair that is not of
-                unit length.
-        """
-        return checked(self.model, self.joints, q, what, f"the configuration of {self.name!r}")
-
-    def check_configurations(self, q: ArrayLike, what: str = "q") -> Array:
-        """Check N configurations (N, nq) as `check_configuration` does, and return a copy as float64."""
-        return checked_many(self.model, self.joints, q, what)
-
-    def placement(self, frame: str, q: ArrayLike, relative_to: str | None = None) -> pinocchio.SE3:
-        """The placement of a frame, by forward kinematics.
-
-        Args:
-            frame: The name of the frame.
-            q: The configuration (nq,).
-            relative_to: The frame in which the placement is expressed; the world when None.
-
-        Returns:
-            The SE3 of the frame [m]: oMf, or rMf where r is `relative_to`.
-
-        Raises:
-            UnknownNameError: No such frame; the message lists near names.
-            InputError: `q` is not a configuration of this robot.
-        """
-        frame_id = self.frame_id(frame)
-        reference = None if relative_to is None else self.frame_id(relative_to)
-        pinocchio.forwardKinematics(self.model, self.data, self.check_configuration(q))
-        placement = pinocchio.updateFramePlacement(self.model, self.data, frame_id).copy()
-        if reference is None:
-            return placement
-        return pinocchio.updateFramePlacement(self.model, self.data, reference).actInv(placement)
-
-    def jacobian(
-        self,
-        frame: str,
-        q: ArrayLike,
-        axes: str | pinocchio.ReferenceFrame = "local_world_aligned",
-        relative_to: str | None = None,
-    ) -> Array:
-        """The Jacobian of a frame: J v is the velocity of the frame for joint velocities v (nv,).
-
-        Args:
-            frame: The name of the frame.
-            q: The configuration (nq,).
-            axes: Where and in which axes the velocity is expressed: "local_world_aligned" (at the frame's origin, in
-                the world's axes), "local" (at the frame's origin, in its own axes), "world" (at the world's origin, in
-                its axes), or a `pinocchio.ReferenceFrame`.
-            relative_to: A frame that replaces the world: the velocity is relative to it, and expressed in its axes.
-
-        Returns:
-            J (6, nv), with the linear rows first [m/rad or m/m], then the angular rows [rad/rad or rad/m].
-
-        Raises:
-            UnknownNameError: No such frame; the message lists near names.
-            InputError: Unknown axes, or `q` is not a configuration of this robot.
-        """
-        axes = as_reference_frame(axes)
-        frame_id = self.frame_id(frame)
-        reference = None if relative_to is None else self.frame_id(relative_to)
-        pinocchio.computeJointJacobians(self.model, self.data, self.check_configuration(q))
-        if reference is None:
-            return frame_jacobian(self.model, self.data, frame_id, axes)
-        return relative_jacobian(self.model, self.data, frame_id, reference, axes)
-
-
-def _frames_by_name(model: pinocchio.Model) -> dict[str, int]:
-    links = {frame.name: i for i, frame in enumerate(model.frames) if frame.type == pinocchio.BODY}
-    return {frame.name: links.get(frame.name, i) for i, frame in enumerate(model.frames)}

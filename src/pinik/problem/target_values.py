@@ -8,8 +8,9 @@ import numpy as np
 import pinocchio
 from numpy.typing import ArrayLike, NDArray
 
-from ..checks import as_length, as_plain, as_point, as_rotation, as_se3, as_unit_vector, as_vector
+from ..checks import as_length, as_plain, as_point, as_unit_vector, as_vector
 from ..errors import InputError
+from ..rotations import as_rotation, as_se3
 
 __all__ = ["Position", "as_axis", "as_position", "as_tool", "check_combination", "named", "rotation_of"]
 

@@ -11,12 +11,14 @@ import numpy as np
 import pinocchio
 from numpy.typing import ArrayLike, NDArray
 
-from ..checks import as_finite_number, as_plain, as_point, as_se3, as_unit_vector
-from ..errors import InputError, UnknownNameError
+from ..checks import as_finite_number, as_plain, as_point, as_unit_vector
+from ..errors import InputError
+from ..rotations import as_se3
+from .target_json import check_fields, known, plain_fields
 from .target_values import Position, as_axis, as_position, as_tool, check_combination, named, rotation_of
 from .tolerance import Tolerance
 
-__all__ = ["NO_DIRECTION", "TARGET_KEYWORDS", "Target", "as_targets"]
+__all__ = ["NO_DIRECTION", "Target", "as_targets"]
 
 Array = NDArray[np.float64]
 
@@ -149,7 +151,7 @@ class Target:
     def _key(self) -> tuple[object, ...]:
         """All that is asked, as something that can be compared."""
         numbers = (self.position, self.rotation, self.direction, self.at)
-        return self.shape, tuple([None if value is None else tuple(_known(value)) for value in numbers])
+        return self.shape, tuple([None if value is None else tuple(known(value)) for value in numbers])
 
     @property
     def asks_orientation(self) -> bool:
@@ -241,35 +243,12 @@ class Target:
             InputError: Not an object, no frame, or a value that `Target` refuses.
             UnknownNameError: A key that is not one of the keywords.
         """
-        if not isinstance(fields, Mapping):
-            raise InputError(
-                f'a target must be an object such as {{"frame": …, "position": [x, y, z]}}; got {fields!r}'
-            )
-        keywords = ("frame", "position", *TARGET_KEYWORDS, "tolerance")
-        for key in fields:
-            if key not in keywords:
-                raise UnknownNameError("target keyword", key, keywords)
-        if "frame" not in fields:
-            raise InputError(f"a target must name its frame; got only {', '.join(fields) or 'nothing'}")
+        check_fields(fields)
         return cls(**fields)
 
     def to_dict(self) -> dict[str, Any]:
         """The JSON form: plain numbers and lists, only what was asked for; `from_dict` reads it back."""
-        fields: dict[str, Any] = {"frame": self.frame}
-        for name in ("position", "rotation", "axis", "direction", "at"):
-            value = getattr(self, name)
-            if value is not None:
-                fields[name] = _jsonable(value)
-        if self._tool is not None:
-            fields["tool"] = self._tool.homogeneous.tolist()
-        if self.relative_to is not None:
-            fields["relative_to"] = self.relative_to
-        if self.weight != 1.0:
-            fields["weight"] = self.weight
-        if self.tolerance is not None:
-            box = self.tolerance.box
-            fields["tolerance"] = [self.tolerance.position if box is None else list(box), self.tolerance.orientation]
-        return fields
+        return plain_fields(vars(self))
 
 
 def as_targets(targets: Target | Iterable[Target]) -> tuple[Target, ...]:
@@ -291,13 +270,6 @@ def as_targets(targets: Target | Iterable[Target]) -> tuple[Target, ...]:
     return checked
 
 
-TARGET_KEYWORDS = (
-    "rotation", "rpy", "quat_xyzw", "quat_wxyz", "placement", "axis", "direction", "at", "tool", "relative_to",
-    "weight",
-)  # fmt: skip
-"""What `Target` takes besides frame, position and tolerance."""
-
-
 def _restored(fields: dict[str, Any]) -> Target:
     """A target from a pickle."""
     target = object.__new__(Target)
@@ -310,13 +282,3 @@ def _is_a_point(place: ArrayLike) -> bool:
         return np.shape(place) == (3,)
     except ValueError:  # rows of different lengths
         return False
-
-
-def _known(numbers: Array) -> list[float | None]:
-    """The numbers one by one, with None for NaN and 0 for −0, so that they can be compared."""
-    return [x + 0.0 if x == x else None for x in numbers.ravel().tolist()]
-
-
-def _jsonable(numbers: Array) -> list[Any]:
-    """Nested lists of the numbers; None for NaN."""
-    return _known(numbers) if numbers.ndim == 1 else numbers.tolist()

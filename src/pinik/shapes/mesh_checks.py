@@ -13,9 +13,12 @@ import zipfile
 from collections import Counter
 from typing import Any, Literal, get_args
 
+from ..description.edits import start_tag
+from ..description.encodings import as_utf_8
 from ..description.xml import BrokenXMLError, DocumentError, Element, parse
+from ..echoes import QUOTED, shortened
 
-__all__ = ["FORMATS", "MOST_BYTES", "UNDRAWN", "MeshError", "UndrawnCode", "checked"]
+__all__ = ["FORMATS", "MOST_BYTES", "NOT_FINITE", "UNDRAWN", "MeshError", "UndrawnCode", "checked"]
 
 UndrawnCode = Literal[
     "unreadable-shape",
@@ -49,6 +52,12 @@ _ARCHIVES = (
 )
 _PLY_SIZES = {"char": 1, "uchar": 1, "short": 2, "ushort": 2, "int": 4, "uint": 4, "float": 4, "double": 8}
 _PLY_ELEMENT = re.compile(rb"^\s*element\s+(\S+)\s+(\S+)", re.MULTILINE)
+
+
+_NOT_FINITE = re.compile(rb"[nN#]")  # in numbers: as in "nan", "inf" and "-1.#IND"
+
+NOT_FINITE = "it has corners that are not finite numbers (NaN or infinite)"
+"""What is wrong with a mesh whose code is "nan-in-mesh"."""
 
 
 class MeshError(ValueError):
@@ -136,7 +145,8 @@ def _check_ply(data: bytes) -> None:
     sections = _PLY_ELEMENT.split(header)[1:]
     for name, count, properties in zip(sections[::3], sections[1::3], sections[2::3], strict=True):
         if not count.isdigit() or len(count) > 12:
-            raise MeshError(f"its number of {name.decode(errors='replace')[:40]} elements is no whole number")
+            of = shortened(name.decode(errors="replace"), QUOTED)
+            raise MeshError(f"its number of {of} elements is no whole number")
         words = [line.split() for line in properties.splitlines() if line.strip().startswith(b"property")]
         sizes = [_PLY_SIZES.get(line[1].decode("ascii", "replace"), 1) for line in words if len(line) > 1]
         needed += int(count) * max(sum(sizes) if binary else len(words), 1)
@@ -179,11 +189,13 @@ def _check_collada(data: bytes) -> None:
     if zipfile.is_zipfile(io.BytesIO(data)):
         raise MeshError("this is an archive, and pinik unpacks none", "mesh-archive")
     try:
+        data = as_utf_8(data)
         root = parse(data, most_bytes=MOST_BYTES)
     except DocumentError as fault:
         # The message of broken XML names line and column itself.
         where = f" (line {fault.line})" if fault.line and not isinstance(fault, BrokenXMLError) else ""
         raise MeshError(f"{fault.message}{where}") from None
+    _refuse_nan(root, data)
     nodes = {node.attributes.get("id"): node for node in root.walk() if node.tag.rpartition(":")[2] == "node"}
     counts: dict[int, int] = {}
     scenes = [element for element in root.walk() if element.tag.rpartition(":")[2] == "visual_scene"]
@@ -195,6 +207,20 @@ def _check_collada(data: bytes) -> None:
     )
     if (total - len(used)) * len(data) > _MOST_COPIED:
         raise MeshError("it repeats its parts so often that it would become far larger than it is", "mesh-too-large")
+
+
+def _refuse_nan(root: Element, data: bytes) -> None:
+    """Refuse positions that are not finite, as pycollada reads NaN as 0."""
+    sources = {
+        one.attributes.get("source", "").removeprefix("#")
+        for one in root.walk()
+        if one.tag.rpartition(":")[2] == "input" and one.attributes.get("semantic") == "POSITION"
+    }
+    for source in (one for one in root.walk() if one.attributes.get("id") in sources):
+        for array in (child for child in source.children if child.tag.rpartition(":")[2] == "float_array"):
+            begins = start_tag(data, array).end
+            if _NOT_FINITE.search(data, begins, max(data.find(b"<", begins), begins)):
+                raise MeshError(NOT_FINITE, "nan-in-mesh")
 
 
 def _instances(element: Element, nodes: dict[str | None, Element], counts: dict[int, int], above: set[int]) -> int:

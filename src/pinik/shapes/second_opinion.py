@@ -21,6 +21,7 @@ import pinocchio
 import yourdfpy
 from numpy.typing import NDArray
 
+from ..echoes import shortened
 from ..model.robot_model import RobotModel
 
 __all__ = ["SecondOpinion", "ask_yourdfpy"]
@@ -101,7 +102,7 @@ def ask_yourdfpy(robot: RobotModel, file: str | Path | bytes) -> SecondOpinion:
             reader, mimics = _read(file if isinstance(file, bytes) else Path(file).read_bytes())
             theirs = [_their_links(reader, mimics, robot, q) for q in configurations]
     except Exception as fault:  # yourdfpy raises KeyError, TypeError, AttributeError, …
-        cause = " ".join(str(fault).split())[:200]
+        cause = shortened(" ".join(str(fault).split()), 200)
         return SecondOpinion(unread=f"it could not read the file ({type(fault).__name__}: {cause})")
     return _compared(robot, [_our_links(robot, q) for q in configurations], theirs)
 

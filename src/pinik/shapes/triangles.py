@@ -16,8 +16,9 @@ from numpy.typing import ArrayLike, NDArray
 from trimesh.exchange.load import mesh_loaders
 
 from ..description.materials import Color
+from ..echoes import shortened
 from ..files import FileError, read_within
-from .mesh_checks import MOST_BYTES, MeshError, checked
+from .mesh_checks import MOST_BYTES, NOT_FINITE, MeshError, checked
 from .neighbours import Neighbours
 
 __all__ = ["Part", "box", "capsule", "cylinder", "read_file", "scaled", "sphere"]
@@ -125,7 +126,7 @@ def _meshes(data: bytes, kind: str, neighbours: Neighbours) -> list[trimesh.Trim
     except MeshError:
         raise
     except Exception as fault:  # trimesh and its readers raise anything
-        words = " ".join(str(fault).split())[:200]
+        words = shortened(" ".join(str(fault).split()), 200)
         raise MeshError(f"it cannot be read as .{kind}: {words or type(fault).__name__}") from None
     if not meshes:
         raise MeshError("it holds no triangles", "empty-mesh")
@@ -140,7 +141,7 @@ def _meshes(data: bytes, kind: str, neighbours: Neighbours) -> list[trimesh.Trim
 def _check_finite(vertices: ArrayLike, faces: ArrayLike) -> None:
     corners = np.asarray(vertices, dtype=float)[np.asarray(faces, dtype=np.int64).ravel()]
     if not np.isfinite(corners).all():
-        raise MeshError("it has corners that are not finite numbers (NaN or infinite)", "nan-in-mesh")
+        raise MeshError(NOT_FINITE, "nan-in-mesh")
 
 
 def _check_size(scene: trimesh.Scene) -> None:

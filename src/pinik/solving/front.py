@@ -6,7 +6,6 @@ import warnings
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
-import numpy as np
 import pinocchio
 from numpy.typing import ArrayLike
 
@@ -17,8 +16,7 @@ from ..problem.target_values import Position
 from ..problem.targets import Target
 from ..problem.tolerance import Tolerance
 from ..solvers.registry import Method
-from .kept import Kept, Key, kept_of
-from .keys import key_of
+from .answer import answer
 from .native.recalling import recalling
 from .options import OPTION_NAMES, Options
 from .origin import Origin
@@ -26,9 +24,9 @@ from .prepared import Prepared
 from .question import Question
 from .run import Pace, States, run
 from .solution import Solution
-from .words import UNWEIGHTED, Wanted, asked_targets
+from .words import UNWEIGHTED, asked_targets, options_of
 
-__all__ = ["answer", "iterate", "prepare", "solve"]
+__all__ = ["iterate", "prepare", "solve"]
 
 
 _OPTIONS_OF_ITERATE = ("q0", "limits", "locked", "max_iterations", "tolerance", "polish")
@@ -175,7 +173,7 @@ def prepare(
         limits, locked, restarts, seed, max_iterations, tolerance, time_limit, engine, trace, polish, choose,
         choose_weights,
     )  # fmt: skip
-    return Prepared(robot, asked, _options(method, given, solver_parameters))
+    return Prepared(robot, asked, options_of(method, given, solver_parameters))
 
 
 def iterate(
@@ -248,79 +246,3 @@ def iterate(
         raise InputError("q0 must be a configuration or angles by joint name; only solve starts 'nearest'")
     start = question.limits.wrap(origin.q)
     return run(question, Kinematics.of(question.problem), start, Pace(options.iterations_at_most))
-
-
-def answer(
-    robot: RobotModel,
-    targets: str | Target | Sequence[Target],
-    method: Method,
-    wanted: Wanted,
-    q0: ArrayLike | Mapping[str, float] | str | None,
-    given: tuple[Any, ...],
-    parameters: dict[str, Any],
-) -> Solution:
-    """Solve, and reuse the compiled problem of an earlier call with equal arguments or an equal meaning.
-
-    Args:
-        robot: The robot.
-        targets: A frame's name or targets.
-        method: The method.
-        wanted: The values of a target's keywords, in the order of `PLACE_WORDS`.
-        q0: The start.
-        given: The values of the options, in the order of `OPTION_NAMES`.
-        parameters: The solver's parameters.
-    """
-    kept = kept_of(robot)
-    key, prepared = None, None
-    if type(targets) is str and _is_plain(wanted):
-        position = wanted[0]
-        key = key_of((targets, position is None), method, given, parameters)
-        prepared = _found(kept, key)
-        if prepared is not None:
-            quick = prepared.at(wanted[5] if position is None else _as_point(position), q0)
-            if quick is not None:
-                prepared.recall()
-                return quick
-    asked = asked_targets(targets, wanted, method, parameters)
-    if key is None or not all(asked[0].along):
-        key = key_of(tuple([target.shape for target in asked]), method, given, parameters)
-        prepared = _found(kept, key)
-    if prepared is None:
-        prepared = kept.prepared(robot, asked, _options(method, given, parameters), key)
-    return prepared.answer(asked, q0)
-
-
-def _is_plain(wanted: Wanted) -> bool:
-    """Whether only a position or only a placement is given."""
-    (position, rotation, rpy, quat_xyzw, quat_wxyz, placement, axis, direction, at, tool, relative_to, weight) = wanted
-    return (
-        (position is None) is not (placement is None)
-        and tool is None
-        and relative_to is None
-        and rotation is None
-        and rpy is None
-        and quat_xyzw is None
-        and quat_wxyz is None
-        and axis is None
-        and direction is None
-        and at is None
-        and weight is UNWEIGHTED
-    )
-
-
-def _found(kept: Kept, key: Key | None) -> Prepared | None:
-    try:
-        return None if key is None else kept.found(key)
-    except TypeError:  # an argument is not hashable
-        return None
-
-
-def _options(method: Method, given: tuple[Any, ...], parameters: dict[str, Any]) -> Options:
-    return Options.of(method, parameters, **dict(zip(OPTION_NAMES, given, strict=True)))
-
-
-def _as_point(position: Position) -> object:
-    """Three floats as an array, or a vector unchanged; None for anything that must be checked first."""
-    if isinstance(position, (list, tuple)) and [type(x) for x in position] == [float, float, float]:
-        return np.array(position)
-    return position if isinstance(position, np.ndarray) and position.ndim == 1 else None

@@ -9,10 +9,11 @@ import numpy as np
 import pinocchio
 from numpy.typing import NDArray
 
-from ..checks import as_array, as_many, as_numbers, as_plain, as_points, as_rotations, as_se3
+from ..checks import as_array, as_many, as_numbers, as_plain, as_points
 from ..errors import InputError
 from ..problem.target_values import as_position
 from ..problem.targets import Target, as_targets
+from ..rotations import as_rotations, as_se3
 from .native.codec import goals_of, read_places
 
 __all__ = ["read_questions"]

@@ -6,12 +6,13 @@ from collections.abc import Collection, Iterable, Mapping, Sequence
 from typing import Any
 
 from ..errors import InputError, UnknownNameError
-from ..problem.targets import TARGET_KEYWORDS, Target, as_targets
+from ..problem.target_json import TARGET_KEYWORDS
+from ..problem.targets import Target, as_targets
 from ..solvers.base import Solver, field_names
 from ..solvers.registry import SOLVERS, Method, meant_by
-from .options import OPTION_NAMES
+from .options import OPTION_NAMES, Options
 
-__all__ = ["PLACE_WORDS", "UNWEIGHTED", "Wanted", "asked_targets", "check_words"]
+__all__ = ["PLACE_WORDS", "UNWEIGHTED", "Wanted", "asked_targets", "check_words", "options_of"]
 
 Wanted = tuple[Any, ...]
 """The values of a target's keywords, in the order of `PLACE_WORDS`."""
@@ -87,3 +88,17 @@ def asked_targets(
     if given:
         raise InputError(f"{given[0]}= needs the name of a frame; with Target objects, pass it to Target(...)")
     return as_targets(targets)
+
+
+def options_of(method: Method, given: tuple[Any, ...], parameters: dict[str, Any]) -> Options:
+    """The options of a call, checked.
+
+    Args:
+        method: The method.
+        given: The values of the options, in the order of `OPTION_NAMES`.
+        parameters: The solver's parameters.
+
+    Raises:
+        UnknownNameError, InputError: As for `solve`.
+    """
+    return Options.of(method, parameters, **dict(zip(OPTION_NAMES, given, strict=True)))

@@ -152,6 +152,11 @@ class TestFix:
         assert (from_stdin["fix"].pop("file"), from_file["fix"].pop("file")) == (str(other), str(one))
         assert from_stdin == from_file
 
+    def test_an_empty_name_is_refused_in_words(self, run, write):
+        answer = run("check", write(AXIS_AS_ATTRIBUTE), "--fix", "")
+        assert (answer.status, answer.out) == (2, "")
+        assert "--fix must be the name of a file; an empty text" in answer.err
+
     def test_a_xacro_file_is_written_as_the_urdf_that_it_becomes(self, run, write, tmp_path):
         pytest.importorskip("xacrodoc")
         text = pair('<origin xzy="${two} 0, 0"/>', limit=LIMIT)

@@ -101,11 +101,24 @@ def test_a_place_or_factor_where_urdf_does_not_look_is_a_warning_of_load_and_of_
         pinik.load(text, strict=True)
 
 
-@pytest.mark.parametrize("limit", ['<limit min="-1" max="1"/>', "<limit><lower>-1</lower></limit>"])
-def test_a_limit_under_an_unknown_name_is_a_warning_of_load_if_the_limit_is_missing(limit):
-    assert "unknown-name" in [flaw.code for flaw in reader.read(pair(limit=limit)).warnings]
+@pytest.mark.parametrize(
+    ("limit", "codes"),
+    [
+        ('<limit min="-1" max="1"/>', ["absent-limit"]),
+        ("<limit><lower>-1</lower></limit>", ["absent-limit", "unknown-name"]),
+    ],
+)
+def test_a_limit_under_an_unknown_name_is_a_warning_of_load_if_the_limit_is_missing(limit, codes):
+    assert [flaw.code for flaw in reader.read(pair(limit=limit)).warnings] == codes
     assert reader.read(pair(limit=limit, kind="continuous")).warnings == ()
     assert reader.read(pair(limit=LIMIT.format(-1, 1).replace("/>", ' current="3"/>'))).warnings == ()
+
+
+def test_the_one_warning_about_min_and_max_names_them_and_nothing_says_it_again():
+    text = pair(limit='<limit min="-1" max="1"/>')
+    (flaw,) = reader.read(text).warnings
+    assert flaw.cause.endswith("its range is 0..0; URDF does not know its min= and max=")
+    assert [one.code for one in flaws(text)] == ["unknown-name", "unknown-name"]  # with the attributes that it knows
 
 
 @pytest.mark.parametrize("inner", ["{}", "<visual>{}<geometry><box size='1 1 1'/></geometry></visual>"])

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from xml.etree import ElementTree
 
 import numpy as np
@@ -22,6 +23,7 @@ TREE = (
     '  <joint name="j" type="revolute"{joint}>   <parent link="a"/> <child link="b"/>\n'
     '    {origin}\t<!-- kept -->\n    <limit lower="-1" upper="1" effort="1" velocity="1"/></joint>\n</robot>\n'
 )
+SPHERE = '<visual><geometry><sphere radius="1"/></geometry><material name="m"/></visual>'
 
 
 def placed(document: bytes, link: str = "b", angle: float = 0.3) -> np.ndarray:
@@ -140,7 +142,35 @@ def test_loose_numbers_of_a_document_in_utf_16_are_mended():
     text = TREE.format(joint="", origin='<origin xyz="1, 2, 3"/>').replace('"1.0"', '"1.0" encoding="utf-16"')
     result = mended(text.encode("utf-16"))
     np.testing.assert_allclose(placed(result.document)[:3, 3], [1, 2, 3])
-    assert read(text.encode("utf-16")).warnings[0].edits == ()
+    (flaw,) = read(text.encode("utf-16")).warnings
+    assert flaw.edits, "what is mended is reported as mendable"
+
+
+@pytest.mark.parametrize("encoding", ["utf-8", "utf-16"])
+@pytest.mark.parametrize(
+    ("rgba", "written"),
+    [("255 128 0 255", (1, 128 / 255, 0, 1)), ("1.02 0 0 1", (1, 0, 0, 1)), ("255 0 51 0.5", (1, 0, 0.2, 0.5))],
+)
+def test_colours_beyond_1_are_written_as_they_are_read(rgba, written, encoding):
+    text = robot(f'<material name="m"><color rgba="{rgba}"/></material>', link("a", SPHERE))
+    result = mended(text.encode(encoding))
+    assert ([flaw.code for flaw in result.done], result.left) == (["bright-color"], ())
+    (color,) = ElementTree.fromstring(result.document).iter("color")
+    assert [float(word) for word in color.get("rgba").split()] == list(written)
+    assert read(result.document).link_tags == read(text).link_tags
+
+
+def test_a_robot_without_a_name_gets_that_of_its_file():
+    text = robot(link("a")).replace('<robot name="r">', '<?xml version="1.0"?><robot>')
+    result = mended(text.encode(), Path("gripper & arm.urdf"))
+    assert ([flaw.code for flaw in result.done], result.left) == (["no-name"], ())
+    assert ElementTree.fromstring(result.document).get("name") == "gripper & arm"
+    assert ElementTree.fromstring(mend(text).document).get("name") == "robot"
+
+
+def test_the_misspelt_name_of_a_robot_is_mended_and_no_other_is_made_up():
+    result = mend(robot(link("a")).replace("<robot name=", "<robot Name="))
+    assert ElementTree.fromstring(result.document).attrib == {"name": "r"}
 
 
 def test_links_and_joints_in_capitals_come_back_together():

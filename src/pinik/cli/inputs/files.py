@@ -48,6 +48,8 @@ def check_file(path: Path, option: str) -> None:
     Raises:
         CommandError: It cannot; the message begins with the option that names it.
     """
+    if path == Path():
+        raise CommandError(f'{option} must be the name of a file; an empty text and "." are the working directory')
     try:
         check_writable(path)
     except OSError as error:

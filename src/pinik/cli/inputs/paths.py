@@ -9,6 +9,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
+from ...echoes import QUOTED, shortened
 from ...errors import PinikError
 from ...problem.targets import Target
 from ...robot import Robot
@@ -77,7 +78,7 @@ def read_path(path: str, frame: str | None, common: Mapping[str, Any], units: Un
         if points.targets and (time is None) == bool(points.times):
             raise CommandError(f"{where}: give the time t in every line or in none")
         if time is not None and not abs(time) <= sys.float_info.max:
-            raise CommandError(f"{where}: t must be a finite number of seconds; got {str(time)[:60]}")
+            raise CommandError(f"{where}: t must be a finite number of seconds; got {shortened(str(time), QUOTED)}")
         if time is not None and points.times and not time > points.times[-1]:
             raise CommandError(f"{where}: the times must increase; got {points.times[-1]:g} and then {time:g}")
         points.targets.append(targets)
@@ -161,7 +162,9 @@ def _json_points(lines: list[tuple[int, str]], given: _Given, label: str) -> Ite
             raise CommandError(f"{where}: not JSON: {error}") from None
         time = item.pop("t", None) if isinstance(item, dict) else None
         if time is not None and (isinstance(time, bool) or not isinstance(time, (int, float))):
-            raise CommandError(f"{where}: t must be a finite number of seconds; got {json.dumps(time)[:60]}")
+            raise CommandError(
+                f"{where}: t must be a finite number of seconds; got {shortened(json.dumps(time), QUOTED)}"
+            )
         items = item["targets"] if isinstance(item, dict) and set(item) == {"targets"} else item
         if not (isinstance(items, list) and items and all(isinstance(one, dict) for one in items)):
             items = [items]

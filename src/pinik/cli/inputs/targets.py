@@ -9,6 +9,7 @@ from contextlib import contextmanager
 from typing import Any
 
 from ...checks import as_point, as_unit_vector, as_vector
+from ...echoes import QUOTED, shortened
 from ...errors import InputError, InputWarning, PinikError
 from ...problem.target_values import as_position
 from ...problem.targets import Target
@@ -149,7 +150,7 @@ def _items(document: Any, label: str) -> list[Any]:
             raise CommandError(f"{label}: {_FORM}; got an object with {found}")
         document = document["targets"]
     if not isinstance(document, list):
-        raise CommandError(f"{label}: {_FORM}; got {json.dumps(document)[:60]}")
+        raise CommandError(f"{label}: {_FORM}; got {shortened(json.dumps(document), QUOTED)}")
     if len(document) > _MOST_TARGETS:
         raise CommandError(
             f"{label}: a file must hold at most {_MOST_TARGETS} targets, as one configuration has to meet all of them; "

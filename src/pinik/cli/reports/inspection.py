@@ -24,9 +24,10 @@ from .flaw_json import MOST_LISTED, flaw_fields
 if TYPE_CHECKING:
     from ...shapes.second_opinion import SecondOpinion
 
-__all__ = ["Fault", "Inspection", "inspect"]
+__all__ = ["STDIN", "Fault", "Inspection", "inspect"]
 
-_STDIN = "stdin"
+STDIN = "stdin"
+"""What reports call a URDF that comes through stdin."""
 _MISSING = ("missing-mesh", "mesh-outside")
 _MESHES = frozenset((*_MISSING, *UNDRAWN))
 
@@ -143,7 +144,7 @@ def inspect(
         description = fetched.read()
         robot = Robot(description, package_dirs=folders, allow_outside=allow_outside)
     except RobotLoadError as error:
-        label = _STDIN if isinstance(source, bytes) else error.source
+        label = STDIN if isinstance(source, bytes) else error.source
         faults = (Fault(error.element, error.cause),)
         if fetched is None:
             return Inspection(label, faults=faults)
@@ -156,7 +157,7 @@ def inspect(
     if description.expanded:
         about = [flaw.of_expansion() for flaw in about]
     return Inspection(
-        file=_STDIN if isinstance(source, bytes) else str(located.source),
+        file=STDIN if isinstance(source, bytes) else str(located.source),
         robot=robot.name,
         flaws=_in_order(robot.warnings, about),
         links=len(description.links),

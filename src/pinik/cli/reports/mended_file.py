@@ -20,7 +20,7 @@ from ..terminal import output
 from ..terminal.exits import CommandError
 from ..terminal.units import counted
 from .flaw_json import MOST_LISTED
-from .inspection import Inspection
+from .inspection import STDIN, Inspection
 
 __all__ = ["MendedFile", "check_target", "write_mended"]
 
@@ -102,7 +102,7 @@ def write_mended(found: Inspection, target: Path) -> MendedFile:
     if found.document is None:
         return MendedFile(target, None, "there is no document to mend")
     try:
-        mending = mended(found.document)
+        mending = mended(found.document, None if found.file == STDIN else Path(found.file))
         parse(mending.document)
     except DocumentError as error:
         return MendedFile(target, None, str(error))

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from ..edits import as_utf_8, renamed_element
+from ..edits import renamed_element
+from ..encodings import as_utf_8
 from ..flaw import Flaw
 from ..reader import Description
 from ..unknown import unknown_parts
@@ -26,7 +27,7 @@ def lint(document: bytes, description: Description | None = None) -> tuple[Flaw,
 
     Args:
         document: The bytes of the description. If they are in another encoding than UTF-8, the edits of the flaws
-            belong to `edits.as_utf_8(document)`.
+            belong to `encodings.as_utf_8(document)`.
         description: The same description as it was read; None if it could not be read.
 
     Returns:

@@ -6,8 +6,7 @@ from collections.abc import Iterator, Sequence
 
 from ..flaw import Flaw
 from ..joints import JointTag, Mimic
-from ..slips import misspelt
-from ..vocabulary import BOUNDED_KINDS
+from ..vocabulary import BOUNDED_KINDS, URDF
 from ..xml import Element
 from .plain import JointValues, joint_values, named
 
@@ -47,8 +46,12 @@ def limits(robot: Element) -> Iterator[Flaw]:
 
 def _is_meant(joint: JointValues) -> bool:
     """Whether the limits are those of the file, instead of zeros for attributes that are misspelt or misplaced."""
-    lost = set() if joint.limit is None else misspelt(joint.limit)
-    return {"lower", "upper"}.isdisjoint(lost | joint.element.attributes.keys())
+    if joint.limit is None:
+        return {"lower", "upper"}.isdisjoint(joint.element.attributes)
+    given = joint.limit.attributes.keys()
+    absent = {"lower", "upper"} - given
+    # Attributes such as min= and max= may be what is absent.
+    return not absent or (given <= URDF["limit"].attributes and absent.isdisjoint(joint.element.attributes))
 
 
 def followers(joints: Sequence[JointTag], robot: Element) -> Iterator[Flaw]:

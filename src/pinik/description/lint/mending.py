@@ -4,12 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from pathlib import Path
 
 from ...errors import RobotLoadError
 from ..document import read_document
-from ..edits import as_utf_8, edited, overlap
+from ..edits import edited, overlap
+from ..encodings import as_utf_8
 from ..flaw import Edit, Flaw
-from ..reader import Description, read
+from ..reader import Description, read_content
+from ..source import Source
 from ..xml import DocumentError
 from .front import lint
 
@@ -51,7 +54,7 @@ class Mending:
     fault: str = ""
 
 
-def mended(document: bytes) -> Mending:
+def mended(document: bytes, path: Path | None = None) -> Mending:
     """Mend all flaws that have edits, and read the result again.
 
     The edits change nothing but what they mend, so that comments and the layout stay. Mends that do not concern joints
@@ -60,11 +63,12 @@ def mended(document: bytes) -> Mending:
 
     Args:
         document: The bytes of a robot description, in any encoding.
+        path: The file that it is of, whose name a robot without one takes.
 
     Raises:
         DocumentError: The encoding that the document declares is unknown, or its bytes are not in it.
     """
-    workshop = _Workshop(document)
+    workshop = _Workshop(document, path)
     for _ in range(_MOST_ROUNDS):
         # Mends that must not change joints come first, so that it can be seen whether they do.
         worked = [workshop.mend(kinematic=kinematic) for kinematic in (False, True)]
@@ -76,16 +80,17 @@ def mended(document: bytes) -> Mending:
 class _Workshop:
     """A description that is being mended."""
 
-    def __init__(self, document: bytes) -> None:
+    def __init__(self, document: bytes, path: Path | None) -> None:
+        self._path = path
         self._done: list[Flaw] = []
         try:
             cleared = read_document(document)
-        except DocumentError:  # `_read` says why
+        except DocumentError:  # `self._read` says why
             content = as_utf_8(document)
         else:
             content = as_utf_8(cleared.content)
             self._done.extend(cleared.flaws)
-        self._take(content, *_read(content))
+        self._take(content, *self._read(content))
         self._refused: dict[str, str] = {}
 
     def mend(self, *, kinematic: bool) -> bool:
@@ -95,7 +100,7 @@ class _Workshop:
         while pending:
             group = pending.pop(0)
             after = edited(self._content, [edit for flaw in group for edit in flaw.edits])
-            description, fault = _read(after)
+            description, fault = self._read(after)
             harm = _harm(self._description, description, fault, kinematic=kinematic)
             if not harm:
                 self._take(after, description, fault)
@@ -119,6 +124,12 @@ class _Workshop:
         self._description, self._fault = description, fault
         self._content = content if description is None else as_utf_8(description.document)
 
+    def _read(self, content: bytes) -> tuple[Description | None, str]:
+        try:
+            return read_content(content, Source(content, "", self._path)), ""
+        except RobotLoadError as error:
+            return None, f"{error.element}: {error.cause}" if error.element else error.cause
+
     def _flaws(self) -> list[Flaw]:
         """The flaws that the reader and the lint find."""
         found = lint(self._content, self._description)
@@ -137,13 +148,6 @@ class _Workshop:
                 taken.extend(flaw.edits)
                 last = max(last, *(edit.end for edit in flaw.edits))
         return chosen
-
-
-def _read(content: bytes) -> tuple[Description | None, str]:
-    try:
-        return read(content), ""
-    except RobotLoadError as error:
-        return None, f"{error.element}: {error.cause}" if error.element else error.cause
 
 
 def _first(flaw: Flaw) -> int:

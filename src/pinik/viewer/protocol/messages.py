@@ -7,6 +7,7 @@ from collections.abc import Callable, Iterable, Mapping
 from typing import Any
 
 from ...checks import as_finite_number, as_vector
+from ...echoes import QUOTED, shortened
 from ...errors import InputError, UnknownNameError
 from ...problem.tolerance import Tolerance
 from ..simulation.session import Session
@@ -100,14 +101,16 @@ def checked(kind: str, message: Mapping[str, Any], fields: Mapping[str, Check]) 
 def any_text(what: str, value: Any) -> str:
     """Check that a value is a text."""
     if not isinstance(value, str):
-        raise InputError(f"{what} must be a text; got {str(value)[:60]!r}")
+        raise InputError(f"{what} must be a text; got {shortened(str(value), QUOTED)!r}")
     return value
 
 
 def text(what: str, value: Any) -> str:
     """Check that a value is a text of at most 200 characters."""
     if not isinstance(value, str) or len(value) > _LONGEST_NAME:
-        raise InputError(f"{what} must be a text of at most {_LONGEST_NAME} characters; got {str(value)[:60]!r}")
+        raise InputError(
+            f"{what} must be a text of at most {_LONGEST_NAME} characters; got {shortened(str(value), QUOTED)!r}"
+        )
     return value
 
 
@@ -157,10 +160,10 @@ def _tolerance_or_none(what: str, value: Any) -> Tolerance | None:
     if value is None:
         return None
     if not isinstance(value, list) or len(value) != 2:
-        raise InputError(f"{what} must be null or [metres, radians]; got {str(value)[:60]!r}")
+        raise InputError(f"{what} must be null or [metres, radians]; got {shortened(str(value), QUOTED)!r}")
     lengths = value[0] if isinstance(value[0], list) else [value[0]]
     if len(lengths) not in (1, 3):
-        raise InputError(f"{what} must have one length, or three for a box; got {str(value)[:60]!r}")
+        raise InputError(f"{what} must have one length, or three for a box; got {shortened(str(value), QUOTED)!r}")
     position = [_position_tolerance(what, length) for length in lengths]
     return Tolerance.of((position[0] if len(position) == 1 else position, _orientation_tolerance(what, value[1])))
 

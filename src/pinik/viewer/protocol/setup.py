@@ -7,6 +7,7 @@ from collections.abc import Iterator
 from typing import Any
 from urllib.parse import parse_qsl, quote, urlencode
 
+from ...echoes import QUOTED, shortened
 from ...errors import InputError, UnknownNameError
 from ...problem.tolerance import Tolerance
 from ..simulation.ball import Ball
@@ -204,7 +205,7 @@ def _removals(session: Session, wanted: list[Any]) -> Iterator[dict[str, Any]]:
 
 def _on(name: str, text: str) -> bool:
     if text not in ("on", "off"):
-        raise InputError(f"set-up: {name} must be on or off; got {text[:60]!r}")
+        raise InputError(f"set-up: {name} must be on or off; got {shortened(text, QUOTED)!r}")
     return text == "on"
 
 
@@ -214,13 +215,13 @@ def _parsed(name: str, text: str, kind: type[list[Any]] | type[dict[str, Any]]) 
     except ValueError:
         value = None
     if not isinstance(value, kind):
-        raise InputError(f"set-up: {name} must be a JSON {_JSON_NAMES[kind]}; got {text[:60]!r}")
+        raise InputError(f"set-up: {name} must be a JSON {_JSON_NAMES[kind]}; got {shortened(text, QUOTED)!r}")
     return value
 
 
 def _whole(name: str, text: str) -> int:
     if not text.isdecimal() or len(text) > 9:
-        raise InputError(f"set-up: {name} must be a whole number; got {text[:60]!r}")
+        raise InputError(f"set-up: {name} must be a whole number; got {shortened(text, QUOTED)!r}")
     return int(text)
 
 
@@ -230,5 +231,7 @@ def _numbers(name: str, text: str, count: int) -> list[float]:
     except ValueError:
         numbers = []
     if len(numbers) != count:
-        raise InputError(f"set-up: {name} must be {count} number{'s' if count > 1 else ''}; got {text[:60]!r}")
+        raise InputError(
+            f"set-up: {name} must be {count} number{'s' if count > 1 else ''}; got {shortened(text, QUOTED)!r}"
+        )
     return numbers

@@ -7,6 +7,7 @@ import time
 from collections.abc import Callable
 from typing import Any
 
+from ...echoes import shortened
 from ...errors import InputError, PinikError
 from ...robot import Robot
 from ..protocol.frames import FrameMaker
@@ -246,5 +247,4 @@ class Show:
 
 def _notice(words: str) -> str:
     """Return an `error` message, which pages show for a while."""
-    words = words if len(words) <= _LONGEST_ERROR else f"{words[:_LONGEST_ERROR]} …"
-    return json.dumps({"type": "error", "message": words})
+    return json.dumps({"type": "error", "message": shortened(words, _LONGEST_ERROR)})

@@ -14,7 +14,7 @@ import pinik
 from by_hand import homogeneous, random_rotation
 from engines import needs_native
 from pinik import InputError, InputWarning, Target
-from pinik.checks import as_rotation, as_rotations, as_se3
+from pinik.rotations import as_rotation, as_rotations, as_se3
 
 TIP = "panda_hand_tcp"
 
