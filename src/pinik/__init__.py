@@ -37,12 +37,14 @@ from .solvers.pseudo_inverse import PseudoInverse
 from .solvers.registry import CLOSED_FORMS, SOLVERS
 from .solvers.transpose import JacobianTranspose
 from .solvers.two_bone import TwoBoneSolver
+from .solving.branches import Branches
 from .solving.front import iterate, prepare, solve
 from .solving.jumps import Excess, Jump
 from .solving.many import Solutions, solve_many
 from .solving.options import Options
 from .solving.prepared import Prepared
 from .solving.solution import Solution
+from .solving.solve_all import solve_all
 from .solving.state import State, Status
 from .solving.track import Track, track
 from .solving.tracker import Tracker, TrackerStatus
@@ -53,6 +55,7 @@ __all__ = [
     "CCD",
     "CLOSED_FORMS",
     "SOLVERS",
+    "Branches",
     "DampedLeastSquares",
     "EngineError",
     "Excess",
@@ -100,6 +103,7 @@ __all__ = [
     "parameter",
     "prepare",
     "solve",
+    "solve_all",
     "solve_many",
     "track",
     "two_bone",

@@ -16,8 +16,10 @@ from .problem.tolerance import Tolerance
 from .solvers.registry import Method
 from .solving import batch
 from .solving.answer import answer
+from .solving.branches import Branches
 from .solving.native.recalling import recalling
 from .solving.solution import Solution
+from .solving.solve_all import solve_all
 from .solving.words import UNWEIGHTED
 
 __all__ = ["Robot"]
@@ -118,3 +120,10 @@ class Robot(RobotModel):
             choose_weights,
         )  # fmt: skip
         return answer(self, targets, method, wanted, q0, given, solver_parameters)
+
+    def solve_all(self, targets: str | Target | Sequence[Target], **words: Any) -> Branches:
+        """Find all distinct configurations that move frames of the robot to their targets, inside the limits.
+
+        `pinik.solve_all` explains the arguments, the answers and the errors.
+        """
+        return solve_all(self, targets, **words)

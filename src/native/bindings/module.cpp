@@ -20,4 +20,5 @@ NB_MODULE(_native, m) {
   pinik::register_places(m);
   pinik::register_kinematics(m);
   pinik::register_track(m);
+  pinik::register_search(m);
 }

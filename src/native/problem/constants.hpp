@@ -49,6 +49,18 @@ struct Constants {
   int table_size = 0;
   int table_nearest = 0;
   std::uint64_t table_key = 0;
+  int spread_size = 0;
+  int spread_nearest = 0;
+  double exact_answer = not_given;
+  Patience search_patience;
+  int search_least = 0;
+  int search_since = 0;
+  int search_samples = 0;
+  int search_ranks = 0;
+  double search_rank_threshold = not_given;
+  double search_approach = not_given;
+  double search_basin = not_given;
+  double search_outside = not_given;
   double jump_floor = not_given;
   double jump_factor = not_given;
   double jump_damping = not_given;

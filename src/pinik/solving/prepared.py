@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import time
 from collections.abc import Mapping, Sequence
-from typing import Any
+from functools import cached_property
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import pinocchio
@@ -17,14 +18,18 @@ from ..solvers.base import Solver
 from .attempts import Attempts
 from .native.codec import goals_of
 from .native.compiling import make_engine
-from .native.module import why_not
+from .native.module import load, why_not
 from .native.recalling import make_call, note
 from .options import Options
 from .origin import Origin
 from .question import Question
+from .search import Search
 from .solution import Solution
 
 __all__ = ["Prepared"]
+
+if TYPE_CHECKING:
+    from .._native import Searcher
 
 Array = NDArray[np.float64]
 
@@ -71,6 +76,16 @@ class Prepared:
             self._attempts = Attempts(self.question)
         return self._attempts
 
+    @cached_property
+    def search(self) -> Search:
+        """The Python engine's search for all answers to this problem."""
+        return Search(self.question)
+
+    @cached_property
+    def searcher(self) -> Searcher | None:
+        """The compiled engine's search, if that engine is used."""
+        return None if self.native is None else load().Searcher(self.native)
+
     def __call__(
         self,
         targets: Target | Sequence[Target] | pinocchio.SE3 | ArrayLike | None = None,
@@ -97,14 +112,14 @@ class Prepared:
     def answer(
         self,
         asked: tuple[Target, ...],
-        q0: ArrayLike | Mapping[str, float] | str | None = None,
+        q0: ArrayLike | Mapping[str, float] | str | Origin | None = None,
         began: float | None = None,
     ) -> Solution:
         """Solve for targets of exactly the same kinds as those that it was prepared with.
 
         Args:
             asked: The targets.
-            q0: Start, as for a call.
+            q0: Start, as for a call, or as `Origin.of` reads it.
             began: The time at which the time limit began to run, from `time.perf_counter` [s]; now when None.
         """
         began = time.perf_counter() if began is None else began

@@ -8,7 +8,7 @@ from ... import checks
 from ...model import configurations, joint, limits
 from ...problem import problem, reach, slack, targets, tolerance
 from ...solvers import ccd, chaser, damped_least_squares, pseudo_inverse
-from .. import aims, attempts, changes, choice, run, starts, walk
+from .. import aims, attempts, changes, choice, run, search, spread, starts, walk
 from .module import load
 
 __all__ = ["CONSTANTS", "make_constants"]
@@ -42,6 +42,17 @@ CONSTANTS = {
     "table_size": starts.SIZE,
     "table_nearest": starts.NEAREST,
     "table_key": starts.OF_THE_TABLE,
+    "spread_size": spread.SIZE,
+    "spread_nearest": spread.NEAREST,
+    "exact_answer": search.EXACT,
+    "search_least": search.LEAST,
+    "search_since": search.SINCE,
+    "search_samples": search.SAMPLES,
+    "search_ranks": search.RANKS,
+    "search_rank_threshold": search.RANK_THRESHOLD,
+    "search_approach": search.APPROACH,
+    "search_basin": search.BASIN,
+    "search_outside": search.OUTSIDE,
     "jump_floor": changes.JUMP_FLOOR,
     "jump_factor": changes.JUMP_FACTOR,
     "jump_damping": changes.JUMP_DAMPING,
@@ -49,7 +60,10 @@ CONSTANTS = {
     "creep_halvings": walk.CREEP_HALVINGS,
     "tick_iterations": walk.TICK_ITERATIONS,
 }
-"""The value of each constant, by its name in the compiled engine; `to_the_end` is not a single number."""
+"""The value of each constant that is one number, by its name in the compiled engine."""
+
+PATIENCES = {"to_the_end": run.TO_THE_END, "search_patience": search.PATIENCE}
+"""The patience of runs, likewise."""
 
 
 def make_constants() -> Any:
@@ -58,5 +72,6 @@ def make_constants() -> Any:
     constants = native.Constants()
     for name, value in CONSTANTS.items():
         setattr(constants, name, value)
-    constants.to_the_end = native.Patience(run.TO_THE_END.iterations, run.TO_THE_END.progress)
+    for name, patience in PATIENCES.items():
+        setattr(constants, name, native.Patience(patience.iterations, patience.progress))
     return constants

@@ -1,0 +1,191 @@
+"""All answers to one question, and how complete they are."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..model.robot_model import RobotModel
+from ..problem.targets import Target
+from .origin import unwound
+from .question import Question
+from .state import Status
+from .verdict import measure_errors
+from .windings import winding_ranges, wound
+
+__all__ = ["Branches"]
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class Branches:
+    """The distinct configurations that reach the targets inside the limits, each checked by plain Pinocchio.
+
+    Two configurations are distinct if a joint differs by more than 0.01 rad, or by more than 0.01 of the chain's length
+    for prismatic joints, after whole turns of hinges. Those that differ by whole turns only are one branch: `q` has the
+    one nearest to the start, and `windings` tells how far the joints can turn from there.
+
+    Attributes:
+        q: The configurations (n, nq), ordered by `distance`.
+        distance: The largest change of a joint from the start to each (n,) [rad, or m for prismatic joints].
+        position_error: The largest position error of each (n,) [m], by plain Pinocchio; NaN without positions.
+        orientation_error: The largest orientation error, likewise (n,) [rad].
+        found_at: The number of the start from which each was found (n,); 0 is the given start.
+        hits: How many starts led to each (n,).
+        starts: The number of starts tried.
+        redundancy: The dimension of the set of answers at a general configuration. If it is 0, answers are isolated; if
+            not, there are infinitely many, and `q` has a sample of them.
+        is_complete: Whether these are proved to be all; only a closed form proves it.
+        status: `Status.CONVERGED` if there is an answer; else why there is none.
+        message: One sentence on what was found and what may be missing.
+        time: The duration of the search [s].
+    """
+
+    q: Array
+    distance: Array
+    position_error: Array
+    orientation_error: Array
+    found_at: NDArray[np.int64]
+    hits: NDArray[np.int64]
+    starts: int
+    redundancy: int
+    is_complete: bool
+    status: Status
+    message: str
+    time: float
+    _question: Question = field(repr=False)
+    _targets: tuple[Target, ...] = field(repr=False)
+    _start: Array = field(repr=False)
+    _turned: Mapping[str, float] = field(repr=False)
+    _engine: str = field(repr=False)
+
+    @property
+    def robot(self) -> RobotModel:
+        """The robot."""
+        return self._question.robot
+
+    @property
+    def targets(self) -> tuple[Target, ...]:
+        """The targets."""
+        return self._targets
+
+    @property
+    def engine(self) -> str:
+        """The engine that was used: "python" or "native"."""
+        return self._engine
+
+    @property
+    def success(self) -> bool:
+        """Whether there is an answer."""
+        return len(self.q) > 0
+
+    @property
+    def estimate_missing(self) -> float:
+        """An estimate of how many branches are missing; 0 if these are all, infinite if there are infinitely many.
+
+        It is Chao's lower bound (1984), f₁ (f₁ − 1) / (2 (f₂ + 1)), where f₁ branches were found by one start and f₂ by
+        two. As Good and Turing saw (Good 1953), what was seen once tells how much was not seen. The bound knows nothing
+        of branches that no start leads to.
+        """
+        return missing(self.hits, self.redundancy, self.is_complete)
+
+    @cached_property
+    def angles(self) -> list[dict[str, float]]:
+        """The angles by joint name [rad or m] of each branch; continuous joints at the turn nearest to the start."""
+        return [unwound(self.robot, q, self._start, self._turned) for q in self.q]
+
+    @cached_property
+    def windings(self) -> NDArray[np.int64]:
+        """By how many whole turns each joint of each branch can turn without leaving the limits (n, n_joints, 2).
+
+        The last axis has the fewest turns, at most 0, and the most, at least 0, in the order of `robot.joint_names`. A
+        joint without limits, which can turn for ever, has (0, 0).
+        """
+        return winding_ranges(self._question.limits, self._question.problem, self.q)
+
+    def wound(self, index: int) -> Iterator[Array]:
+        """Every configuration (nq,) of branch `index` inside the limits, whole turns included; the branch itself first.
+
+        There may be very many: 64 for an arm of six joints with two turns each.
+        """
+        return wound(self._question.limits.robot, self.q[index], self.windings[index])
+
+    @property
+    def errors(self) -> list[tuple[Any, ...]]:
+        """The error of each target at each branch, by plain Pinocchio."""
+        tolerance = self._question.options.tolerance
+        return [measure_errors(self.robot, self._targets, q, tolerance) for q in self.q]
+
+    def __len__(self) -> int:
+        return len(self.q)
+
+    def __bool__(self) -> bool:
+        return self.success
+
+    def __iter__(self) -> Iterator[Array]:
+        return iter(self.q)
+
+    def __getitem__(self, index: int) -> Array:
+        return np.asarray(self.q[index])
+
+    def __str__(self) -> str:
+        return self.message
+
+    def to_dict(self) -> dict[str, Any]:
+        """A dictionary for JSON, as `pinik solve-all --json` prints it."""
+        missing = self.estimate_missing
+        return {
+            "schema": 1,
+            "robot": self.robot.name,
+            "success": self.success,
+            "status": self.status.name,
+            "message": self.message,
+            "branches": [
+                {
+                    "angles": angles,
+                    "q": q.tolist(),
+                    "distance": float(distance),
+                    "position_error_m": _number(position),
+                    "orientation_error_rad": _number(orientation),
+                    "found_at": int(found_at),
+                    "hits": int(hits),
+                    "windings": {
+                        name: turns.tolist()
+                        for name, turns in zip(self.robot.joint_names, windings, strict=True)
+                        if turns.any()
+                    },
+                }
+                for angles, q, distance, position, orientation, found_at, hits, windings in zip(
+                    self.angles, self.q, self.distance, self.position_error, self.orientation_error, self.found_at,
+                    self.hits, self.windings, strict=True,
+                )
+            ],
+            "complete": self.is_complete,
+            "estimate_missing": None if math.isinf(missing) else missing,
+            "redundancy": self.redundancy,
+            "starts": self.starts,
+            "time_s": self.time,
+            "method": self._question.options.method.name,
+            "engine": self._engine,
+        }  # fmt: skip
+
+
+def missing(hits: NDArray[np.int64], redundancy: int, is_complete: bool) -> float:
+    """`Branches.estimate_missing`, from how many starts led to each branch."""
+    if is_complete:
+        return 0.0
+    if redundancy:
+        return math.inf
+    once, twice = int((hits == 1).sum()), int((hits == 2).sum())
+    return once * (once - 1) / (2 * (twice + 1))
+
+
+def _number(value: float) -> float | None:
+    return None if math.isnan(value) else float(value)

@@ -1,0 +1,279 @@
+"""The search for all distinct answers to one question."""
+
+from __future__ import annotations
+
+import copy
+import dataclasses
+import math
+import time
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..problem.kinematics import Kinematics
+from ..problem.targets import Target
+from ..problem.tolerance import TargetError, Tolerance, largest_of
+from ..solvers.base import Patience
+from .choice import SAME_ANSWER
+from .metric import Metric
+from .question import Question
+from .run import Pace, run
+from .spread import Spread
+from .state import Status
+from .verdict import all_within, measure_errors
+
+__all__ = ["Findings", "Search"]
+
+Array = NDArray[np.float64]
+
+EXACT = 1e-9
+"""The tolerance of an answer [rad, or m per length of the chain], unless a smaller one is asked for."""
+
+PATIENCE = Patience(5, 0.05)
+"""The patience of a run: one more or two fewer iterations find fewer answers in the same time."""
+
+LEAST = 56
+"""The smallest number of starts, where answers are isolated."""
+
+SINCE = 3
+"""The number of starts for each answer found that must bring nothing new before the search ends."""
+
+SAMPLES = 32
+"""The number of starts where answers are not isolated."""
+
+RANKS = 3
+"""The number of configurations whose Jacobian's rank tells whether answers are isolated."""
+
+RANK_THRESHOLD = 1e-6
+"""The smallest singular value that counts towards the rank, relative to the largest."""
+
+APPROACH = 0.7
+"""The part of the distance to a known answer that a step must leave at most, if the run is to be heading for it."""
+
+BASIN = 20.0
+"""The distance from a known answer within which a run may be heading for it, per singular value [1/m] there."""
+
+OUTSIDE = 1e-9
+"""The largest change [rad, or lengths of the chain] that brings an answer inside the limits."""
+
+
+@dataclass
+class Found:
+    """One answer.
+
+    Attributes:
+        q: The configuration (nq,).
+        is_inside: Whether it is inside the limits.
+        start: The number of the start from which it was found.
+        hits: How many starts led to it.
+        basin: The distance from which a run that comes nearer is taken to end here.
+    """
+
+    q: Array
+    is_inside: bool
+    start: int
+    hits: int = 1
+    basin: float = 0.0
+
+
+@dataclass
+class Findings:
+    """What a search came to.
+
+    Attributes:
+        q: The answers inside the limits (n, nq), in the order in which they were found.
+        position_error, orientation_error: Their largest errors (n,) [m, rad] by plain Pinocchio; NaN where none is
+            asked for.
+        start: The numbers of the starts from which they were found (n,); 0 is the given one.
+        hits: How many starts led to each (n,).
+        outside: The number of answers outside the limits; they are not looked for where answers are not isolated.
+        starts: The number of starts.
+        iterations: The iterations of all runs.
+        redundancy: The dimension of the set of answers at a general configuration: 0 if answers are isolated.
+        ended_early: Whether the time limit ended the search.
+        time: The duration of the search [s].
+    """
+
+    q: Array
+    position_error: Array
+    orientation_error: Array
+    start: NDArray[np.int64]
+    hits: NDArray[np.int64]
+    outside: int
+    starts: int
+    iterations: int
+    redundancy: int
+    ended_early: bool
+    time: float
+
+    @classmethod
+    def nothing(cls, nq: int) -> Findings:
+        """What no search comes to, for configurations of `nq` numbers."""
+        none, counts = np.zeros(0), np.zeros(0, dtype=np.int64)
+        return cls(np.zeros((0, nq)), none, none, counts, counts, 0, 0, 0, 0, False, 0.0)
+
+    def with_answer(self, q: Array, errors: Sequence[TargetError]) -> Findings:
+        """These findings and one more answer (nq,) from the given start."""
+        position, orientation = largest_of(errors)
+        return dataclasses.replace(
+            self,
+            q=np.vstack([self.q, q]),
+            position_error=np.append(self.position_error, np.nan if position is None else position),
+            orientation_error=np.append(self.orientation_error, np.nan if orientation is None else orientation),
+            start=np.append(self.start, 0),
+            hits=np.append(self.hits, 1),
+        )
+
+
+class Search:
+    """Searches for the answers to questions of one kind, with the working memory of one thread."""
+
+    def __init__(self, question: Question) -> None:
+        self.question = question
+        self._sharp = _sharpened(question)
+        self._limits = question.limits
+        self._loose = dataclasses.replace(self._sharp, limits=self._limits.loosened())
+        self._kinematics = Kinematics.of(self._sharp.problem)
+        self._metric = Metric(self._sharp.problem, self._limits)
+        self._spread = Spread(self._kinematics, self._limits, question.options.seed)
+        self._redundancy: int | None = None
+
+    def __call__(self, targets: tuple[Target, ...], start: Array) -> Findings:
+        """Search for the answers to these targets, from `start` (nq,) and from other starts."""
+        self._began = time.perf_counter()
+        options = self.question.options
+        deadline = self._began + options.time_limit
+        self._kinematics.retarget(targets)
+        start = self._limits.wrap(start)
+        candidates = self._spread.begin(start)
+        most = min(candidates, options.restarts_at_most)
+        self._spread.mark(start)
+        if self._redundancy is None:
+            self._redundancy = self._dimension(start)
+        self._answers: list[Found] = []
+        self._last_new, self._starts, self._iterations, self._deadline = 0, 0, 0, deadline
+        self._is_late = False
+        q = start
+        while True:
+            self._attempt(q, start)
+            if self._is_late or self._starts > most or self._is_enough():
+                return self._findings(targets)
+            q = self._spread.next()
+
+    def _dimension(self, start: Array) -> int:
+        """The number of free coordinates without the rank of the Jacobian at general configurations."""
+        free = self._sharp.problem.free
+        ranks = [0]
+        for k in range(1, RANKS + 1):
+            J = self._kinematics.linearize(self._spread.take(k, start)).J[:, free]
+            singular = np.linalg.svd(J, compute_uv=False)
+            ranks.append(int((singular > RANK_THRESHOLD * singular.max(initial=0.0)).sum()))
+        return int(free.sum()) - max(ranks)
+
+    def _is_enough(self) -> bool:
+        """Whether further starts are unlikely to bring a new answer.
+
+        Of isolated answers, each was found twice, and there were three starts for each since the last new one.
+        """
+        if self._redundancy:
+            return self._starts >= SAMPLES
+        since = self._starts - 1 - self._last_new
+        return (
+            self._starts >= LEAST
+            and since >= SINCE * len(self._answers)
+            and all(answer.hits >= 2 for answer in self._answers)
+        )
+
+    def _attempt(self, start: Array, near: Array) -> None:
+        """Run from one start.
+
+        If answers are isolated, the run may leave the limits to the end, since an answer outside counts as known too,
+        and it ends as soon as it is heading for a known one.
+        """
+        number, isolated = self._starts, self._redundancy == 0
+        self._starts += 1
+        pace = Pace(self.question.options.iterations_at_most, PATIENCE, bold=True, loosens=False)
+        known: Found | None = None
+        before = start
+        for state in run(self._loose if isolated else self._sharp, self._kinematics, start, pace, near):
+            self._iterations += 1
+            if state.status is not None:
+                break
+            if self._deadline < math.inf and time.perf_counter() > self._deadline:
+                self._is_late = True
+                return
+            known = self._heading_for(state.q, before) if isolated and state.iteration else None
+            if known is not None:
+                break
+            before = state.q
+        if known is None and state.status is not Status.CONVERGED:
+            return
+        for answer in self._answers:
+            if known is None and self._metric.largest(state.q, answer.q) <= SAME_ANSWER:
+                known = answer
+        if known is None:
+            self._add(state.q, near, number)
+        else:
+            known.hits += 1
+
+    def _heading_for(self, q: Array, before: Array) -> Found | None:
+        """The known answer that a run is heading for: one nearby, which the step from `before` to `q` led towards."""
+        for answer in self._answers:
+            now = self._metric.length(q, answer.q)
+            if now < answer.basin and now < APPROACH * self._metric.length(before, answer.q):
+                return answer
+        return None
+
+    def _add(self, q: Array, near: Array, number: int) -> None:
+        inside = self._limits.wrap(q, near)
+        is_inside = self._metric.largest(inside, q) <= OUTSIDE
+        answer = Found(inside if is_inside else q, is_inside, number)
+        if self._redundancy == 0:
+            answer.basin = BASIN * self._least_singular_value(answer.q)
+        self._spread.mark(answer.q)
+        self._answers.append(answer)
+        self._last_new = number
+
+    def _least_singular_value(self, q: Array) -> float:
+        """A lower bound of the Jacobian's smallest singular value, per length of the chain: σ² ≥ 1 / trace (JᵀJ)⁻¹."""
+        J = self._kinematics.linearize(q).J[:, self._sharp.problem.free]
+        try:
+            trace = float(np.trace(np.linalg.inv(J.T @ J)))
+        except np.linalg.LinAlgError:
+            return 0.0
+        return 1.0 / math.sqrt(trace) / self._sharp.problem.size_of_chain if 0.0 < trace < math.inf else 0.0
+
+    def _findings(self, targets: tuple[Target, ...]) -> Findings:
+        question = self.question
+        findings = dataclasses.replace(
+            Findings.nothing(question.robot.model.nq),
+            outside=sum(not answer.is_inside for answer in self._answers),
+            starts=self._starts,
+            iterations=self._iterations,
+            redundancy=self._redundancy or 0,
+            ended_early=self._is_late,
+        )
+        for answer in self._answers:
+            errors = measure_errors(question.robot, targets, answer.q, question.options.tolerance)
+            if answer.is_inside and all_within(errors, question):
+                findings = findings.with_answer(answer.q, errors)
+                findings.start[-1], findings.hits[-1] = answer.start, answer.hits
+        findings.time = time.perf_counter() - self._began
+        return findings
+
+
+def _sharpened(question: Question) -> Question:
+    """The question with tolerances that only exact answers meet."""
+    problem = copy.copy(question.problem)
+    size = problem.size_of_chain
+    problem.terms = tuple([dataclasses.replace(term, tolerance=_sharp(term.tolerance, size)) for term in problem.terms])
+    problem.is_wide = False
+    return dataclasses.replace(question, problem=problem)
+
+
+def _sharp(tolerance: Tolerance, size_of_chain: float) -> Tolerance:
+    allowed = tolerance.position
+    least = min(allowed) if isinstance(allowed, tuple) else allowed
+    return Tolerance(min(least, EXACT * size_of_chain), min(tolerance.orientation, EXACT))

@@ -1,0 +1,210 @@
+"""The function `solve_all`: every distinct configuration that reaches the targets."""
+
+from __future__ import annotations
+
+import dataclasses
+import time
+from collections.abc import Iterable, Mapping, Sequence
+from typing import Any
+
+import numpy as np
+import pinocchio
+from numpy.typing import ArrayLike, NDArray
+
+from ..closed_form.robot_bones import TwoBone
+from ..errors import InputError
+from ..model.robot_model import RobotModel
+from ..problem.reach import shortfall
+from ..problem.target_values import Position
+from ..problem.targets import Target
+from ..problem.tolerance import Tolerance
+from ..solvers.registry import Method
+from .branches import Branches, missing
+from .choice import SAME_ANSWER
+from .kept import kept_of
+from .native.codec import goals_of
+from .options import OPTION_NAMES, Options
+from .origin import Origin
+from .prepared import Prepared
+from .search import Findings
+from .spread import NEAREST
+from .state import Status
+from .verdict import all_within, measure_errors
+from .words import UNWEIGHTED, asked_targets
+
+__all__ = ["solve_all"]
+
+Array = NDArray[np.float64]
+
+_OPTIONS = tuple(name for name in OPTION_NAMES if name not in ("trace", "polish", "choose", "choose_weights"))
+
+
+def solve_all(
+    robot: RobotModel,
+    targets: str | Target | Sequence[Target],
+    method: Method = "dls",
+    *,
+    position: Position | None = None,
+    rotation: ArrayLike | None = None,
+    rpy: ArrayLike | None = None,
+    quat_xyzw: ArrayLike | None = None,
+    quat_wxyz: ArrayLike | None = None,
+    placement: pinocchio.SE3 | ArrayLike | None = None,
+    axis: str | ArrayLike | None = None,
+    direction: ArrayLike | None = None,
+    at: ArrayLike | None = None,
+    tool: pinocchio.SE3 | ArrayLike | None = None,
+    relative_to: str | None = None,
+    weight: float = UNWEIGHTED,
+    q0: ArrayLike | Mapping[str, float] | None = None,
+    limits: bool = True,
+    locked: Iterable[str] = (),
+    restarts: int | None = None,
+    seed: int = 0,
+    max_iterations: int | None = None,
+    tolerance: Tolerance | ArrayLike | None = None,
+    time_limit: float | None = None,
+    engine: str = "auto",
+    **solver_parameters: Any,
+) -> Branches:
+    """Find all distinct configurations that move frames of the robot to their targets, inside the limits.
+
+    The search is numerical and works for any robot, so it finds all branches in nearly every case, and proves nothing.
+    It starts from `q0` and from configurations that are spread as far apart as their frames are near to the targets. A
+    run ends as soon as it is heading for a known answer. After 56 starts the search ends if each answer was found at
+    least twice, and if three starts for each answer have brought nothing new; after 128 at the latest. The same seed
+    gives the same answers.
+
+    If the robot has more joints than the targets need, the answers are infinitely many. Then `q` is a sample that is
+    spread over them, and `pinik.self_motion` follows them from there.
+
+    If no configuration meets the targets exactly, as with an arm of five joints and a whole pose, the one answer is
+    that of `pinik.solve`, inside the tolerance.
+
+    Args:
+        robot: The robot.
+        targets: The name of a frame, with its target in the keywords from `position` to `weight`; or one or several
+            Target objects.
+        method: The method, as for `pinik.solve`. "two_bone" knows both answers in closed form, and so all of them.
+        position, rotation, rpy, quat_xyzw, quat_wxyz, placement, axis, direction, at, tool, relative_to, weight: As for
+            `Target`.
+        q0: The first start, as for `pinik.solve`, from which the distance of the answers is measured.
+        limits: Whether to enforce the joint limits.
+        locked: Names of joints that must not move.
+        restarts: The maximum number of starts after the first; at most 128, which is meant by None.
+        seed: The seed of the starts.
+        max_iterations: The maximum number of iterations per start.
+        tolerance: The errors that count as reached. Answers are exact to 1e-9 rad, and 1e-9 of the chain's length,
+            unless no such answer exists.
+        time_limit: Time limit [s]; a search that it ends keeps what was found.
+        engine: "auto", "python" or "native".
+        **solver_parameters: Parameters of the solver.
+
+    Returns:
+        The answers, ordered by their distance from `q0`, with what is known of their completeness.
+
+    Raises:
+        UnknownNameError, InputError, EngineError: As for `pinik.solve`.
+    """
+    if not isinstance(robot, RobotModel):
+        raise InputError(f"robot must be what pinik.load returns; got {robot!r}")
+    wanted = (
+        position, rotation, rpy, quat_xyzw, quat_wxyz, placement, axis, direction, at, tool, relative_to, weight,
+    )  # fmt: skip
+    asked = asked_targets(targets, wanted, method, solver_parameters, ("q0", *_OPTIONS))
+    options = Options.of(
+        method, solver_parameters, limits=limits, locked=locked, restarts=NEAREST if restarts is None else restarts,
+        seed=seed, max_iterations=max_iterations, tolerance=tolerance, time_limit=time_limit, engine=engine,
+    )  # fmt: skip
+    origin = Origin.of(robot, q0, searches=False)
+    prepared = kept_of(robot).prepared(robot, asked, options)
+    if options.method.exact:
+        return _in_closed_form(prepared, asked, origin)
+    findings = _search(prepared, asked, origin.q)
+    return _branches(prepared, asked, origin, findings)
+
+
+def _search(prepared: Prepared, targets: tuple[Target, ...], start: Array) -> Findings:
+    if shortfall(targets, prepared.question.bounds, prepared.options.tolerance) is not None:
+        return Findings.nothing(prepared.robot.model.nq)
+    if prepared.searcher is not None:
+        return Findings(*prepared.searcher.search(start, goals_of(targets)))
+    return prepared.search(targets, start)
+
+
+def _branches(prepared: Prepared, targets: tuple[Target, ...], origin: Origin, findings: Findings) -> Branches:
+    """The answers that a search found; where there is none, the one that a solve finds inside the tolerance."""
+    question = prepared.question
+    start = question.limits.wrap(origin.q)
+    status, message, words = Status.CONVERGED, "", _words(findings)
+    if not len(findings.q):
+        one = prepared.answer(targets, origin)
+        status, message, words = one.status, one.message, "1 answer inside the tolerance, none that is exact"
+        if one.success:
+            findings = findings.with_answer(one.q, one.errors)
+    distance = _distances(question.robot.model, start, findings.q)
+    order = np.argsort(distance, kind="stable")
+    return Branches(
+        findings.q[order],
+        distance[order],
+        findings.position_error[order],
+        findings.orientation_error[order],
+        findings.start[order],
+        findings.hits[order],
+        findings.starts,
+        findings.redundancy,
+        False,
+        status,
+        words if status is Status.CONVERGED else message,
+        findings.time,
+        question,
+        targets,
+        start,
+        origin.turned,
+        prepared.engine,
+    )
+
+
+def _in_closed_form(prepared: Prepared, targets: tuple[Target, ...], origin: Origin) -> Branches:
+    """Both answers of two bones, which are all."""
+    began = time.perf_counter()
+    question, robot = prepared.question, prepared.robot
+    start = question.limits.wrap(origin.q)
+    (target,) = targets
+    bones = TwoBone.of(robot, target.frame, tool=target.tool, relative_to=target.relative_to)
+    assert target.position is not None
+    both = bones.solve(target.position, start, limits=question.options.limits)
+    found: list[Array] = []
+    for q, inside in zip(both.q, both.inside, strict=True):
+        is_new = all(np.abs(pinocchio.difference(robot.model, other, q)).max() > SAME_ANSWER for other in found)
+        if inside and is_new and all_within(measure_errors(robot, targets, q, question.options.tolerance), question):
+            found.append(q)
+    findings = Findings.nothing(robot.model.nq)
+    for q in found:
+        findings = findings.with_answer(q, measure_errors(robot, targets, q, question.options.tolerance))
+    one = prepared.answer(targets, origin)
+    branches = _branches(prepared, targets, origin, findings)
+    words = f"{_count(len(found))}, all that there are" if found else one.message
+    return dataclasses.replace(branches, is_complete=True, message=words, time=time.perf_counter() - began)
+
+
+def _distances(model: pinocchio.Model, start: Array, q: Array) -> Array:
+    """The largest change of a joint from `start` (nq,) to each configuration (n, nq) [rad or m]."""
+    if model.nq == model.nv:
+        return np.asarray(np.abs(q - start).max(axis=1, initial=0.0))
+    return np.array([np.abs(pinocchio.difference(model, start, own)).max(initial=0.0) for own in q])
+
+
+def _words(findings: Findings) -> str:
+    """What a search found, and what may be missing."""
+    ended = ", ended by the time limit" if findings.ended_early else ""
+    begin = f"{_count(len(findings.q))} by {findings.starts} starts{ended}"
+    if findings.redundancy:
+        return f"{begin}, of infinitely many in {findings.redundancy} dimension{'s' * (findings.redundancy > 1)}"
+    last = f"the last new one by number {int(findings.start.max(initial=0)) + 1}"
+    left = missing(findings.hits, 0, False)
+    return f"{begin}, {last}; {'none seems to be' if left < 0.5 else f'about {left:.0f} may be'} missing"
+
+
+def _count(number: int) -> str:
+    return f"{number} answer{'s' * (number != 1)}"
