@@ -110,8 +110,8 @@ class Search {
     return static_cast<int>(static_cast<Eigen::Index>(problem_.coordinates.size()) - rank);
   }
 
-  // Whether further starts are unlikely to bring a new answer: of isolated answers, each was found twice, and there were
-  // three starts for each since the last new one.
+  // Whether further starts are unlikely to bring a new answer: of isolated answers, each inside the limits was found twice, and
+  // there were three starts for each since the last new one.
   bool is_enough() const {
     const Constants& constants = problem_.constants;
     if (findings_.starts < (redundancy_ > 0 ? constants.search_samples : constants.search_least)) return false;
@@ -119,7 +119,7 @@ class Search {
     const auto count = static_cast<std::int64_t>(findings_.answers.size());
     if (findings_.starts - 1 - last_new_ < constants.search_since * count) return false;
     for (const Found& answer : findings_.answers)
-      if (answer.hits < 2) return false;
+      if (answer.inside && answer.hits < 2) return false;
     return true;
   }
 

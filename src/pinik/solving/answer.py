@@ -18,7 +18,7 @@ from .prepared import Prepared
 from .solution import Solution
 from .words import UNWEIGHTED, Wanted, asked_targets, options_of
 
-__all__ = ["answer"]
+__all__ = ["answer", "prepared_for"]
 
 
 def answer(
@@ -54,11 +54,32 @@ def answer(
                 return quick
     asked = asked_targets(targets, wanted, method, parameters)
     if key is None or not all(asked[0].along):
-        key = key_of(tuple([target.shape for target in asked]), method, given, parameters)
-        prepared = _found(kept, key)
-    if prepared is None:
+        prepared = prepared_for(robot, asked, method, given, parameters)
+    elif prepared is None:
         prepared = kept.prepared(robot, asked, options_of(method, given, parameters), key)
     return prepared.answer(asked, q0)
+
+
+def prepared_for(
+    robot: RobotModel,
+    targets: Sequence[Target],
+    method: Method,
+    given: tuple[Any, ...],
+    parameters: dict[str, Any],
+) -> Prepared:
+    """The compiled problem for targets of these kinds; that of an earlier call with equal arguments, if there was one.
+
+    Args:
+        robot: The robot.
+        targets: The targets.
+        method: The method.
+        given: The values of the options, in the order of `OPTION_NAMES`.
+        parameters: The solver's parameters.
+    """
+    kept = kept_of(robot)
+    key = key_of(tuple([target.shape for target in targets]), method, given, parameters)
+    prepared = _found(kept, key)
+    return prepared or kept.prepared(robot, targets, options_of(method, given, parameters), key)
 
 
 def _is_plain(wanted: Wanted) -> bool:

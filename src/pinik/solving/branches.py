@@ -43,8 +43,8 @@ class Branches:
         redundancy: The dimension of the set of answers at a general configuration. If it is 0, answers are isolated; if
             not, there are infinitely many, and `q` has a sample of them.
         is_complete: Whether these are proved to be all; only a closed form proves it.
+        ended_early: Whether the time limit ended the search.
         status: `Status.CONVERGED` if there is an answer; else why there is none.
-        message: One sentence on what was found and what may be missing.
         time: The duration of the search [s].
     """
 
@@ -57,14 +57,15 @@ class Branches:
     starts: int
     redundancy: int
     is_complete: bool
+    ended_early: bool
     status: Status
-    message: str
     time: float
     _question: Question = field(repr=False)
     _targets: tuple[Target, ...] = field(repr=False)
     _start: Array = field(repr=False)
     _turned: Mapping[str, float] = field(repr=False)
     _engine: str = field(repr=False)
+    _words: str | None = field(repr=False)
 
     @property
     def robot(self) -> RobotModel:
@@ -87,6 +88,21 @@ class Branches:
         return len(self.q) > 0
 
     @property
+    def message(self) -> str:
+        """One sentence on what was found and what may be missing, or why there is no answer."""
+        if self._words is not None:
+            return self._words
+        begin = f"{len(self)} answer{'s' * (len(self) != 1)}"
+        if self.is_complete:
+            return f"{begin}, all that there are"
+        begin += f" by {self.starts} starts{', ended by the time limit' * self.ended_early}"
+        if self.redundancy:
+            return f"{begin}, of infinitely many in {self.redundancy} dimension{'s' * (self.redundancy > 1)}"
+        left = self.estimate_missing
+        missing = "none seems to be" if left < 0.5 else f"about {left:.0f} may be"
+        return f"{begin}, the last new one by number {int(self.found_at.max(initial=0)) + 1}; {missing} missing"
+
+    @property
     def estimate_missing(self) -> float:
         """An estimate of how many branches are missing; 0 if these are all, infinite if there are infinitely many.
 
@@ -94,7 +110,12 @@ class Branches:
         two. As Good and Turing saw (Good 1953), what was seen once tells how much was not seen. The bound knows nothing
         of branches that no start leads to.
         """
-        return missing(self.hits, self.redundancy, self.is_complete)
+        if self.is_complete:
+            return 0.0
+        if self.redundancy:
+            return math.inf
+        once, twice = int((self.hits == 1).sum()), int((self.hits == 2).sum())
+        return once * (once - 1) / (2 * (twice + 1))
 
     @cached_property
     def angles(self) -> list[dict[str, float]]:
@@ -175,16 +196,6 @@ class Branches:
             "method": self._question.options.method.name,
             "engine": self._engine,
         }  # fmt: skip
-
-
-def missing(hits: NDArray[np.int64], redundancy: int, is_complete: bool) -> float:
-    """`Branches.estimate_missing`, from how many starts led to each branch."""
-    if is_complete:
-        return 0.0
-    if redundancy:
-        return math.inf
-    once, twice = int((hits == 1).sum()), int((hits == 2).sum())
-    return once * (once - 1) / (2 * (twice + 1))
 
 
 def _number(value: float) -> float | None:

@@ -175,7 +175,8 @@ class Search:
     def _is_enough(self) -> bool:
         """Whether further starts are unlikely to bring a new answer.
 
-        Of isolated answers, each was found twice, and there were three starts for each since the last new one.
+        Of isolated answers, each inside the limits was found twice, and there were three starts for each since the last
+        new one.
         """
         if self._redundancy:
             return self._starts >= SAMPLES
@@ -183,7 +184,7 @@ class Search:
         return (
             self._starts >= LEAST
             and since >= SINCE * len(self._answers)
-            and all(answer.hits >= 2 for answer in self._answers)
+            and all(answer.hits >= 2 for answer in self._answers if answer.is_inside)
         )
 
     def _attempt(self, start: Array, near: Array) -> None:

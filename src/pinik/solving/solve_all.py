@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import dataclasses
 import time
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
@@ -19,11 +18,11 @@ from ..problem.target_values import Position
 from ..problem.targets import Target
 from ..problem.tolerance import Tolerance
 from ..solvers.registry import Method
-from .branches import Branches, missing
+from .answer import prepared_for
+from .branches import Branches
 from .choice import SAME_ANSWER
-from .kept import kept_of
 from .native.codec import goals_of
-from .options import OPTION_NAMES, Options
+from .options import OPTION_NAMES
 from .origin import Origin
 from .prepared import Prepared
 from .search import Findings
@@ -36,7 +35,8 @@ __all__ = ["solve_all"]
 
 Array = NDArray[np.float64]
 
-_OPTIONS = tuple(name for name in OPTION_NAMES if name not in ("trace", "polish", "choose", "choose_weights"))
+_OPTIONS = OPTION_NAMES[:-4]
+_FIXED = (False, True, "first", None)  # trace, polish, choose, choose_weights
 
 
 def solve_all(
@@ -112,13 +112,13 @@ def solve_all(
         position, rotation, rpy, quat_xyzw, quat_wxyz, placement, axis, direction, at, tool, relative_to, weight,
     )  # fmt: skip
     asked = asked_targets(targets, wanted, method, solver_parameters, ("q0", *_OPTIONS))
-    options = Options.of(
-        method, solver_parameters, limits=limits, locked=locked, restarts=NEAREST if restarts is None else restarts,
-        seed=seed, max_iterations=max_iterations, tolerance=tolerance, time_limit=time_limit, engine=engine,
+    given = (
+        limits, locked, NEAREST if restarts is None else restarts, seed, max_iterations, tolerance, time_limit, engine,
+        *_FIXED,
     )  # fmt: skip
     origin = Origin.of(robot, q0, searches=False)
-    prepared = kept_of(robot).prepared(robot, asked, options)
-    if options.method.exact:
+    prepared = prepared_for(robot, asked, method, given, solver_parameters)
+    if prepared.options.method.exact:
         return _in_closed_form(prepared, asked, origin)
     findings = _search(prepared, asked, origin.q)
     return _branches(prepared, asked, origin, findings)
@@ -132,16 +132,19 @@ def _search(prepared: Prepared, targets: tuple[Target, ...], start: Array) -> Fi
     return prepared.search(targets, start)
 
 
-def _branches(prepared: Prepared, targets: tuple[Target, ...], origin: Origin, findings: Findings) -> Branches:
+def _branches(
+    prepared: Prepared, targets: tuple[Target, ...], origin: Origin, findings: Findings, is_complete: bool = False
+) -> Branches:
     """The answers that a search found; where there is none, the one that a solve finds inside the tolerance."""
     question = prepared.question
     start = question.limits.wrap(origin.q)
-    status, message, words = Status.CONVERGED, "", _words(findings)
+    status, words = Status.CONVERGED, None
     if not len(findings.q):
         one = prepared.answer(targets, origin)
-        status, message, words = one.status, one.message, "1 answer inside the tolerance, none that is exact"
+        status, words = one.status, one.message
         if one.success:
             findings = findings.with_answer(one.q, one.errors)
+            words = "1 answer inside the tolerance; none that is exact was found"
     distance = _distances(question.robot.model, start, findings.q)
     order = np.argsort(distance, kind="stable")
     return Branches(
@@ -153,15 +156,16 @@ def _branches(prepared: Prepared, targets: tuple[Target, ...], origin: Origin, f
         findings.hits[order],
         findings.starts,
         findings.redundancy,
-        False,
+        is_complete,
+        findings.ended_early,
         status,
-        words if status is Status.CONVERGED else message,
         findings.time,
         question,
         targets,
         start,
         origin.turned,
         prepared.engine,
+        words,
     )
 
 
@@ -169,23 +173,19 @@ def _in_closed_form(prepared: Prepared, targets: tuple[Target, ...], origin: Ori
     """Both answers of two bones, which are all."""
     began = time.perf_counter()
     question, robot = prepared.question, prepared.robot
-    start = question.limits.wrap(origin.q)
     (target,) = targets
     bones = TwoBone.of(robot, target.frame, tool=target.tool, relative_to=target.relative_to)
     assert target.position is not None
+    start = question.limits.wrap(origin.q)
     both = bones.solve(target.position, start, limits=question.options.limits)
-    found: list[Array] = []
-    for q, inside in zip(both.q, both.inside, strict=True):
-        is_new = all(np.abs(pinocchio.difference(robot.model, other, q)).max() > SAME_ANSWER for other in found)
-        if inside and is_new and all_within(measure_errors(robot, targets, q, question.options.tolerance), question):
-            found.append(q)
     findings = Findings.nothing(robot.model.nq)
-    for q in found:
-        findings = findings.with_answer(q, measure_errors(robot, targets, q, question.options.tolerance))
-    one = prepared.answer(targets, origin)
-    branches = _branches(prepared, targets, origin, findings)
-    words = f"{_count(len(found))}, all that there are" if found else one.message
-    return dataclasses.replace(branches, is_complete=True, message=words, time=time.perf_counter() - began)
+    for q, inside in zip(both.q, both.inside, strict=True):
+        errors = measure_errors(robot, targets, q, question.options.tolerance)
+        is_new = all(np.abs(pinocchio.difference(robot.model, other, q)).max() > SAME_ANSWER for other in findings.q)
+        if inside and is_new and all_within(errors, question):
+            findings = findings.with_answer(q, errors)
+    findings.time = time.perf_counter() - began
+    return _branches(prepared, targets, origin, findings, is_complete=True)
 
 
 def _distances(model: pinocchio.Model, start: Array, q: Array) -> Array:
@@ -193,18 +193,3 @@ def _distances(model: pinocchio.Model, start: Array, q: Array) -> Array:
     if model.nq == model.nv:
         return np.asarray(np.abs(q - start).max(axis=1, initial=0.0))
     return np.array([np.abs(pinocchio.difference(model, start, own)).max(initial=0.0) for own in q])
-
-
-def _words(findings: Findings) -> str:
-    """What a search found, and what may be missing."""
-    ended = ", ended by the time limit" if findings.ended_early else ""
-    begin = f"{_count(len(findings.q))} by {findings.starts} starts{ended}"
-    if findings.redundancy:
-        return f"{begin}, of infinitely many in {findings.redundancy} dimension{'s' * (findings.redundancy > 1)}"
-    last = f"the last new one by number {int(findings.start.max(initial=0)) + 1}"
-    left = missing(findings.hits, 0, False)
-    return f"{begin}, {last}; {'none seems to be' if left < 0.5 else f'about {left:.0f} may be'} missing"
-
-
-def _count(number: int) -> str:
-    return f"{number} answer{'s' * (number != 1)}"
