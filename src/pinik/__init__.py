@@ -37,11 +37,14 @@ from .solvers.pseudo_inverse import PseudoInverse
 from .solvers.registry import CLOSED_FORMS, SOLVERS
 from .solvers.transpose import JacobianTranspose
 from .solvers.two_bone import TwoBoneSolver
+from .solving.freedom.arcs import Arc
+from .solving.freedom.stretches import End
 from .solving.front import iterate, prepare, solve
 from .solving.jumps import Excess, Jump
 from .solving.many import Solutions, solve_many
 from .solving.options import Options
 from .solving.prepared import Prepared
+from .solving.self_motion import SelfMotion, self_motion
 from .solving.solution import Solution
 from .solving.state import State, Status
 from .solving.track import Track, track
@@ -53,7 +56,9 @@ __all__ = [
     "CCD",
     "CLOSED_FORMS",
     "SOLVERS",
+    "Arc",
     "DampedLeastSquares",
+    "End",
     "EngineError",
     "Excess",
     "InputError",
@@ -73,6 +78,7 @@ __all__ = [
     "PseudoInverse",
     "Robot",
     "RobotLoadError",
+    "SelfMotion",
     "Solution",
     "Solutions",
     "SolveError",
@@ -99,6 +105,7 @@ __all__ = [
     "load",
     "parameter",
     "prepare",
+    "self_motion",
     "solve",
     "solve_many",
     "track",
