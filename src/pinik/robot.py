@@ -25,7 +25,7 @@ __all__ = ["Robot"]
 
 
 class Robot(RobotModel):
-    """A robot as returned by `pinik.load`: a `RobotModel` with the methods `solve`, `self_motion`, `placements` and `jacobians`."""
+    """A robot as returned by `pinik.load`: a `RobotModel` that can solve, and compute many configurations at once."""
 
     def placements(self, frame: str, Q: ArrayLike, relative_to: str | None = None) -> NDArray[np.float64]:
         """The placements of a frame at N configurations, as `placement` computes them one by one.

@@ -104,7 +104,7 @@ def self_motion(
     return _explored(question, given, as_count(points, "points", least=2))
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class SelfMotion:
     """The configurations that reach the targets, around one of them.
 
@@ -126,6 +126,7 @@ class SelfMotion:
             more dimensions.
         gap: The largest distance [rad] from a configuration known to be in the set to the nearest one of `q`, if the
             set has more dimensions than one; else None.
+        known: What was explored: the place alone, the curves, or the tree.
     """
 
     robot: RobotModel
@@ -139,7 +140,7 @@ class SelfMotion:
     turns: dict[str, int] = field(default_factory=dict)
     complete: bool = True
     gap: float | None = None
-    known: Isolated | Family | Tree = field(kw_only=True, repr=False)
+    known: Isolated | Family | Tree = field(kw_only=True)
 
     def __len__(self) -> int:
         return len(self.q)
@@ -188,6 +189,9 @@ class SelfMotion:
         asked = Origin.of(self.robot, q, searches=False).q
         within = as_positive_number(within, "within", "radians")
         return self.known.reaches(asked, within)
+
+    def __repr__(self) -> str:
+        return f"SelfMotion({self})"
 
     def __str__(self) -> str:
         if self.dimension == 0:

@@ -35,8 +35,31 @@ class Arc:
             start: The configuration (nq,) whose whole turns the angles of continuous joints go on from.
             points: The number of configurations.
         """
-        self.length, self.closed, self.ends = stretch.end - stretch.begin, stretch.closed, stretch.ends
-        self._curve, self._stretch, self._start, self._points = curve, stretch, start, points
+        self.closed, self.ends = stretch.closed, stretch.ends
+        self._curve, self._lift, self._start, self._points = curve, stretch.lift, start, points
+        self._begin, self._last = stretch.begin, stretch.end
+        self._edges: tuple[list[Array], list[Array]] = [], []
+        if self.ends:
+            self._begin, before = self._edge(stretch.begin, self.ends[0])
+            self._last, after = self._edge(stretch.end, self.ends[1])
+            self._edges = before, after
+        self.length = self._last - self._begin
+
+    def _near(self, s: Array) -> tuple[Array, Array]:
+        """Configurations (N, nq) near the arc, and across what they are moved onto it (N, 1, n)."""
+        near, directions = self._curve.points(s)
+        return near + self._lift, directions[:, np.newaxis]
+
+    def _edge(self, s: float, end: End) -> tuple[float, list[Array]]:
+        """Where the arc ends, exactly, and its configuration there, if it can be certified."""
+        solutions = self._curve.solutions
+        near, across = self._near(np.array([s]))
+        if end.limits:
+            entries = [solutions.question.robot.joint(name).idx_q for name in end.limits]
+            held = settle_at_limits(solutions, near[0], entries)
+            if held is not None:
+                return s + float(solutions.difference(near[0], held).dot(across[0, 0])), [held]
+        return s, settle(solutions, near, across)
 
     @cached_property
     def q(self) -> Array:
@@ -45,15 +68,11 @@ class Arc:
         Those of a closed arc do not repeat the first one at the end. Each is certified by plain Pinocchio: beside a
         singular place there may be fewer, because those that cannot be are left out.
         """
-        curve, part = self._curve, self._stretch
-        s = np.linspace(part.begin, part.end, self._points, endpoint=not part.closed)
-        near, directions = curve.points(s)
-        near, across, solutions = near + part.lift, directions[:, np.newaxis], curve.solutions
-        if part.closed:
-            return np.array(settle(solutions, near, across)).reshape(-1, near.shape[1])
-        first = _end(curve, part.ends[0], near[:1], across[:1])
-        last = _end(curve, part.ends[1], near[-1:], across[-1:])
-        return np.array([*first, *settle(solutions, near[1:-1], across[1:-1]), *last]).reshape(-1, near.shape[1])
+        s = np.linspace(self._begin, self._last, self._points, endpoint=not self.closed)
+        inner = s if self.closed else s[1:-1]
+        before, after = self._edges
+        q = [*before, *settle(self._curve.solutions, *self._near(inner)), *after]
+        return np.array(q).reshape(-1, self._curve.q.shape[1])
 
     @cached_property
     def angles(self) -> Array:
@@ -84,14 +103,3 @@ def arcs_of(curve: Curve, q: Array, points: int) -> tuple[Arc, ...]:
         points: The number of configurations of each arc.
     """
     return tuple([Arc(curve, part, q, points) for part in stretches(curve, q)])
-
-
-def _end(curve: Curve, end: End, q: Array, across: Array) -> list[Array]:
-    """The configuration at the end of an arc: exactly at a limit, if one is the reason."""
-    solutions = curve.solutions
-    if end.limits:
-        entries = [solutions.question.robot.joint(name).idx_q for name in end.limits]
-        held = settle_at_limits(solutions, q[0], entries)
-        if held is not None:
-            return [held]
-    return settle(solutions, q, across)
