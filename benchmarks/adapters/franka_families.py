@@ -1,7 +1,7 @@
 """All of frankik's answers for sampled values of the Panda's seventh joint; runs in frankik's own environment.
 
-python franka_families.py IN.npz OUT.npz: from placements (N, 4, 4) of panda_link8 and q7 (M,), to answers (K, 7) and the
-indices (K,) of their placements.
+python franka_families.py IN.npz OUT.npz: from placements (N, 4, 4) of panda_link8 and q7 (M,), to answers (K, 7) and
+the indices (K,) of their placements.
 """
 
 from __future__ import annotations
