@@ -32,7 +32,7 @@ __all__ = ["SelfMotion", "self_motion"]
 
 Array = NDArray[np.float64]
 
-_GROWN = 8
+_GROWN = 3
 """The number of configurations that a tree grows for each one that is asked for."""
 
 
@@ -175,8 +175,9 @@ class SelfMotion:
     def contains(self, q: ArrayLike | Mapping[str, float], within: float = 1e-3) -> bool:
         """Whether a configuration belongs to the same family: the set of solutions connected with `start`.
 
-        Whole turns of hinges do not count, nor do limits: a curve may leave them and come back. In more than one
-        dimension, an answer of False is no proof: the way from what is known may only have been missed.
+        Whole turns of hinges do not count, nor do the limits for a curve, which may leave them and come back. In more
+        than one dimension the way stays inside them, and an answer of False is no proof: the way may only have been
+        missed.
 
         Args:
             q: The configuration (nq,), or angles by joint name.

@@ -56,7 +56,7 @@ class Arc:
         near, across = self._near(np.array([s]))
         if end.limits:
             entries = [solutions.question.robot.joint(name).idx_q for name in end.limits]
-            held = settle_at_limits(solutions, near[0], entries)
+            held = settle_at_limits(solutions, near[0], across[0], entries)
             if held is not None:
                 return s + float(solutions.difference(near[0], held).dot(across[0, 0])), [held]
         return s, settle(solutions, near, across)

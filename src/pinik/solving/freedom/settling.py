@@ -8,9 +8,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..verdict import measure_errors
-from .solution_set import EXACT, SolutionSet, worst
+from .solution_set import EXACT, Place, SolutionSet, worst
 
-__all__ = ["settle", "settle_at_limits"]
+__all__ = ["hold_at_limits", "settle", "settle_at_limits"]
 
 Array = NDArray[np.float64]
 
@@ -56,32 +56,39 @@ def _stepped(solutions: SolutionSet, q: Array, across: Array) -> list[Array]:
 
 def _carefully(solutions: SolutionSet, q: Array, across: Array) -> Array | None:
     place = solutions.project(q, across)
-    if place is None:
-        return None
-    return place.q if _is_certain(solutions, place.q) else settle_at_limits(solutions, place.q)
+    if place is not None and _is_certain(solutions, place.q):
+        return place.q
+    return None if place is None else settle_at_limits(solutions, place.q, across)
 
 
-def settle_at_limits(solutions: SolutionSet, q: Array, entries: Sequence[int] = ()) -> Array | None:
+def settle_at_limits(solutions: SolutionSet, q: Array, across: Array, entries: Sequence[int] = ()) -> Array | None:
     """Move a configuration onto the set with joints held at limits; None if that is not possible.
 
     Args:
         solutions: The set.
         q: The configuration (nq,), near it.
+        across: The directions (n − r, n) across which it is moved, in as far as the held joints allow.
         entries: The entries of q that go to the nearer limit, besides those that are outside.
     """
+    place = hold_at_limits(solutions, q, across, entries)
+    return place.q if place is not None and _is_certain(solutions, place.q) else None
+
+
+def hold_at_limits(solutions: SolutionSet, q: Array, across: Array, entries: Sequence[int] = ()) -> Place | None:
+    """The place of the set where `settle_at_limits` leads to; other joints may be outside their limits there."""
     limits = solutions.question.limits
     inside = limits.clip(q)
     for entry in entries:
         lower, upper = limits.lower[entry], limits.upper[entry]
         inside[entry] = lower if abs(q[entry] - lower) < abs(q[entry] - upper) else upper
-    held = {*entries, *np.flatnonzero(inside != q).tolist()}
+    held = sorted({*entries, *np.flatnonzero(inside != q).tolist()})
     columns = [column for column, entry in enumerate(limits.entry[solutions.free].tolist()) if entry in held]
-    across = np.eye(solutions.n)[columns[: solutions.n - solutions.rank]]
-    if len(across) < solutions.n - solutions.rank:
-        return None
-    place = solutions.project(inside, across)
+    columns = columns[: len(across)]
+    # of the directions, those combinations that do not move the held joints
+    still = np.linalg.svd(across[:, columns])[0][:, len(columns) :].T @ across
+    place = solutions.project(inside, np.vstack((np.eye(solutions.n)[columns], still)))
     if place is None:
         return None
     exact = place.q.copy()
-    exact[[*held]] = inside[[*held]]
-    return exact if _is_certain(solutions, exact) else None
+    exact[held] = inside[held]
+    return solutions.at(exact)

@@ -65,7 +65,7 @@ class SolutionSet:
     Attributes:
         question: The question.
         kinematics: The residual and its Jacobian.
-        free: The indices (n,) of the free tangent coordinates.
+        free: The indices (n,) of the free tangent coordinates, without those whose limits leave a single value.
         scales: The factors (n,) of the joint metric.
         rank: The rank r of the Jacobian on the set.
     """
@@ -75,7 +75,7 @@ class SolutionSet:
         problem = question.problem
         self.question = question
         self.kinematics = Kinematics.of(problem)
-        self.free = np.flatnonzero(problem.free)
+        self.free = np.flatnonzero(problem.free & ~_single(question))
         self.scales = joint_scales(problem)[self.free]
         self._model, self._held = problem.model, problem.held_entries
         self._turning = np.flatnonzero(question.limits.turning)
@@ -190,3 +190,9 @@ class SolutionSet:
 def worst(errors: list[TargetError] | tuple[TargetError, ...]) -> float:
     """The largest error of all targets, in metres or radians."""
     return max((part for error in errors for part in error if part is not None), default=0.0)
+
+
+def _single(question: Question) -> NDArray[np.bool_]:
+    """Whether the limits leave each tangent coordinate (nv,) a single value."""
+    limits = question.limits
+    return np.asarray((limits.entry >= 0) & (limits.lower == limits.upper)[limits.entry])

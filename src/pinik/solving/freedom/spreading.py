@@ -10,7 +10,8 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from .solution_set import TURN, Place, SolutionSet
+from .settling import hold_at_limits
+from .solution_set import EXACT, TURN, Place, SolutionSet
 
 __all__ = ["Tree"]
 
@@ -18,6 +19,8 @@ Array = NDArray[np.float64]
 
 _STEP = 0.3  # [rad]: the longest step of the tree
 _STEPS = 6  # the largest number of steps towards one goal
+_GOALS = 3  # goals at most for each configuration of the tree
+_PATIENCE, _SHRINKING = 10, 0.7  # after so many goals without a new configuration the distance shrinks
 _SHORTEST = 1e-3  # [rad]: a shorter step towards a goal is not worth taking
 
 
@@ -42,6 +45,7 @@ class Tree:
         for joint in self._one_axis:
             if joint.kind == "prismatic":
                 self._slides[joint.idx_q] = solutions.scales[solutions.free.tolist().index(joint.idx_v)]
+        self._apart = _STEP
         self.places, self.tangents = [root], [solutions.kernel(root)]
         self._points = self._embedded(root.q)[np.newaxis]
 
@@ -66,20 +70,34 @@ class Tree:
         return self._solutions.step(goal, motion)
 
     def grow(self, count: int) -> None:
-        """Grow until there are `count` configurations, or as many goals have been tried."""
-        for _ in range(count):
-            goal = self._goal(self.places[0].q)
-            k = self._nearest(goal)
-            for _ in range(_STEPS):
-                if len(self.places) >= count:
-                    return
-                grown = self._towards(self.places[k].q, self.tangents[k], goal)
-                if grown is None:
-                    break
-                k = len(self.places)
-                self.places.append(grown)
-                self.tangents.append(self._solutions.kernel(grown))
-                self._points = np.vstack((self._points, self._embedded(grown.q)))
+        """Grow until there are `count` configurations, or three times as many goals have been tried.
+
+        New configurations keep a distance from all others, which shrinks where no more of them are found.
+        """
+        failures = 0
+        for _ in range(_GOALS * count):
+            if len(self.places) >= count:
+                return
+            failures = 0 if self._grow_towards(self._goal(self.places[0].q)) else failures + 1
+            if failures > _PATIENCE:
+                self._apart, failures = _SHRINKING * self._apart, 0
+
+    def _grow_towards(self, goal: Array) -> bool:
+        """Grow by steps towards a goal, and return whether a new configuration was found."""
+        k, grew = self._nearest(goal), False
+        place, tangents = self.places[k], self.tangents[k]
+        for _ in range(_STEPS):
+            grown = self._towards(place.q, tangents, goal)
+            if grown is None:
+                break
+            point = self._embedded(grown.q)
+            if np.square(self._points - point).sum(axis=1).min() < self._apart**2:
+                break
+            place, tangents, grew = grown, self._solutions.kernel(grown), True
+            self.places.append(place)
+            self.tangents.append(tangents)
+            self._points = np.vstack((self._points, point))
+        return grew
 
     def _nearest(self, q: Array) -> int:
         """The index of the configuration nearest to another one (nq,)."""
@@ -94,21 +112,13 @@ class Tree:
         if length < _SHORTEST:
             return None
         motion *= min(_STEP / length, 1.0)
-        motion *= self._room(q, motion)
-        if np.linalg.norm(motion) < _SHORTEST:
-            return None
         place = solutions.project(solutions.step(q, motion), tangents)
-        if place is None or not self._limits.contains(place.q):
+        if place is not None and not self._limits.contains(place.q):
+            place = hold_at_limits(solutions, place.q, tangents)
+        if place is None or place.miss > EXACT or not self._limits.contains(place.q):
             return None
         went = float(np.linalg.norm(solutions.difference(q, place.q)))
-        return place if went < 1.5 * _STEP else None
-
-    def _room(self, q: Array, motion: Array) -> float:
-        """The part of a motion that stays inside the limits, at most 1."""
-        there = self._solutions.step(q, motion)
-        inside = self._limits.clip(there)
-        crossed = np.flatnonzero(inside != there)
-        return float(min(((inside - q)[crossed] / (there - q)[crossed]).min(initial=1.0), 1.0))
+        return place if _SHORTEST < went < 1.5 * _STEP else None
 
     def farthest(self, count: int) -> tuple[list[int], float]:
         """The indices of `count` configurations far from each other, the root first, and the gap between them.

@@ -28,6 +28,7 @@ _FIRST, _WIDEST, _SHORTEST = 0.05, 0.3, 2e-4  # steps [rad]
 _CROSSING = 5e-3  # the step across a singular place [rad]
 _BEND, _SHARPEST = 0.15, 0.3  # [rad]: how far the tangent turns in a step, as intended and at most
 
+_MOST = 10_000  # knots in one direction
 _SAME = 1e-6  # [rad]: how far the first point may be beside the curve that has come back to it
 
 
@@ -66,7 +67,7 @@ class _Tracer:
         """Go on until the curve closes, ends or is too long."""
         knot, before, last = self._first, None, 0.0
         gone, step = 0.0, _FIRST
-        while gone < LONGEST:
+        while gone < LONGEST and len(self._knots.q) < _MOST:
             found = self._advance(knot, before, step, last)
             if found is not None and self._flips(knot, found):
                 found = None
