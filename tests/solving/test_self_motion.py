@@ -280,6 +280,52 @@ def test_a_limit_of_many_turns_ends_an_arc_after_as_many():
     assert sorted(held.angles[[0, -1], 0]) == pytest.approx([-TURN - 1.0, TURN + 1.0], abs=0.0)
 
 
+def test_a_curve_that_only_touches_the_limits_leaves_one_configuration():
+    """The third joint is bent most where the first one is at 0, and may not be bent less."""
+    place, start = [2.0, 0.0, 0.0], elbows((1.0, 0.8, 0.6), 2.0, 0.0)[0]
+    text = planar((1.0, 0.8, 0.6)).urdf
+    assert start[2] == pytest.approx(math.pi / 2.0)
+    head, joint, tail = text.partition('name="j3"')
+    limits = f'lower="{float(start[2])!r}" upper="3.0"'
+    robot = load_quietly(head + joint + tail.replace('lower="-50.0" upper="50.0"', limits, 1))
+    motion = pinik.self_motion(robot, "tip", start, position=place)
+    assert motion.dimension == 1
+    assert len(motion) == 1
+    assert motion.length == 0.0
+    assert len(motion.arcs) == 1
+    assert np.allclose(motion.q[0], start, atol=1e-9)
+    assert motion.arcs[0].ends[0].limits == {"j3": "lower"}
+
+
+def slides(limit):
+    """Two slides in line, along x."""
+    joints = (
+        f'<joint name="s{k}" type="prismatic"><parent link="l{k - 1}"/><child link="l{k}"/><origin xyz="0.5 0 0"/>'
+        f'<axis xyz="1 0 0"/><limit lower="{-limit}" upper="{limit}" effort="1" velocity="1"/></joint>'
+        for k in (1, 2)
+    )
+    return load_quietly(f'<robot name="s"><link name="l0"/><link name="l1"/><link name="l2"/>{"".join(joints)}</robot>')
+
+
+def test_a_curve_that_never_closes_is_given_up_and_its_arc_is_found_all_the_same():
+    robot = slides(1.0)
+    target = Target("l2", position=[1.3, 0.0, 0.0])
+    motion = pinik.self_motion(robot, target, [0.2, 0.1], points=31)
+    metres = pinik.Kinematics(robot, target).problem.size_of_chain
+    assert motion.length == pytest.approx(1.7 * math.sqrt(2.0) / metres)
+    assert not motion.complete
+    assert not motion.closed
+    assert np.allclose(sorted(motion.q[[0, -1]].tolist()), [[-0.7, 1.0], [1.0, -0.7]])
+    assert sorted((end.why, *end.limits.items()) for end in motion.arcs[0].ends) == [
+        ("limit", ("s1", "upper")),
+        ("limit", ("s2", "upper")),
+    ]
+    free = pinik.self_motion(robot, target, [0.2, 0.1], limits=False)
+    assert [end.why for end in free.arcs[0].ends] == ["long", "long"]
+    assert str(free).count("given up") == 2
+    assert free.turns == {}
+
+
 def test_curves_that_cross_at_singular_places_are_one_family_cut_there():
     """A parallelogram can become an antiparallelogram where it is flat."""
     robot, place = planar((1.0, 0.8, 1.0)), [0.8, 0.0, 0.0]
@@ -296,6 +342,8 @@ def test_curves_that_cross_at_singular_places_are_one_family_cut_there():
         for end in (arc.q[0], arc.q[-1]):
             assert np.abs(np.sin(end)).max() < 1e-4  # flat
         assert_certified(robot, Target("tip", position=place), arc.q, limits=False)
+    assert str(motion).count("a singular place") == 2
+    assert repr(motion.arcs[0]).startswith("Arc(an arc of 5.44 rad from a singular place")
     for first in (0.3, 1.0, 2.0, -2.5):
         assert all(motion.contains(one) for one in elbows((1.0, 0.8, 1.0), 0.8, first))
     apart = pinik.self_motion(

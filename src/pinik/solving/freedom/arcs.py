@@ -68,9 +68,11 @@ class Arc:
         Those of a closed arc do not repeat the first one at the end. Each is certified by plain Pinocchio: beside a
         singular place there may be fewer, because those that cannot be are left out.
         """
+        before, after = self._edges
+        if self.length == 0.0:  # the curve only touches the limits
+            return np.array(before).reshape(-1, self._curve.q.shape[1])
         s = np.linspace(self._begin, self._last, self._points, endpoint=not self.closed)
         inner = s if self.closed else s[1:-1]
-        before, after = self._edges
         q = [*before, *settle(self._curve.solutions, *self._near(inner)), *after]
         return np.array(q).reshape(-1, self._curve.q.shape[1])
 

@@ -23,6 +23,9 @@ __all__ = ["End", "Stretch", "stretches"]
 
 Array = NDArray[np.float64]
 
+_NARROW = 1e-6  # [rad]
+_TOUCH = 1e-4  # [rad]: a stretch at most this far from a point leads through it
+
 
 @dataclass(frozen=True)
 class End:
@@ -72,7 +75,12 @@ def stretches(curve: Curve, q: Array) -> list[Stretch]:
         curve: The curve.
         q: The configuration (nq,) from which the curve was traced.
     """
-    return list(_Cutter(curve, q).cut())
+    found, start, question = list(_Cutter(curve, q).cut()), curve.start, curve.solutions.question
+    away = min((max(part.begin - start, start - part.end) for part in found[:1]), default=math.inf)
+    if away <= _TOUCH or not question.limits.contains(q):
+        return found
+    end = End("limit", question.active_limits(q))  # the curve touches the limits from outside
+    return [Stretch(start, start, np.zeros(len(q)), False, (end, end)), *found]
 
 
 class _Event(NamedTuple):
@@ -176,6 +184,8 @@ class _Cutter:
 
     def _lift(self, cell: int) -> Array | None:
         """The whole turns, in radians, that bring a cell inside the limits nearest to the start; None if none do."""
+        if self._is_narrow(cell):
+            return None
         values = self._middle(cell)
         turns = np.where(self._turning, np.round((self._near - values) / TURN), 0.0)
         below, above = self._lower - values - TURN * turns, values + TURN * turns - self._upper
@@ -186,7 +196,11 @@ class _Cutter:
 
     def _is_inside(self, cell: int, lift: Array) -> bool:
         values = self._middle(cell) + lift
-        return bool(((values >= self._lower) & (values <= self._upper)).all())
+        return self._is_narrow(cell) or bool(((values >= self._lower) & (values <= self._upper)).all())
+
+    def _is_narrow(self, cell: int) -> bool:
+        """Whether a cell is as narrow as rounding: the curve only touches a limit there."""
+        return self._border(cell + 1) - self._border(cell) < _NARROW
 
     def _end(self, cell: int, lift: Array, way: int) -> tuple[int, End | None]:
         """The last cell that a stretch reaches in one direction, and why it ends; no reason if it comes round."""
