@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import inspect
 import itertools
 import math
 import pickle
+from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
 import pytest
@@ -594,6 +596,21 @@ def test_misuse_is_named(panda):
         pinik.self_motion("panda", TIP, q)
     with pytest.raises(InputError, match="within"):
         pinik.self_motion(panda, TIP, q).contains(q, within=0.0)
+
+
+def test_the_robots_method_takes_what_the_function_takes():
+    method = list(inspect.signature(pinik.Robot.self_motion).parameters.values())[1:]
+    function = list(inspect.signature(pinik.self_motion).parameters.values())[1:]
+    assert [(p.name, p.kind, p.default) for p in method] == [(p.name, p.kind, p.default) for p in function]
+
+
+def test_its_arcs_can_be_read_from_many_threads(panda):
+    q = panda.random(9)
+    wanted = [arc.q for arc in panda.self_motion(TIP, q, points=60).arcs]
+    motion = panda.self_motion(TIP, q, points=60)
+    with ThreadPoolExecutor(4) as pool:
+        found = list(pool.map(lambda k: motion.arcs[k % len(wanted)].q, range(8 * len(wanted))))
+    assert all(np.array_equal(one, wanted[k % len(wanted)]) for k, one in enumerate(found))
 
 
 def test_it_survives_a_pickle(panda):

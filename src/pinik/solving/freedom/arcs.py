@@ -97,11 +97,11 @@ class Arc:
 
 
 def arcs_of(curve: Curve, q: Array, points: int) -> tuple[Arc, ...]:
-    """The arcs of a curve inside the limits, the one through `q` first, the others by nearness to it.
+    """The arcs of a curve inside the limits, the one where it was traced from first, the others by nearness to it.
 
     Args:
         curve: The curve.
-        q: The configuration (nq,) from which the curve was traced.
+        q: The configuration (nq,) to whose whole turns those of hinges are near.
         points: The number of configurations of each arc.
     """
     return tuple([Arc(curve, part, q, points) for part in stretches(curve, q)])

@@ -52,7 +52,8 @@ def regular_place(solutions: SolutionSet, place: Place) -> Place | None:
     """
     rank = solutions.rank_at(place.q)
     if rank >= solutions.rank:
-        return place if rank < solutions.n else None
+        solutions.rank = rank
+        return solutions.at(place.q) if rank < solutions.n else None
     beside = places_beside(solutions, place.q, rank)
     if not beside:
         return None

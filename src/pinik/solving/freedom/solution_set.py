@@ -10,7 +10,8 @@ $$\begin{pmatrix} J \\ B \end{pmatrix} \delta = \begin{pmatrix} e \\ 0 \end{pmat
 from __future__ import annotations
 
 import math
-from typing import NamedTuple
+import threading
+from typing import Any, NamedTuple
 
 import numpy as np
 import pinocchio
@@ -64,7 +65,6 @@ class SolutionSet:
 
     Attributes:
         question: The question.
-        kinematics: The residual and its Jacobian.
         free: The indices (n,) of the free tangent coordinates, without those whose limits leave a single value.
         scales: The factors (n,) of the joint metric.
         rank: The rank r of the Jacobian on the set.
@@ -74,12 +74,26 @@ class SolutionSet:
         """The set for the targets of a question; its rank is the one that is usual for targets of these kinds."""
         problem = question.problem
         self.question = question
-        self.kinematics = Kinematics.of(problem)
+        self._local = threading.local()
         self.free = np.flatnonzero(problem.free & ~_single(question))
         self.scales = joint_scales(problem)[self.free]
         self._model, self._held = problem.model, problem.held_entries
         self._turning = np.flatnonzero(question.limits.turning)
         self.rank = self._usual_rank()
+
+    def __getstate__(self) -> dict[str, Any]:
+        return {name: value for name, value in vars(self).items() if name != "_local"}
+
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        vars(self).update(state, _local=threading.local())
+
+    @property
+    def kinematics(self) -> Kinematics:
+        """The residual and its Jacobian, for this thread."""
+        own: Kinematics | None = getattr(self._local, "kinematics", None)
+        if own is None:
+            own = self._local.kinematics = Kinematics.of(self.question.problem)
+        return own
 
     @property
     def n(self) -> int:
@@ -88,12 +102,12 @@ class SolutionSet:
 
     def _usual_rank(self) -> int:
         """The rank of the Jacobian at random configurations, with targets that are met there."""
-        rank, targets = 0, self.question.problem.targets
+        rank, targets, kinematics = 0, self.question.problem.targets, self.kinematics
         for seed in range(_SAMPLES):
             q = self.question.robot.random(seed)
-            self.kinematics.retarget(present(self.kinematics, targets, q))
+            kinematics.retarget(present(kinematics, targets, q))
             rank = max(rank, self.rank_at(q))
-        self.kinematics.retarget(targets)
+        kinematics.retarget(targets)
         return rank
 
     def rank_at(self, q: Array) -> int:

@@ -21,6 +21,7 @@ _STEP = 0.3  # [rad]: the longest step of the tree
 _STEPS = 6  # the largest number of steps towards one goal
 _GOALS = 3  # goals at most for each configuration of the tree
 _PATIENCE, _SHRINKING = 10, 0.7  # after so many goals without a new configuration the distance shrinks
+_ARRIVED = 0.01  # [rad]: a way that comes this near to a place of the set has come there
 _SHORTEST = 1e-3  # [rad]: a shorter step towards a goal is not worth taking
 
 
@@ -140,18 +141,21 @@ class Tree:
         return float(np.linalg.norm(solutions.difference(a, solutions.turned(b, a))))
 
     def reaches(self, q: Array, within: float) -> bool:
-        """Whether steps from the nearest configuration lead to a configuration (nq,)."""
+        """Whether a configuration (nq,) is near the set, and steps from the nearest known one lead there."""
         solutions, k = self._solutions, self._nearest(q)
-        place, tangents = self.places[k], self.tangents[k]
+        goal = solutions.slide(q)
+        if goal is None or np.linalg.norm(solutions.difference(q, goal.q)) > within:
+            return False
+        place, tangents, last = self.places[k], self.tangents[k], np.inf
         while True:
-            near = solutions.turned(q, place.q)
+            near = solutions.turned(goal.q, place.q)
             left = float(np.linalg.norm(solutions.difference(place.q, near)))
-            if left <= within:
+            if left <= _ARRIVED:
                 return True
-            onward = self._towards(place.q, tangents, near)
-            if onward is None or np.linalg.norm(solutions.difference(onward.q, near)) > 0.99 * left:
+            onward = self._towards(place.q, tangents, near) if left < 0.99 * last else None
+            if onward is None:
                 return False
-            place, tangents = onward, solutions.kernel(onward)
+            place, tangents, last = onward, solutions.kernel(onward), left
 
 
 class _Sequence:

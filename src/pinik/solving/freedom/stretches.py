@@ -66,20 +66,21 @@ class Stretch(NamedTuple):
 
 
 def stretches(curve: Curve, q: Array) -> list[Stretch]:
-    """The parts of a curve inside the limits of its question, the one through `q` first, the others by nearness to it.
+    """The parts of a curve inside the limits of its question, the one where it was traced from first.
 
     Together they contain each configuration of the curve that is inside the limits, up to whole turns. Where limits
     leave a hinge a choice of whole turns, those nearest to `q` are taken.
 
     Args:
         curve: The curve.
-        q: The configuration (nq,) from which the curve was traced.
+        q: A configuration (nq,).
     """
     found, start, question = list(_Cutter(curve, q).cut()), curve.start, curve.solutions.question
     away = min((max(part.begin - start, start - part.end) for part in found[:1]), default=math.inf)
-    if away <= _TOUCH or not question.limits.contains(q):
+    origin = curve.points(np.array([start]))[0][0]
+    if away <= _TOUCH or not question.limits.contains(origin):
         return found
-    end = End("limit", question.active_limits(q))  # the curve touches the limits from outside
+    end = End("limit", question.active_limits(origin))  # the curve touches the limits from outside
     return [Stretch(start, start, np.zeros(len(q)), False, (end, end)), *found]
 
 
