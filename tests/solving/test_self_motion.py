@@ -199,6 +199,40 @@ def test_another_branch_of_an_srs_arm_is_another_family(srs):
         circle.signs[k] *= -1.0
 
 
+def test_where_the_upper_arm_is_upright_the_shoulder_turns_against_it(srs):
+    """Joints 1 and 3 are in line there: half a turn against each other leads to the other place with joint 2 at 0."""
+    q = np.array([0.3, 0.0, 0.5, 1.0, 0.4, 0.7, 0.2])
+    motion = pinik.self_motion(srs, "tip", q, limits=False)
+    assert motion.dimension == 1
+    assert motion.complete
+    assert len(motion.arcs) == 4
+    assert sorted(arc.length for arc in motion.arcs)[:2] == pytest.approx([math.sqrt(2.0) * math.pi] * 2, abs=1e-4)
+    for turn in (0.4, -2.0, 3.0):
+        assert motion.contains(q + turn * np.array([1.0, 0.0, -1.0, 0.0, 0.0, 0.0, 0.0]))
+    for arc in motion.arcs:
+        assert_certified(srs, Target("tip", placement=srs.placement("tip", q)), arc.q[::10], limits=False)
+        assert all(end.why == "singular" for end in arc.ends)
+        assert np.abs(arc.q[[0, -1], 1]).max() < 1e-4
+
+
+@pytest.mark.parametrize("bend", [1e-2, 1e-4])
+def test_an_arm_that_is_almost_stretched_turns_about_itself(srs, bend):
+    q = np.array([0.3, 0.6, 0.5, bend, 0.4, 0.5, 0.2])
+    motion = pinik.self_motion(srs, "tip", q, limits=False)
+    assert motion.closed
+    assert motion.length == pytest.approx(math.sqrt(2.0) * TURN, rel=1e-4)
+    assert set(motion.turns) == {"j3", "j5"}
+
+
+def test_an_arm_that_is_stretched_is_not_explored(srs):
+    q = np.array([0.3, 0.6, 0.5, 0.0, 0.4, 0.5, 0.2])
+    motion = pinik.self_motion(srs, "tip", q)
+    assert motion.dimension == 1
+    assert not motion.complete
+    assert len(motion) == 1
+    assert "singular everywhere" in str(motion)
+
+
 # --- planar arms, in closed form --------------------------------------------------------------------------------------
 
 

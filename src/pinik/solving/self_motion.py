@@ -16,7 +16,7 @@ from ..problem.target_values import Position
 from ..problem.targets import Target
 from ..problem.tolerance import Tolerance, largest_of
 from .freedom.arcs import Arc, arcs_of
-from .freedom.dimension import Isolated, regular_place
+from .freedom.dimension import Lone, regular_place
 from .freedom.family import Family
 from .freedom.settling import settle
 from .freedom.solution_set import Place, SolutionSet
@@ -123,7 +123,7 @@ class SelfMotion:
             that leave a hinge more than one turn allow arcs at several turns; those nearest to `start` are given.
         turns: Joint → how many whole turns it makes while the whole curve comes round once, for those that do.
         complete: Whether the whole set connected with `start` is known: of a curve, if it closed or ended; never in
-            more dimensions.
+            more dimensions, nor of a set whose kernel is larger than itself everywhere, which is not explored.
         gap: The largest distance [rad] from a configuration known to be in the set to the nearest one of `q`, if the
             set has more dimensions than one; else None.
         known: What was explored: the place alone, the curves, or the tree.
@@ -140,7 +140,7 @@ class SelfMotion:
     turns: dict[str, int] = field(default_factory=dict)
     complete: bool = True
     gap: float | None = None
-    known: Isolated | Family | Tree = field(kw_only=True)
+    known: Lone | Family | Tree = field(kw_only=True)
 
     def __len__(self) -> int:
         return len(self.q)
@@ -197,6 +197,10 @@ class SelfMotion:
     def __str__(self) -> str:
         if self.dimension == 0:
             return "the configuration is isolated: no joint can move while the targets are kept"
+        if isinstance(self.known, Lone):
+            return (
+                f"a configuration of a set of dimension {self.dimension} that is singular everywhere, and not explored"
+            )
         if self.dimension > 1:
             return (
                 f"{len(self)} configurations of a set of dimension {self.dimension}, at most {self.gap:.2g} rad from "
@@ -221,9 +225,9 @@ def _explored(question: Question, given: Array, points: int) -> SelfMotion:
     solutions = SolutionSet(question)
     start = _start(solutions, given)
     place = regular_place(solutions, start)
-    if place is None:
-        q = start.q[np.newaxis]
-        return SelfMotion(robot, targets, 0, start.q, q, known=Isolated(solutions, start.q))
+    if isinstance(place, Lone):
+        alone = start.q[np.newaxis]
+        return SelfMotion(robot, targets, place.dimension, start.q, alone, complete=place.dimension == 0, known=place)
     dimension = solutions.n - solutions.rank
     if dimension == 1:
         family = Family(solutions, place)

@@ -110,10 +110,10 @@ class SolutionSet:
         kinematics.retarget(targets)
         return rank
 
-    def rank_at(self, q: Array) -> int:
-        """The rank of the Jacobian at a configuration."""
+    def rank_at(self, q: Array, least: float = RANK) -> int:
+        """The rank of the Jacobian at a configuration: how many singular values exceed this part of the largest."""
         sigma = self.singular_values(q)
-        return int((sigma > RANK * sigma.max(initial=0.0)).sum())
+        return int((sigma > least * sigma.max(initial=0.0)).sum())
 
     def singular_values(self, q: Array) -> Array:
         """The singular values of the whole Jacobian in the joint metric, the largest first."""
@@ -169,13 +169,18 @@ class SolutionSet:
     def _newton(self, place: Place, across: Array) -> Array:
         return np.linalg.solve(np.vstack((place.J, across)), np.concatenate((place.e, np.zeros(len(across)))))
 
-    def slide(self, q: Array) -> Place | None:
-        """The point of the set that the shortest Newton steps lead to, also near a singular place; None if to none."""
+    def slide(self, q: Array, enough: float = _ENOUGH) -> Place | None:
+        """The point of the set that the shortest Newton steps lead to, also near a singular place; None if to none.
+
+        Args:
+            q: The configuration (nq,) to begin with.
+            enough: The largest error at which no further step is made [m and rad].
+        """
         last = math.inf
         for _ in range(3 * _ITERATIONS):
             found = self.kinematics.linearize(q)
             miss = worst(found.errors)
-            if miss <= _ENOUGH or not miss < last:
+            if miss <= enough or not miss < last:
                 break
             last = miss
             q = self.step(q, np.linalg.pinv(self._jacobian(found.J), rcond=RANK) @ found.e)
