@@ -38,11 +38,14 @@ from .solvers.registry import CLOSED_FORMS, SOLVERS
 from .solvers.transpose import JacobianTranspose
 from .solvers.two_bone import TwoBoneSolver
 from .solving.branches import Branches
+from .solving.freedom.arcs import Arc
+from .solving.freedom.stretches import End
 from .solving.front import iterate, prepare, solve
 from .solving.jumps import Excess, Jump
 from .solving.many import Solutions, solve_many
 from .solving.options import Options
 from .solving.prepared import Prepared
+from .solving.self_motion import SelfMotion, self_motion
 from .solving.solution import Solution
 from .solving.solve_all import solve_all
 from .solving.state import State, Status
@@ -55,8 +58,10 @@ __all__ = [
     "CCD",
     "CLOSED_FORMS",
     "SOLVERS",
+    "Arc",
     "Branches",
     "DampedLeastSquares",
+    "End",
     "EngineError",
     "Excess",
     "InputError",
@@ -76,6 +81,7 @@ __all__ = [
     "PseudoInverse",
     "Robot",
     "RobotLoadError",
+    "SelfMotion",
     "Solution",
     "Solutions",
     "SolveError",
@@ -102,6 +108,7 @@ __all__ = [
     "load",
     "parameter",
     "prepare",
+    "self_motion",
     "solve",
     "solve_all",
     "solve_many",

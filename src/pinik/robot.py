@@ -18,6 +18,7 @@ from .solving import batch
 from .solving.answer import answer
 from .solving.branches import Branches
 from .solving.native.recalling import recalling
+from .solving.self_motion import SelfMotion, self_motion
 from .solving.solution import Solution
 from .solving.solve_all import solve_all
 from .solving.words import UNWEIGHTED
@@ -26,7 +27,7 @@ __all__ = ["Robot"]
 
 
 class Robot(RobotModel):
-    """A robot as returned by `pinik.load`: a `RobotModel` with the methods `solve`, `placements` and `jacobians`."""
+    """A robot as returned by `pinik.load`: a `RobotModel` that can solve, and compute many configurations at once."""
 
     def placements(self, frame: str, Q: ArrayLike, relative_to: str | None = None) -> NDArray[np.float64]:
         """The placements of a frame at N configurations, as `placement` computes them one by one.
@@ -127,3 +128,36 @@ class Robot(RobotModel):
         `pinik.solve_all` explains the arguments, the answers and the errors.
         """
         return solve_all(self, targets, **words)
+
+    def self_motion(
+        self,
+        targets: str | Target | Sequence[Target],
+        q: ArrayLike | Mapping[str, float] | Solution,
+        *,
+        position: Position | None = None,
+        rotation: ArrayLike | None = None,
+        rpy: ArrayLike | None = None,
+        quat_xyzw: ArrayLike | None = None,
+        quat_wxyz: ArrayLike | None = None,
+        placement: pinocchio.SE3 | ArrayLike | None = None,
+        axis: str | ArrayLike | None = None,
+        direction: ArrayLike | None = None,
+        at: ArrayLike | None = None,
+        tool: pinocchio.SE3 | ArrayLike | None = None,
+        relative_to: str | None = None,
+        weight: float = UNWEIGHTED,
+        points: int = 200,
+        limits: bool = True,
+        locked: Iterable[str] = (),
+        tolerance: Tolerance | ArrayLike | None = None,
+        seed: int = 0,
+    ) -> SelfMotion:
+        """Find how the joints may move from `q` while frames of the robot stay at their targets.
+
+        `pinik.self_motion` explains the arguments, the answer and the errors.
+        """
+        return self_motion(
+            self, targets, q, position=position, rotation=rotation, rpy=rpy, quat_xyzw=quat_xyzw, quat_wxyz=quat_wxyz,
+            placement=placement, axis=axis, direction=direction, at=at, tool=tool, relative_to=relative_to,
+            weight=weight, points=points, limits=limits, locked=locked, tolerance=tolerance, seed=seed,
+        )  # fmt: skip

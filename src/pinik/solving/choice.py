@@ -6,6 +6,7 @@ import numpy as np
 import pinocchio
 from numpy.typing import NDArray
 
+from .metric import joint_scales
 from .question import Question
 
 __all__ = ["NOTHING_NEW_SHARE", "SAME_ANSWER", "Choice"]
@@ -31,13 +32,10 @@ class Choice:
         """Begin with no answers; `start` (nq,) is the start of the first attempt."""
         self._model, self._limits, self._start = question.robot.model, question.limits, start
         self._weights = np.ones(self._model.nv)
-        self._scales = np.ones(self._model.nv)
+        self._scales = joint_scales(question.problem)
         for name, weight in question.options.choose_weights.items():
             joint = question.robot.settable_joint(name)
             self._weights[joint.idx_v : joint.idx_v + joint.nv] = weight
-        for coordinate in question.problem.coordinates:
-            if coordinate.slides:
-                self._scales[coordinate.joint.idx_v + coordinate.index] = 1.0 / question.problem.size_of_chain
         self.found: list[Array] = []
         self.since = 0
 

@@ -1,4 +1,4 @@
-"""How far two configurations are apart."""
+"""The joint metric: how far two configurations are apart, with radians and metres in one measure."""
 
 from __future__ import annotations
 
@@ -11,11 +11,20 @@ from numpy.typing import NDArray
 from ..model.limits import Limits
 from ..problem.problem import Problem
 
-__all__ = ["Metric"]
+__all__ = ["Metric", "joint_scales"]
 
 Array = NDArray[np.float64]
 
 _TURN = 2.0 * math.pi
+
+
+def joint_scales(problem: Problem) -> Array:
+    """The factors (nv,) on tangent coordinates: 1 for radians, and 1 per length of the chain for metres."""
+    scales = np.ones(problem.model.nv)
+    for coordinate in problem.coordinates:
+        if coordinate.slides:
+            scales[coordinate.joint.idx_v + coordinate.index] = 1.0 / problem.size_of_chain
+    return scales
 
 
 class Metric:
@@ -24,15 +33,10 @@ class Metric:
     def __init__(self, problem: Problem, limits: Limits) -> None:
         """Prepare for the free coordinates of a problem; limits tell which of them may make whole turns."""
         self._model = problem.model
-        count = len(problem.coordinates)
-        self._columns = np.zeros(count, dtype=np.intp)
-        self._scales = np.ones(count)
-        self._turns = np.zeros(count, dtype=bool)
-        for number, coordinate in enumerate(problem.coordinates):
-            joint = coordinate.joint
-            self._columns[number] = joint.idx_v + coordinate.index
-            self._scales[number] = 1.0 / problem.size_of_chain if coordinate.slides else 1.0
-            self._turns[number] = joint.nq == 1 and bool(limits.turning[joint.idx_q])
+        joints = [coordinate.joint for coordinate in problem.coordinates]
+        self._columns = np.array([c.joint.idx_v + c.index for c in problem.coordinates], dtype=np.intp)
+        self._scales = joint_scales(problem)[self._columns]
+        self._turns = np.array([joint.nq == 1 and limits.turning[joint.idx_q] for joint in joints], dtype=bool)
 
     def changes(self, a: Array, b: Array) -> Array:
         """The change of each free coordinate from configuration a (nq,) to b [rad, or lengths of the chain]."""

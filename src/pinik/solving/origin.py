@@ -13,7 +13,7 @@ from ..checks import FARTHEST
 from ..errors import InputError
 from ..model.robot_model import RobotModel
 
-__all__ = ["Origin", "as_start", "is_nearest", "turned_near", "unwound", "unwound_rows"]
+__all__ = ["Origin", "as_start", "is_nearest", "turned_near", "unwound", "unwound_path", "unwound_rows"]
 
 Array = NDArray[np.float64]
 
@@ -117,4 +117,24 @@ def unwound_rows(robot: RobotModel, q: Array, starts: Array, turned: Mapping[str
         near = turned.get(name, np.arctan2(starts[:, sine], starts[:, cosine]))
         column[:] = np.arctan2(q[:, sine], q[:, cosine])
         column += _TURN * np.round((near - column) / _TURN)
+    return angles
+
+
+def unwound_path(robot: RobotModel, q: Array, start: Array, turned: Mapping[str, float] = _NONE) -> Array:
+    """The angles (N, n_joints) along a path; those of continuous joints go on beyond ±π, from the start's angles.
+
+    Args:
+        robot: The robot.
+        q: The configurations (N, nq), in their order.
+        start: The configuration (nq,) before them.
+        turned: As for `unwound`.
+    """
+    angles = np.empty((len(q), len(robot.joint_names)))
+    for column, name in zip(angles.T, robot.joint_names, strict=True):
+        joint = robot.joint(name)
+        if joint.nq == 1:
+            column[:] = q[:, joint.idx_q]
+            continue
+        own = np.arctan2(q[:, joint.idx_q + 1], q[:, joint.idx_q])
+        column[:] = np.unwrap(np.concatenate(([turned.get(name, joint.angle(start))], own)))[1:]
     return angles

@@ -22,7 +22,7 @@ from .jumps import Excess, Jump, find_excesses, find_jumps
 from .kept import kept_of
 from .native.outcomes import follow
 from .options import OPTION_NAMES, Options
-from .origin import Origin
+from .origin import Origin, unwound_path
 from .path import careful, follow_path
 from .places import read_questions
 from .prepared import Prepared
@@ -122,7 +122,7 @@ def track(
         outcomes = follow_path(prepared, goals, origin.q, on_miss)
     else:
         outcomes = follow(native, goals, origin.q, on_miss)
-    angles = _unwound(robot, origin, outcomes.q)
+    angles = unwound_path(robot, outcomes.q, origin.q, origin.turned)
     jumps = find_jumps(prepared.question, goals, outcomes.q, angles, outcomes.restarts)
     excesses = [] if when is None else find_excesses(robot.joint_names, angles, when, robot.velocity_limits)
     total = time.perf_counter() - began
@@ -242,21 +242,6 @@ def _check_times(times: ArrayLike, count: int) -> Array:
     for k in np.flatnonzero(np.diff(when) <= 0.0)[:1]:
         raise InputError(f"times must increase; got {when[k]:g} and then {when[k + 1]:g} at index {k + 1}")
     return when
-
-
-def _unwound(robot: RobotModel, origin: Origin, q: Array) -> Array:
-    """The angles (M, n_joints) at configurations (M, nq); those of continuous joints go on from the start's angle."""
-    columns = []
-    for name in robot.joint_names:
-        joint = robot.joint(name)
-        if joint.nq == 1:
-            columns.append(q[:, joint.idx_q])
-            continue
-        sines, cosines = q[:, joint.idx_q + 1], q[:, joint.idx_q]
-        begin = origin.turned.get(name, joint.angle(origin.q))
-        angles = np.concatenate(([begin], np.arctan2(sines, cosines)))
-        columns.append(np.unwrap(angles)[1:])
-    return np.column_stack(columns) if columns else np.zeros((len(q), 0))
 
 
 def _number_or_none(number: float) -> float | None:
