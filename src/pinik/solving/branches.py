@@ -15,6 +15,7 @@ from ..model.robot_model import RobotModel
 from ..problem.targets import Target
 from .origin import unwound
 from .question import Question
+from .self_motion import SelfMotion, self_motion
 from .state import Status
 from .verdict import measure_errors
 from .windings import winding_ranges, wound
@@ -130,6 +131,27 @@ class Branches:
         joint without limits, which can turn for ever, has (0, 0).
         """
         return winding_ranges(self._question.limits, self._question.problem, self.q)
+
+    @cached_property
+    def families(self) -> tuple[SelfMotion, ...]:
+        """The curves on which the branches lie, if the answers have one dimension; empty otherwise.
+
+        Each is the self-motion through one of the branches, so that no two are the same. They are traced when they are
+        first read, which takes some 20 ms for each.
+        """
+        if self.redundancy != 1:
+            return ()
+        options = self._question.options
+        found: list[SelfMotion] = []
+        for q in self.q:
+            if not any(family.contains(q) for family in found):
+                found.append(
+                    self_motion(
+                        self.robot, self._targets, q, limits=options.limits, locked=options.locked,
+                        tolerance=options.tolerance, seed=options.seed,
+                    )
+                )  # fmt: skip
+        return tuple(found)
 
     def wound(self, index: int) -> Iterator[Array]:
         """Every configuration (nq,) of branch `index` inside the limits, whole turns included; the branch itself first.
