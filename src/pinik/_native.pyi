@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 pinocchio_version: str = "4.1.0"
 
-abi: str = "66d7b25b000cca6a"
+abi: str = "8e56e3da008999bf"
 
 class JointKind(enum.Enum):
     revolute = 0
@@ -570,15 +570,42 @@ class Searcher:
     def search(
         self, start: NDArray[numpy.float64], goals: NDArray[numpy.float64]
     ) -> tuple[
+        tuple[
+            NDArray[numpy.float64],
+            NDArray[numpy.float64],
+            NDArray[numpy.float64],
+            NDArray[numpy.float64],
+            NDArray[numpy.int64],
+            NDArray[numpy.int64],
+            int,
+            int,
+            int,
+            int,
+            bool,
+            float,
+        ],
         NDArray[numpy.float64],
-        NDArray[numpy.float64],
-        NDArray[numpy.float64],
-        NDArray[numpy.int64],
-        NDArray[numpy.int64],
-        int,
-        int,
-        int,
-        int,
-        bool,
-        float,
     ]: ...
+    def search_at(
+        self, start: NDArray[numpy.float64], place: object
+    ) -> (
+        tuple[
+            tuple[
+                NDArray[numpy.float64],
+                NDArray[numpy.float64],
+                NDArray[numpy.float64],
+                NDArray[numpy.float64],
+                NDArray[numpy.int64],
+                NDArray[numpy.int64],
+                int,
+                int,
+                int,
+                int,
+                bool,
+                float,
+            ],
+            NDArray[numpy.float64],
+            tuple[NDArray[numpy.float64]],
+        ]
+        | None
+    ): ...

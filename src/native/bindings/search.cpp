@@ -3,11 +3,13 @@
 
 #include <nanobind/eigen/dense.h>
 
+#include <optional>
 #include <stdexcept>
 #include <string>
 
 #include "interface.hpp"
 #include "numbers.hpp"
+#include "places.hpp"
 #include "signals.hpp"
 
 namespace pinik {
@@ -16,26 +18,40 @@ using namespace nb::literals;
 
 namespace {
 
-// For each answer inside the limits: q, the largest errors, the number of its start, and how many starts led to it. Then
-// how many answers are outside, the starts, the iterations, the redundancy, whether time ran out, and the seconds.
-nb::tuple columns(Findings&& findings, std::size_t nq) {
-  std::vector<double> q, position, orientation;
+// For each answer inside the limits: q, the distance from the start, the largest errors, the number of its start, and how
+// many starts led to it. Then how many answers are outside, the starts, the iterations, the redundancy, whether time ran
+// out, and the seconds.
+nb::tuple columns(const Findings& findings, std::size_t nq) {
+  std::vector<double> q, distance, position, orientation;
   std::vector<std::int64_t> start, hits;
   std::int64_t outside = 0;
   for (const Found& answer : findings.answers) {
     if (!answer.inside) ++outside;
     if (!answer.certified) continue;
     q.insert(q.end(), answer.q.data(), answer.q.data() + answer.q.size());
+    distance.push_back(answer.distance);
     position.push_back(answer.error.position);
     orientation.push_back(answer.error.orientation);
     start.push_back(answer.start);
     hits.push_back(answer.hits);
   }
   const std::size_t count = start.size();
-  return nb::make_tuple(as_array(std::move(q), {count, nq}), as_array(std::move(position), {count}),
-                        as_array(std::move(orientation), {count}), as_array(std::move(start), {count}),
-                        as_array(std::move(hits), {count}), outside, findings.starts, findings.iterations,
-                        findings.redundancy, findings.ended_early, findings.seconds);
+  return nb::make_tuple(as_array(std::move(q), {count, nq}), as_array(std::move(distance), {count}),
+                        as_array(std::move(position), {count}), as_array(std::move(orientation), {count}),
+                        as_array(std::move(start), {count}), as_array(std::move(hits), {count}), outside,
+                        findings.starts, findings.iterations, findings.redundancy, findings.ended_early,
+                        findings.seconds);
+}
+
+// The findings, and the start inside the limits.
+nb::tuple searched(Searcher& searcher, Vector start, const std::vector<Goal>& goals) {
+  Findings findings;
+  {
+    const nb::gil_scoped_release release;
+    findings = searcher.search(start, goals, &no_signal);
+  }
+  if (PyErr_Occurred()) throw nb::python_error();
+  return nb::make_tuple(columns(findings, static_cast<std::size_t>(start.size())), as_array(start));
 }
 
 nb::tuple search(Searcher& searcher, Vector start,
@@ -46,13 +62,15 @@ nb::tuple search(Searcher& searcher, Vector start,
     throw std::invalid_argument("a start must have " + std::to_string(nq) + " numbers, and there must be " +
                                 std::to_string(problem.terms.size()) + " goals; got " + std::to_string(start.size()) +
                                 " numbers and " + std::to_string(goals.shape(0)) + " goals");
-  Findings findings;
-  {
-    const nb::gil_scoped_release release;
-    findings = searcher.search(std::move(start), goals_from(goals.data(), goals.shape(0)), &no_signal);
-  }
-  if (PyErr_Occurred()) throw nb::python_error();
-  return columns(std::move(findings), nq);
+  return searched(searcher, std::move(start), goals_from(goals.data(), goals.shape(0)));
+}
+
+nb::object search_at(Searcher& searcher, Vector start, nb::handle place) {
+  const Problem& problem = searcher.problem();
+  if (problem.terms.size() != 1 || start.size() != problem.mechanism->nq) return nb::none();
+  const std::optional<Goal> goal = goal_at(problem.terms.front(), place, problem.constants.farthest);
+  if (!goal) return nb::none();
+  return searched(searcher, std::move(start), {*goal}) + nb::make_tuple(nb::make_tuple(as_array(*goal)));
 }
 
 }  // namespace
@@ -62,8 +80,14 @@ void register_search(nb::module_& m) {
       .def(nb::init<const Engine&>(), "engine"_a)
       .def("search", &search, "start"_a, "goals"_a,
            nb::sig("def search(self, start: NDArray[numpy.float64], goals: NDArray[numpy.float64]) -> "
-                   "tuple[NDArray[numpy.float64], NDArray[numpy.float64], NDArray[numpy.float64], "
-                   "NDArray[numpy.int64], NDArray[numpy.int64], int, int, int, int, bool, float]"));
+                   "tuple[tuple[NDArray[numpy.float64], NDArray[numpy.float64], NDArray[numpy.float64], "
+                   "NDArray[numpy.float64], NDArray[numpy.int64], NDArray[numpy.int64], int, int, int, int, bool, "
+                   "float], NDArray[numpy.float64]]"))
+      .def("search_at", &search_at, "start"_a, "place"_a.none(),
+           nb::sig("def search_at(self, start: NDArray[numpy.float64], place: object) -> "
+                   "tuple[tuple[NDArray[numpy.float64], NDArray[numpy.float64], NDArray[numpy.float64], "
+                   "NDArray[numpy.float64], NDArray[numpy.int64], NDArray[numpy.int64], int, int, int, int, bool, "
+                   "float], NDArray[numpy.float64], tuple[NDArray[numpy.float64]]] | None"));
 }
 
 }  // namespace pinik

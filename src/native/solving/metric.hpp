@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "../model/fast.hpp"
 #include "../model/limits.hpp"
 #include "../problem/problem.hpp"
 
@@ -13,16 +14,20 @@ class Metric {
  public:
   Metric(const Problem& problem, const Limits& limits) : problem_(problem) {
     for (const Coordinate& coordinate : problem.coordinates) {
+      const int entry = coordinate.entry;
+      entries_.push_back(entry);
       scales_.push_back(problem.slides(coordinate.joint, coordinate.index) ? 1.0 / problem.size_of_chain : 1.0);
-      turns_.push_back(coordinate.entry >= 0 && limits.turning[static_cast<std::size_t>(coordinate.entry)]);
+      // Of a turn and its inverse, 0 stands for a coordinate that makes none.
+      turns_.push_back(entry >= 0 && limits.turning[static_cast<std::size_t>(entry)] ? 2.0 * M_PI : 0.0);
+      inverse_turns_.push_back(turns_.back() > 0.0 ? 1.0 / turns_.back() : 0.0);
     }
   }
 
-  // The root of the sum of the squared changes.
-  double length(const Vector& a, const Vector& b) const {
+  // The sum of the squared changes.
+  double squared(const Vector& a, const Vector& b) const {
     double sum = 0.0;
     each(a, b, [&](double change) { sum += change * change; });
-    return std::sqrt(sum);
+    return sum;
   }
 
   // The largest change.
@@ -34,16 +39,14 @@ class Metric {
 
  private:
   const Problem& problem_;
-  std::vector<double> scales_;  // by coordinate
-  std::vector<char> turns_;
+  std::vector<int> entries_;  // by coordinate
+  std::vector<double> scales_, turns_, inverse_turns_;
 
   template <class See>
   void each(const Vector& a, const Vector& b, const See& see) const {
     if (problem_.is_plain) {
-      for (std::size_t c = 0; c < scales_.size(); ++c) {
-        const int entry = problem_.coordinates[c].entry;
-        see(turned(b[entry] - a[entry], c) * scales_[c]);
-      }
+      const std::size_t count = entries_.size();
+      for (std::size_t c = 0; c < count; ++c) see(turned(b[entries_[c]] - a[entries_[c]], c) * scales_[c]);
       return;
     }
     for (const MovingJoint& moving : problem_.moving) {
@@ -58,9 +61,10 @@ class Metric {
     }
   }
 
+  // Rounds half away from zero by a conversion, which is quicker than a call.
   double turned(double change, std::size_t c) const {
-    constexpr double turn = 2.0 * M_PI;
-    return turns_[c] && std::abs(change) > M_PI ? change - turn * std::nearbyint(change / turn) : change;
+    const double turns = change * inverse_turns_[c];
+    return change - turns_[c] * static_cast<double>(static_cast<std::int64_t>(turns + (turns < 0.0 ? -0.5 : 0.5)));
   }
 };
 

@@ -24,6 +24,8 @@ struct Found {
   std::int64_t start = 0;    // the number of the start from which it was found
   std::int64_t hits = 1;     // how many starts led to it
   double basin = 0.0;        // the distance from which a run that comes nearer is taken to end here
+  double squared = 0.0;      // the squared distance of the present run's last state
+  double distance = 0.0;     // the largest change of a joint from the start [rad or m]
   TargetError error;         // the largest of all targets, by plain Pinocchio
   bool certified = false;    // whether all are within tolerance
 };
@@ -49,11 +51,10 @@ class Search {
     kinematics_.target_jacobian = settings.solver.target_jacobian;
   }
 
-  // Search for the answers to `goals`, from `start`, which is put inside the limits, and from other starts.
-  Findings operator()(Vector& start, const std::vector<Goal>& goals) {
+  // Search for the answers to `goals`, from `start`, which is inside the limits, and from other starts.
+  Findings operator()(const Vector& start, const std::vector<Goal>& goals) {
     problem_.goals = goals;
     watch_.start();
-    limits_.wrap(start, Vector(start));
     findings_ = Findings();
     last_new_ = 0;
     const std::int64_t most = std::min<std::int64_t>(spread_.begin(kinematics_, start), settings_.restarts);
@@ -80,7 +81,7 @@ class Search {
   Findings findings_;
   int redundancy_ = -1;  // unknown until the first search
   std::int64_t last_new_ = 0;
-  Vector before_, reached_;
+  Vector reached_;
   Linearization<Rows> at_;
 
   // The problem with tolerances that only exact answers meet.
@@ -138,8 +139,7 @@ class Search {
       if (status != Status::running) return false;
       findings_.ended_early = watch_.out_of_time();
       if (findings_.ended_early) return false;
-      if (isolated && iteration > 0) known = heading_for(at.q);
-      before_ = at.q;
+      if (isolated) known = heading_for(at.q, iteration > 0);
       return known == nullptr;
     };
     run_(from, near, isolated ? loose_ : limits_, loose_, run, see);
@@ -152,14 +152,17 @@ class Search {
       add(near, number);
   }
 
-  // The known answer that a run from `before_` to q is heading for: it is nearby, and the last step led towards it.
-  Found* heading_for(const Vector& q) {
+  // The known answer that a run is heading for, which is now at q: it is nearby, and the last step led towards it.
+  Found* heading_for(const Vector& q, bool has_stepped) {
+    const double approach = problem_.constants.search_approach * problem_.constants.search_approach;
+    Found* known = nullptr;
     for (Found& answer : findings_.answers) {
-      const double now = metric_.length(q, answer.q);
-      if (now < answer.basin && now < problem_.constants.search_approach * metric_.length(before_, answer.q))
-        return &answer;
+      const double before = answer.squared;
+      answer.squared = metric_.squared(q, answer.q);
+      if (has_stepped && !known && answer.squared < answer.basin * answer.basin && answer.squared < approach * before)
+        known = &answer;
     }
-    return nullptr;
+    return known;
   }
 
   void add(const Vector& near, std::int64_t number) {
@@ -191,7 +194,8 @@ class Search {
 class Searcher {
  public:
   explicit Searcher(const Engine& engine)
-      : robot_(engine.robot()), settings_(engine.settings()), problem_(engine.problem()), memory_(*robot_->certifier) {
+      : robot_(engine.robot()), settings_(engine.settings()), problem_(engine.problem()), memory_(*robot_->certifier),
+        limits_(Limits::of(*problem_.mechanism, settings_.limits, problem_.constants.barely_outside)) {
     if (problem_.rows == 3)
       search_.emplace<1>(problem_, settings_, interrupts_);
     else if (problem_.rows == 6)
@@ -205,11 +209,14 @@ class Searcher {
 
   const Problem& problem() const { return problem_; }
 
-  Findings search(Vector start, const std::vector<Goal>& goals, Pause pause) {
+  // Search from `start`, which is put inside the limits. The answers are ordered by their distance from there.
+  Findings search(Vector& start, const std::vector<Goal>& goals, Pause pause) {
     const Clock::time_point began = Clock::now();
     interrupts_.pause = pause;
     problem_.goals = goals;
     Findings findings;
+    limits_.wrap(start, Vector(start));
+    if (shortfall(problem_, settings_.limits)) return findings;  // a target is proved out of reach
     std::visit(
         [&](auto& search) {
           if constexpr (!std::is_same_v<std::decay_t<decltype(search)>, std::monostate>) findings = search(start, goals);
@@ -217,6 +224,7 @@ class Searcher {
         search_);
     for (Found& answer : findings.answers) {
       if (!answer.inside) continue;
+      answer.distance = distance(start, answer.q);
       answer.certified = true;
       const std::vector<TargetError> errors = robot_->certifier->errors(problem_, answer.q, memory_);
       for (std::size_t t = 0; t < errors.size(); ++t) {
@@ -225,6 +233,8 @@ class Searcher {
         answer.error.orientation = std::fmax(answer.error.orientation, errors[t].orientation);
       }
     }
+    std::stable_sort(findings.answers.begin(), findings.answers.end(),
+                     [](const Found& a, const Found& b) { return a.distance < b.distance; });
     findings.seconds = std::chrono::duration<double>(Clock::now() - began).count();
     return findings;
   }
@@ -234,8 +244,21 @@ class Searcher {
   const Settings settings_;
   Problem problem_;
   Certifier::Memory memory_;
+  const Limits limits_;
   Interrupts interrupts_;
   std::variant<std::monostate, Search<3>, Search<6>, Search<Eigen::Dynamic>> search_;
+
+  // The largest change of a joint [rad or m].
+  double distance(const Vector& from, const Vector& to) const {
+    double most = 0.0;
+    for (const MovingJoint& moving : problem_.moving) {
+      const Joint& joint = problem_.mechanism->joints[static_cast<std::size_t>(moving.joint)];
+      double own[6];
+      problem_.mechanism->difference(joint, from.data(), to.data(), own);
+      for (int i = 0; i < joint.nv; ++i) most = std::max(most, std::abs(own[i]));
+    }
+    return most;
+  }
 };
 
 }  // namespace pinik

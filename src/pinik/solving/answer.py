@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -18,7 +18,7 @@ from .prepared import Prepared
 from .solution import Solution
 from .words import UNWEIGHTED, Wanted, asked_targets, options_of
 
-__all__ = ["answer", "prepared_for"]
+__all__ = ["answer", "plainly_asked", "prepared_for"]
 
 
 def answer(
@@ -41,23 +41,44 @@ def answer(
         given: The values of the options, in the order of `OPTION_NAMES`.
         parameters: The solver's parameters.
     """
-    kept = kept_of(robot)
-    key, prepared = None, None
-    if type(targets) is str and _is_plain(wanted):
-        position = wanted[0]
-        key = key_of((targets, position is None), method, given, parameters)
-        prepared = _found(kept, key)
-        if prepared is not None:
-            quick = prepared.at(wanted[5] if position is None else _as_point(position), q0)
-            if quick is not None:
-                prepared.recall()
-                return quick
+    plain = plainly_asked(robot, targets, method, wanted, given, parameters)
+    if plain.prepared is not None:
+        quick = plain.prepared.at(plain.place, q0)
+        if quick is not None:
+            plain.prepared.recall()
+            return quick
     asked = asked_targets(targets, wanted, method, parameters)
-    if key is None or not all(asked[0].along):
-        prepared = prepared_for(robot, asked, method, given, parameters)
-    elif prepared is None:
-        prepared = kept.prepared(robot, asked, options_of(method, given, parameters), key)
-    return prepared.answer(asked, q0)
+    return prepared_for(robot, asked, method, given, parameters, plain.key).answer(asked, q0)
+
+
+class Plain(NamedTuple):
+    """A call that asks for a position or a placement of one frame, and nothing else.
+
+    Attributes:
+        key: The key of its arguments; None for other calls, and for arguments that must be checked in every call.
+        prepared: The compiled problem of an earlier call with this key, if there was one.
+        place: The position or placement as given, unchecked; None for what must be checked first.
+    """
+
+    key: Key | None = None
+    prepared: Prepared | None = None
+    place: object = None
+
+
+def plainly_asked(
+    robot: RobotModel,
+    targets: str | Target | Sequence[Target],
+    method: Method,
+    wanted: Wanted,
+    given: tuple[Any, ...],
+    parameters: dict[str, Any],
+) -> Plain:
+    """The call as a plain one, if it is one; the arguments are those of `answer`."""
+    if type(targets) is not str or not _is_plain(wanted):
+        return Plain()
+    position = wanted[0]
+    key = key_of((targets, position is None), method, given, parameters)
+    return Plain(key, _found(kept_of(robot), key), wanted[5] if position is None else _as_point(position))
 
 
 def prepared_for(
@@ -66,6 +87,7 @@ def prepared_for(
     method: Method,
     given: tuple[Any, ...],
     parameters: dict[str, Any],
+    plain_key: Key | None = None,
 ) -> Prepared:
     """The compiled problem for targets of these kinds; that of an earlier call with equal arguments, if there was one.
 
@@ -75,9 +97,12 @@ def prepared_for(
         method: The method.
         given: The values of the options, in the order of `OPTION_NAMES`.
         parameters: The solver's parameters.
+        plain_key: The key of a plain call, under which `plainly_asked` finds the problem from now on.
     """
     kept = kept_of(robot)
-    key = key_of(tuple([target.shape for target in targets]), method, given, parameters)
+    key = plain_key
+    if key is None or not all(targets[0].along):
+        key = key_of(tuple([target.shape for target in targets]), method, given, parameters)
     prepared = _found(kept, key)
     return prepared or kept.prepared(robot, targets, options_of(method, given, parameters), key)
 

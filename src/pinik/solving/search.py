@@ -10,6 +10,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
+import pinocchio
 from numpy.typing import NDArray
 
 from ..problem.kinematics import Kinematics
@@ -24,7 +25,7 @@ from .spread import Spread
 from .state import Status
 from .verdict import all_within, measure_errors
 
-__all__ = ["Findings", "Search"]
+__all__ = ["Findings", "Search", "largest_change"]
 
 Array = NDArray[np.float64]
 
@@ -83,7 +84,8 @@ class Findings:
     """What a search came to.
 
     Attributes:
-        q: The answers inside the limits (n, nq), in the order in which they were found.
+        q: The answers inside the limits (n, nq), ordered by `distance`.
+        distance: The largest change of a joint from the start to each (n,) [rad or m].
         position_error, orientation_error: Their largest errors (n,) [m, rad] by plain Pinocchio; NaN where none is
             asked for.
         start: The numbers of the starts from which they were found (n,); 0 is the given one.
@@ -97,6 +99,7 @@ class Findings:
     """
 
     q: Array
+    distance: Array
     position_error: Array
     orientation_error: Array
     start: NDArray[np.int64]
@@ -112,18 +115,21 @@ class Findings:
     def nothing(cls, nq: int) -> Findings:
         """What no search comes to, for configurations of `nq` numbers."""
         none, counts = np.zeros(0), np.zeros(0, dtype=np.int64)
-        return cls(np.zeros((0, nq)), none, none, counts, counts, 0, 0, 0, 0, False, 0.0)
+        return cls(np.zeros((0, nq)), none, none, none, counts, counts, 0, 0, 0, 0, False, 0.0)
 
-    def with_answer(self, q: Array, errors: Sequence[TargetError]) -> Findings:
-        """These findings and one more answer (nq,) from the given start."""
+    def with_answer(
+        self, q: Array, distance: float, errors: Sequence[TargetError], *, start: int = 0, hits: int = 1
+    ) -> Findings:
+        """These findings and one more answer (nq,), the farthest; its start is the given one unless told otherwise."""
         position, orientation = largest_of(errors)
         return dataclasses.replace(
             self,
             q=np.vstack([self.q, q]),
+            distance=np.append(self.distance, distance),
             position_error=np.append(self.position_error, np.nan if position is None else position),
             orientation_error=np.append(self.orientation_error, np.nan if orientation is None else orientation),
-            start=np.append(self.start, 0),
-            hits=np.append(self.hits, 1),
+            start=np.append(self.start, start),
+            hits=np.append(self.hits, hits),
         )
 
 
@@ -141,12 +147,11 @@ class Search:
         self._redundancy: int | None = None
 
     def __call__(self, targets: tuple[Target, ...], start: Array) -> Findings:
-        """Search for the answers to these targets, from `start` (nq,) and from other starts."""
+        """Search for the answers to these targets, from `start` (nq,), inside the limits, and from other starts."""
         self._began = time.perf_counter()
         options = self.question.options
         deadline = self._began + options.time_limit
         self._kinematics.retarget(targets)
-        start = self._limits.wrap(start)
         candidates = self._spread.begin(start)
         most = min(candidates, options.restarts_at_most)
         self._spread.mark(start)
@@ -159,7 +164,7 @@ class Search:
         while True:
             self._attempt(q, start)
             if self._is_late or self._starts > most or self._is_enough():
-                return self._findings(targets)
+                return self._findings(targets, start)
             q = self._spread.next()
 
     def _dimension(self, start: Array) -> int:
@@ -246,7 +251,7 @@ class Search:
             return 0.0
         return 1.0 / math.sqrt(trace) / self._sharp.problem.size_of_chain if 0.0 < trace < math.inf else 0.0
 
-    def _findings(self, targets: tuple[Target, ...]) -> Findings:
+    def _findings(self, targets: tuple[Target, ...], start: Array) -> Findings:
         question = self.question
         findings = dataclasses.replace(
             Findings.nothing(question.robot.model.nq),
@@ -256,13 +261,19 @@ class Search:
             redundancy=self._redundancy or 0,
             ended_early=self._is_late,
         )
-        for answer in self._answers:
+        model = question.robot.model
+        inside = [(largest_change(model, start, answer.q), answer) for answer in self._answers if answer.is_inside]
+        for distance, answer in sorted(inside, key=lambda pair: pair[0]):
             errors = measure_errors(question.robot, targets, answer.q, question.options.tolerance)
-            if answer.is_inside and all_within(errors, question):
-                findings = findings.with_answer(answer.q, errors)
-                findings.start[-1], findings.hits[-1] = answer.start, answer.hits
+            if all_within(errors, question):
+                findings = findings.with_answer(answer.q, distance, errors, start=answer.start, hits=answer.hits)
         findings.time = time.perf_counter() - self._began
         return findings
+
+
+def largest_change(model: pinocchio.Model, a: Array, b: Array) -> float:
+    """The largest change of a joint from configuration a (nq,) to b [rad or m]."""
+    return float(np.abs(pinocchio.difference(model, a, b)).max(initial=0.0))
 
 
 def _sharpened(question: Question) -> Question:

@@ -18,14 +18,15 @@ from ..problem.target_values import Position
 from ..problem.targets import Target
 from ..problem.tolerance import Tolerance
 from ..solvers.registry import Method
-from .answer import prepared_for
+from .answer import plainly_asked, prepared_for
 from .branches import Branches
 from .choice import SAME_ANSWER
-from .native.codec import goals_of
+from .native.codec import goals_of, targets_of
 from .options import OPTION_NAMES
 from .origin import Origin
 from .prepared import Prepared
-from .search import Findings
+from .search import Findings, largest_change
+from .solution import Solution
 from .spread import NEAREST
 from .state import Status
 from .verdict import all_within, measure_errors
@@ -111,85 +112,86 @@ def solve_all(
     wanted = (
         position, rotation, rpy, quat_xyzw, quat_wxyz, placement, axis, direction, at, tool, relative_to, weight,
     )  # fmt: skip
-    asked = asked_targets(targets, wanted, method, solver_parameters, ("q0", *_OPTIONS))
     given = (
         limits, locked, NEAREST if restarts is None else restarts, seed, max_iterations, tolerance, time_limit, engine,
         *_FIXED,
     )  # fmt: skip
     origin = Origin.of(robot, q0, searches=False)
-    prepared = prepared_for(robot, asked, method, given, solver_parameters)
-    if prepared.options.method.exact:
-        return _in_closed_form(prepared, asked, origin)
-    findings = _search(prepared, asked, origin.q)
-    return _branches(prepared, asked, origin, findings)
+    plain = plainly_asked(robot, targets, method, wanted, given, solver_parameters)
+    if plain.prepared is not None and plain.prepared.searcher is not None:
+        quick = plain.prepared.searcher.search_at(origin.q, plain.place)
+        if quick is not None and len(quick[0][0]):
+            found, start, goals = quick
+            moved = targets_of(plain.prepared.targets, goals)
+            return _branches(plain.prepared, moved, start, origin.turned, Findings(*found))
+    asked = asked_targets(targets, wanted, method, solver_parameters, ("q0", *_OPTIONS))
+    prepared = prepared_for(robot, asked, method, given, solver_parameters, plain.key)
+    start = prepared.question.limits.wrap(origin.q)
+    search = _in_closed_form if prepared.options.method.exact else _search
+    findings = search(prepared, asked, start)
+    if len(findings.q):
+        return _branches(prepared, asked, start, origin.turned, findings)
+    one = prepared.answer(asked, origin)
+    if one.success:
+        findings = findings.with_answer(one.q, largest_change(robot.model, start, one.q), one.errors)
+    return _branches(prepared, asked, start, origin.turned, findings, one)
 
 
 def _search(prepared: Prepared, targets: tuple[Target, ...], start: Array) -> Findings:
+    if prepared.searcher is not None:
+        return Findings(*prepared.searcher.search(start, goals_of(targets))[0])
     if shortfall(targets, prepared.question.bounds, prepared.options.tolerance) is not None:
         return Findings.nothing(prepared.robot.model.nq)
-    if prepared.searcher is not None:
-        return Findings(*prepared.searcher.search(start, goals_of(targets)))
     return prepared.search(targets, start)
 
 
-def _branches(
-    prepared: Prepared, targets: tuple[Target, ...], origin: Origin, findings: Findings, is_complete: bool = False
-) -> Branches:
-    """The answers that a search found; where there is none, the one that a solve finds inside the tolerance."""
-    question = prepared.question
-    start = question.limits.wrap(origin.q)
-    status, words = Status.CONVERGED, None
-    if not len(findings.q):
-        one = prepared.answer(targets, origin)
-        status, words = one.status, one.message
-        if one.success:
-            findings = findings.with_answer(one.q, one.errors)
-            words = "1 answer inside the tolerance; none that is exact was found"
-    distance = _distances(question.robot.model, start, findings.q)
-    order = np.argsort(distance, kind="stable")
-    return Branches(
-        findings.q[order],
-        distance[order],
-        findings.position_error[order],
-        findings.orientation_error[order],
-        findings.start[order],
-        findings.hits[order],
-        findings.starts,
-        findings.redundancy,
-        is_complete,
-        findings.ended_early,
-        status,
-        findings.time,
-        question,
-        targets,
-        start,
-        origin.turned,
-        prepared.engine,
-        words,
-    )
-
-
-def _in_closed_form(prepared: Prepared, targets: tuple[Target, ...], origin: Origin) -> Branches:
-    """Both answers of two bones, which are all."""
+def _in_closed_form(prepared: Prepared, targets: tuple[Target, ...], start: Array) -> Findings:
+    """Both answers of two bones."""
     began = time.perf_counter()
     question, robot = prepared.question, prepared.robot
     (target,) = targets
     bones = TwoBone.of(robot, target.frame, tool=target.tool, relative_to=target.relative_to)
     assert target.position is not None
-    start = question.limits.wrap(origin.q)
     both = bones.solve(target.position, start, limits=question.options.limits)
     findings = Findings.nothing(robot.model.nq)
     for q, inside in zip(both.q, both.inside, strict=True):
         errors = measure_errors(robot, targets, q, question.options.tolerance)
-        is_new = all(np.abs(pinocchio.difference(robot.model, other, q)).max() > SAME_ANSWER for other in findings.q)
+        is_new = all(largest_change(robot.model, other, q) > SAME_ANSWER for other in findings.q)
         if inside and is_new and all_within(errors, question):
-            findings = findings.with_answer(q, errors)
+            findings = findings.with_answer(q, largest_change(robot.model, start, q), errors)
     findings.time = time.perf_counter() - began
-    return _branches(prepared, targets, origin, findings, is_complete=True)
+    return findings
 
 
-def _distances(model: pinocchio.Model, start: Array, q: Array) -> Array:
-    """The largest change of a joint from `start` (nq,) to each configuration (n, nq) [rad or m]."""
-    if model.nq == model.nv:
-        return np.asarray(np.abs(q - start).max(axis=1, initial=0.0))
-    return np.array([np.abs(pinocchio.difference(model, start, own)).max(initial=0.0) for own in q])
+def _branches(
+    prepared: Prepared,
+    targets: tuple[Target, ...],
+    start: Array,
+    turned: Mapping[str, float],
+    findings: Findings,
+    instead: Solution | None = None,
+) -> Branches:
+    """The branches that a search found, or what a solve found instead."""
+    words = None
+    if instead is not None:
+        words = "1 answer inside the tolerance; none that is exact was found" if instead.success else instead.message
+    return Branches(
+        findings.q,
+        findings.distance,
+        findings.position_error,
+        findings.orientation_error,
+        findings.start,
+        findings.hits,
+        findings.starts,
+        findings.redundancy,
+        prepared.options.method.exact,
+        findings.ended_early,
+        Status.CONVERGED if instead is None else instead.status,
+        findings.time,
+        prepared.question,
+        targets,
+        start,
+        turned,
+        prepared.engine,
+        words,
+    )

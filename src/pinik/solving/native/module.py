@@ -17,7 +17,7 @@ from ...solvers.transpose import JacobianTranspose
 
 __all__ = ["ABI", "METHODS", "load", "why_not"]
 
-ABI = "66d7b25b000cca6a"
+ABI = "8e56e3da008999bf"
 """The digest of the module's stub, which identifies its signatures; the module contains the same digest
 (src/native/bindings/abi.hpp)."""
 
