@@ -22,6 +22,7 @@ SOURCE = ROOT / "src" / "pinik"
 # Package → the modules and rooms that alone may import it.
 ONLY_THERE = {
     "yourdfpy": {"shapes.second_opinion"},
+    "coal": {"engine", "shapes.coal_checker"},
     "trimesh": {"shapes.meshes", "shapes.neighbours", "shapes.triangles"},
     "robot_descriptions": {"description.downloads"},
     "xacro": {"description.xacro_process"},

@@ -15,5 +15,6 @@ void register_track(nb::module_& m);         // OnMiss and Track
 void register_calls(nb::module_& m);         // Call, recalling
 void register_places(nb::module_& m);        // read_places
 void register_kinematics(nb::module_& m);    // ReferenceFrame and FrameWalk
+void register_collisions(nb::module_& m);    // SolidKind, Geometry and Shapes
 
 }  // namespace pinik
