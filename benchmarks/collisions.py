@@ -51,9 +51,10 @@ class Pinocchio:
         self.geometry.addAllCollisionPairs()
         if pairs is not None:
             known = set(pairs)
-            for pair in list(self.geometry.collisionPairs):
-                if self.names(pair) not in known:
-                    self.geometry.removeCollisionPair(pair)
+            kept = [(pair.first, pair.second) for pair in self.geometry.collisionPairs if self.names(pair) in known]
+            self.geometry.removeAllCollisionPairs()
+            for numbers in kept:
+                self.geometry.addCollisionPair(pinocchio.CollisionPair(*numbers))
         self.all_names = [self.names(pair) for pair in self.geometry.collisionPairs]
         self.results = self.geometry.createData()
 
