@@ -122,8 +122,8 @@ def compare_times(name: str, count: int, seed: int) -> int:
     shapes, shape_pairs = len(shapes_of(robot).solids), len(plain.all_names)
     print(
         f"{name}: {shapes} shapes, {shape_pairs} pairs, {ours.mean():.1%} touch; a free configuration: pinik "
-        f"{free:.2f} µs, Pinocchio {theirs_free:.1f} µs, {theirs_free / free:.0f} times; any: pinik {mean:.2f} µs, Pinocchio "
-        f"{theirs_mean:.1f} µs; {wrong} of {count} verdicts differ",
+        f"{free:.2f} µs, Pinocchio {theirs_free:.1f} µs, {theirs_free / free:.0f} times; any: pinik {mean:.2f} µs, "
+        f"Pinocchio {theirs_mean:.1f} µs; {wrong} of {count} verdicts differ",
         flush=True,
     )
     return wrong
