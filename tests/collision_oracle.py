@@ -34,6 +34,8 @@ class PlainCollisions:
         )
         self.geometry.addAllCollisionPairs()
         self._data, self._geometry_data = robot.model.createData(), self.geometry.createData()
+        for request in self._geometry_data.collisionRequests:
+            request.enable_contact = True  # else coal overlooks some shapes that go deep into each other
         self.links = [robot.model.frames[shape.parentFrame].name for shape in self.geometry.geometryObjects]
         self.pairs = [(pair.first, pair.second) for pair in self.geometry.collisionPairs]
 

@@ -89,6 +89,26 @@ def test_spheres_anywhere_have_the_depth_of_the_closed_form(engine):
 
 
 @pytest.mark.parametrize("engine", ENGINES)
+def test_primitives_along_the_same_axes_touch_however_deep(engine):
+    """Without a request for contacts coal overlooks some of these; a box inside the other must always be found."""
+    rng = np.random.default_rng(17)
+    kinds = {
+        "box": lambda: tuple(rng.uniform(0.02, 0.3, 3)),
+        "cylinder": lambda: tuple(rng.uniform(0.02, 0.3, 2)),
+        "capsule": lambda: tuple(rng.uniform(0.02, 0.3, 2)),
+    }
+    for _ in range(1500):
+        (first, make), (second, make_other) = (list(kinds.items())[k] for k in rng.integers(0, 3, 2))
+        turn = pinocchio.rpy.rpyToMatrix(*(np.pi / 2 * rng.integers(0, 4, 3))) @ pinocchio.rpy.rpyToMatrix(
+            *(rng.uniform(-3.0, 3.0) * np.eye(3)[rng.integers(0, 3)])
+        )
+        # Both have their centres in common but for a part of the least half width along one axis.
+        at = 0.009 * rng.uniform(-1.0, 1.0) * np.eye(3)[rng.integers(0, 3)]
+        checker = two(engine, (first, make()), (second, make_other()), pinocchio.SE3(turn, at))
+        assert len(checker.report(np.zeros(1))) == 1
+
+
+@pytest.mark.parametrize("engine", ENGINES)
 def test_a_mesh_is_its_surface(engine):
     checker = two(engine, ("mesh", cube(2.0)), ("mesh", cube(0.5)))
     assert checker.report(np.array([0.0])) == []

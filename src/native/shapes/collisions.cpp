@@ -29,9 +29,10 @@ const coal::DistanceFunctionMatrix& distance_functions() {
   return functions;
 }
 
-coal::CollisionRequest request(bool contact) {
-  coal::CollisionRequest request(contact ? coal::CONTACT : coal::NO_REQUEST, 1);
-  if (!contact) request.distance_upper_bound = surely;
+// Without a request for contacts coal overlooks some shapes that go deep into each other, such as two coaxial cylinders.
+coal::CollisionRequest request(coal::CollisionRequestFlag flag) {
+  coal::CollisionRequest request(flag, 1);
+  request.distance_upper_bound = surely;
   return request;
 }
 
@@ -67,7 +68,7 @@ void Shapes::add_pair(int first, int second, int group) {
 struct Collisions::Coal {
   using Object = std::shared_ptr<coal::CollisionGeometry> Geometry::Objects::*;
 
-  const coal::CollisionRequest yes_or_no = request(false), contact = request(true);
+  const coal::CollisionRequest apart = request(coal::NO_REQUEST), contact = request(coal::CONTACT);
   const coal::DistanceRequest nearest{true};
   coal::GJKSolver solver;
   coal::CollisionResult found;
@@ -103,7 +104,7 @@ struct Collisions::Coal {
     const Mat3 R = at_first.getRotation().transpose() * at_second.getRotation();
     const Placement second_in_first{
         R, at_first.getRotation().transpose() * (at_second.getTranslation() - at_first.getTranslation())};
-    solver.set(yes_or_no);
+    solver.set(contact);
     open.assign(1, {0, 0});
     while (!open.empty()) {
       const auto [a, b] = open.back();
@@ -133,8 +134,8 @@ struct Collisions::Coal {
     const coal::TriangleP triangle(own[0], own[1], own[2]), opposite(other[0], other[1], other[2]);
     Vec3 p, q, normal;
     const double distance = coal::internal::ShapeShapeDistance<coal::TriangleP, coal::TriangleP>(
-        &triangle, at_first, &opposite, at_second, &solver, false, p, q, normal);
-    return distance <= yes_or_no.collision_distance_threshold;
+        &triangle, at_first, &opposite, at_second, &solver, true, p, q, normal);
+    return distance <= contact.collision_distance_threshold;
   }
 
   double distance(Object of) {
@@ -190,11 +191,11 @@ bool Collisions::touches(const Shapes::Pair& pair) {
   if (!may_touch(pair)) return false;
   take(pair);
   // Hulls that are apart hold surfaces that are, and are far quicker to compare than the triangles.
-  if (coal_->has_mesh() && coal_->has_hulls() && !coal_->collide(&Geometry::Objects::hull, coal_->yes_or_no) &&
+  if (coal_->has_mesh() && coal_->has_hulls() && !coal_->collide(&Geometry::Objects::hull, coal_->apart) &&
       coal_->found.distance_lower_bound > surely)
     return false;
   if (coal_->are_meshes()) return coal_->surfaces_touch();
-  return coal_->collide(&Geometry::Objects::exact, coal_->yes_or_no);
+  return coal_->collide(&Geometry::Objects::exact, coal_->contact);
 }
 
 bool Collisions::touches(const double* q) {

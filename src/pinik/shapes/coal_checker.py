@@ -87,6 +87,9 @@ class CoalChecker:
         """This thread's own memory."""
         if not hasattr(self._local, "data"):
             self._local.data = self._geometry.createData()
+            for request in self._local.data.collisionRequests:
+                # Else coal overlooks some shapes that go deep into each other, such as two coaxial cylinders.
+                request.enable_contact = True
             self._local.kinematics = self._model.createData()
         return self._local.data
 
