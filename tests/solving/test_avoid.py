@@ -299,8 +299,8 @@ def test_a_point_of_a_path_that_touches_is_a_miss(engine):
     start = elbows(1.2, 0.0)[0]
     turns = np.linspace(0.0, 1.2, 25)
     path = np.column_stack([1.2 * np.cos(turns), 1.2 * np.sin(turns), np.zeros(len(turns))])
-    centre = ball_on(start + [0.6, 0.0], 0.0, along=0.3)
-    free = [not touches_ball(machine, start + [turn, 0.0], centre) for turn in turns]
+    centre = ball_on(np.add(start, [0.6, 0.0]), 0.0, along=0.3)
+    free = [not touches_ball(machine, np.add(start, [turn, 0.0]), centre) for turn in turns]
     assert 5 < sum(free) < 24
     followed = pinik.track(machine, "tip", path, start, engine=engine, avoid=world_of(centre), restarts=0)
     assert followed.reached.tolist() == free
@@ -372,7 +372,8 @@ def test_a_start_may_touch(engine):
 
 @pytest.mark.parametrize("value", [3, "others", ["self", 1], [None]])
 def test_anything_else_is_refused_in_words(value):
-    with pytest.raises(pinik.InputError, match=r'avoid must be "self", a pinik\.World, or a list of these; got') as error:
+    words = r'avoid must be "self", a pinik\.World, or a list of these; got'
+    with pytest.raises(pinik.InputError, match=words) as error:
         pinik.solve(load_quietly(TWO), "tip", position=[1, 0, 0], avoid=value)
     assert error.value.argument == "avoid"
 
