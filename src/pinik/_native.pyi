@@ -9,7 +9,9 @@ from numpy.typing import NDArray
 
 pinocchio_version: str = "4.1.0"
 
-abi: str = "8e56e3da008999bf"
+coal_version: str = "3.0.3"
+
+abi: str = "8a1102934d0f6dfa"
 
 class JointKind(enum.Enum):
     revolute = 0
@@ -570,42 +572,49 @@ class Searcher:
     def search(
         self, start: NDArray[numpy.float64], goals: NDArray[numpy.float64]
     ) -> tuple[
-        tuple[
-            NDArray[numpy.float64],
-            NDArray[numpy.float64],
-            NDArray[numpy.float64],
-            NDArray[numpy.float64],
-            NDArray[numpy.int64],
-            NDArray[numpy.int64],
-            int,
-            int,
-            int,
-            int,
-            bool,
-            float,
-        ],
         NDArray[numpy.float64],
+        NDArray[numpy.float64],
+        NDArray[numpy.float64],
+        NDArray[numpy.int64],
+        NDArray[numpy.int64],
+        int,
+        int,
+        int,
+        int,
+        int,
+        bool,
+        float,
     ]: ...
-    def search_at(
-        self, start: NDArray[numpy.float64], place: object
-    ) -> (
-        tuple[
-            tuple[
-                NDArray[numpy.float64],
-                NDArray[numpy.float64],
-                NDArray[numpy.float64],
-                NDArray[numpy.float64],
-                NDArray[numpy.int64],
-                NDArray[numpy.int64],
-                int,
-                int,
-                int,
-                int,
-                bool,
-                float,
-            ],
-            NDArray[numpy.float64],
-            tuple[NDArray[numpy.float64]],
-        ]
-        | None
-    ): ...
+
+class SolidKind(enum.Enum):
+    box = 0
+
+    sphere = 1
+
+    cylinder = 2
+
+    capsule = 3
+
+class Geometry:
+    def __init__(self, kind: SolidKind, sizes: Sequence[float]) -> None: ...
+    @staticmethod
+    def mesh(vertices: object, triangles: Sequence[Sequence[int]]) -> Geometry: ...
+
+class Shapes:
+    def __init__(self, robot: Robot) -> None: ...
+    def add_shape(
+        self,
+        geometry: Geometry,
+        joint: int,
+        rotation: Annotated[NDArray[numpy.float64], dict(shape=(3, 3), order="F")],
+        translation: Annotated[NDArray[numpy.float64], dict(shape=(3), order="C")],
+    ) -> int: ...
+    def add_pair(self, first: int, second: int, group: int) -> None: ...
+    def report(
+        self, q: object
+    ) -> list[
+        tuple[int, float, tuple[float, float, float], tuple[float, float, float], tuple[float, float, float]]
+    ]: ...
+    def clearance(self, q: object) -> tuple[int, float, tuple[float, float, float], tuple[float, float, float]]: ...
+    def touches(self, q: object, threads: int) -> NDArray[numpy.uint8]: ...
+    def counts(self, q: object, threads: int) -> NDArray[numpy.int64]: ...

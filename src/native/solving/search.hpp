@@ -28,6 +28,7 @@ struct Found {
   double distance = 0.0;     // the largest change of a joint from the start [rad or m]
   TargetError error;         // the largest of all targets, by plain Pinocchio
   bool certified = false;    // whether all are within tolerance
+  bool collides = false;     // whether something touches that is to be avoided
 };
 
 // What a search came to.
@@ -196,6 +197,7 @@ class Searcher {
   explicit Searcher(const Engine& engine)
       : robot_(engine.robot()), settings_(engine.settings()), problem_(engine.problem()), memory_(*robot_->certifier),
         limits_(Limits::of(*problem_.mechanism, settings_.limits, problem_.constants.barely_outside)) {
+    if (settings_.avoid) collisions_.emplace(settings_.avoid);
     if (problem_.rows == 3)
       search_.emplace<1>(problem_, settings_, interrupts_);
     else if (problem_.rows == 6)
@@ -232,6 +234,7 @@ class Searcher {
         answer.error.position = std::fmax(answer.error.position, errors[t].position);
         answer.error.orientation = std::fmax(answer.error.orientation, errors[t].orientation);
       }
+      answer.collides = answer.certified && collisions_ && collisions_->touches(answer.q.data());
     }
     std::stable_sort(findings.answers.begin(), findings.answers.end(),
                      [](const Found& a, const Found& b) { return a.distance < b.distance; });
@@ -246,6 +249,7 @@ class Searcher {
   Certifier::Memory memory_;
   const Limits limits_;
   Interrupts interrupts_;
+  std::optional<Collisions> collisions_;
   std::variant<std::monostate, Search<3>, Search<6>, Search<Eigen::Dynamic>> search_;
 
   // The largest change of a joint [rad or m].

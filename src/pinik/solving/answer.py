@@ -13,7 +13,7 @@ from ..problem.target_values import Position
 from ..problem.targets import Target
 from ..solvers.registry import Method
 from .kept import Kept, Key, kept_of
-from .keys import key_of
+from .keys import key_of, settled
 from .prepared import Prepared
 from .solution import Solution
 from .words import UNWEIGHTED, Wanted, asked_targets, options_of
@@ -77,7 +77,7 @@ def plainly_asked(
     if type(targets) is not str or not _is_plain(wanted):
         return Plain()
     position = wanted[0]
-    key = key_of((targets, position is None), method, given, parameters)
+    key = key_of((targets, position is None), method, settled(given), parameters)
     return Plain(key, _found(kept_of(robot), key), wanted[5] if position is None else _as_point(position))
 
 
@@ -99,7 +99,7 @@ def prepared_for(
         parameters: The solver's parameters.
         plain_key: The key of a plain call, under which `plainly_asked` finds the problem from now on.
     """
-    kept = kept_of(robot)
+    kept, given = kept_of(robot), settled(given)
     key = plain_key
     if key is None or not all(targets[0].along):
         key = key_of(tuple([target.shape for target in targets]), method, given, parameters)

@@ -17,6 +17,7 @@ from ..problem.reach import shortfall
 from ..problem.target_values import Position
 from ..problem.targets import Target
 from ..problem.tolerance import Tolerance
+from ..shapes.avoid import Avoided
 from ..solvers.registry import Method
 from .answer import plainly_asked, prepared_for
 from .branches import Branches
@@ -36,8 +37,8 @@ __all__ = ["solve_all"]
 
 Array = NDArray[np.float64]
 
-_OPTIONS = OPTION_NAMES[:-4]
-_FIXED = (False, True, "first", None)  # trace, polish, choose, choose_weights
+_FIXED = {"trace": False, "polish": True, "choose": "first", "choose_weights": None}
+_OPTIONS = tuple(name for name in OPTION_NAMES if name not in _FIXED)
 
 
 def solve_all(
@@ -66,6 +67,7 @@ def solve_all(
     tolerance: Tolerance | ArrayLike | None = None,
     time_limit: float | None = None,
     engine: str = "auto",
+    avoid: Avoided = None,
     **solver_parameters: Any,
 ) -> Branches:
     """Find all distinct configurations that move frames of the robot to their targets, inside the limits.
@@ -99,6 +101,8 @@ def solve_all(
             unless no such answer exists.
         time_limit: Time limit [s]; a search that it ends keeps what was found.
         engine: "auto", "python" or "native".
+        avoid: What the answers must not touch, as for `pinik.solve`. Those that do are left out; `Branches.colliding`
+            counts them.
         **solver_parameters: Parameters of the solver.
 
     Returns:
@@ -114,7 +118,7 @@ def solve_all(
     )  # fmt: skip
     given = (
         limits, locked, NEAREST if restarts is None else restarts, seed, max_iterations, tolerance, time_limit, engine,
-        *_FIXED,
+        *_FIXED.values(), avoid,
     )  # fmt: skip
     origin = Origin.of(robot, q0, searches=False)
     plain = plainly_asked(robot, targets, method, wanted, given, solver_parameters)
@@ -157,7 +161,11 @@ def _in_closed_form(prepared: Prepared, targets: tuple[Target, ...], start: Arra
     for q, inside in zip(both.q, both.inside, strict=True):
         errors = measure_errors(robot, targets, q, question.options.tolerance)
         is_new = all(largest_change(robot.model, other, q) > SAME_ANSWER for other in findings.q)
-        if inside and is_new and all_within(errors, question):
+        if not (inside and is_new and all_within(errors, question)):
+            continue
+        if question.touches(q):
+            findings.colliding += 1
+        else:
             findings = findings.with_answer(q, largest_change(robot.model, start, q), errors)
     findings.time = time.perf_counter() - began
     return findings
@@ -174,7 +182,7 @@ def _branches(
     """The branches that a search found, or what a solve found instead."""
     words = None
     if instead is not None:
-        words = "1 answer inside the tolerance; none that is exact was found" if instead.success else instead.message
+        words = _words_of_one(findings.colliding) if instead.success else instead.message
     return Branches(
         findings.q,
         findings.distance,
@@ -184,6 +192,7 @@ def _branches(
         findings.hits,
         findings.starts,
         findings.redundancy,
+        findings.colliding,
         prepared.options.method.exact,
         findings.ended_early,
         Status.CONVERGED if instead is None else instead.status,
@@ -195,3 +204,10 @@ def _branches(
         prepared.engine,
         words,
     )
+
+
+def _words_of_one(colliding: int) -> str:
+    """What to say of the one answer that a solve found where the search found none."""
+    if colliding:
+        return f"1 answer that collides with nothing; the {colliding} that the search found do"
+    return "1 answer inside the tolerance; none that is exact was found"

@@ -12,13 +12,13 @@ import pinocchio
 from numpy.typing import ArrayLike, NDArray
 
 from ..checks import as_positive_number
+from ..engine import load
 from ..errors import InputError
 from ..model.robot_model import RobotModel
 from ..problem.targets import Target
 from ..problem.tolerance import Tolerance, largest_of
 from ..solvers.registry import Method
 from .native.codec import goals_of
-from .native.module import load
 from .options import OPTION_NAMES, Options
 from .origin import Origin, turned_near
 from .path import careful
@@ -34,7 +34,7 @@ if TYPE_CHECKING:
 
 Array = NDArray[np.float64]
 
-_MISSING = ("trace", "restarts", "seed", "polish", "choose", "choose_weights")
+_MISSING = ("trace", "restarts", "seed", "polish", "choose", "choose_weights", "avoid")
 _KEYWORDS = ("q0", "rate", "velocity", *(name for name in OPTION_NAMES if name not in _MISSING))
 
 _TOLERANCE = Tolerance(1e-6, 1e-5)
