@@ -31,7 +31,7 @@ class Metric:
         for number, coordinate in enumerate(problem.coordinates):
             joint = coordinate.joint
             self._columns[number] = joint.idx_v + coordinate.index
-            self._scales[number] = 1.0 / problem.size_of_chain if coordinate.slides else 1.0
+            self._scales[number] = 1.0 / problem.size_of_chain if joint.slides(coordinate.index) else 1.0
             self._turns[number] = joint.nq == 1 and bool(limits.turning[joint.idx_q])
 
     def changes(self, a: Array, b: Array) -> Array:
