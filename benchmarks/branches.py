@@ -39,7 +39,7 @@ import every_answer
 Array = NDArray[np.float64]
 
 ROBOTS = ("ur5", "z1", "puma", "kinova")
-KINOVA = ArmSource("kinova", "world", "j2s6s200_end_effector")
+KINOVA = ArmSource("kinova", "base", "j2s6s200_end_effector")
 ORACLES = (
     Peer("eaik", "EAIK", ("eaik_closed.py", "All"), EAIK, EAIK_REQUIREMENTS),
     Peer("ssik", "ssik", ("ssik_analytic.py", "All"), ("ssik",), ("ssik[urdf]==8.2.0",)),

@@ -157,7 +157,7 @@ def _origin(tag: ElementTree.Element) -> Array:
 def _axis(tag: ElementTree.Element) -> Array:
     said = tag.find("axis")
     axis = np.array([1.0, 0.0, 0.0] if said is None else [float(word) for word in said.attrib["xyz"].split()])
-    return np.array(axis / np.linalg.norm(axis))
+    return np.array(axis / (np.linalg.norm(axis) or 1.0))  # fixed joints may have no axis
 
 
 def limit(lower: float, upper: float) -> str:
