@@ -56,6 +56,22 @@ class Nearest(EaikArm):
         return q[np.abs(q - start).max(axis=1).argmin()] if len(q) else None
 
 
+class All(EaikArm):
+    """Every answer, whatever the limits, one after the other in a row as long as the start, which is not looked at."""
+
+    def start(self, q: np.ndarray) -> np.ndarray:
+        self._row = np.full(len(q), np.nan)
+        return q
+
+    def solve(self, target: np.ndarray, start: np.ndarray) -> np.ndarray:
+        found = self._robot.IK(target)
+        return found.Q[~found.is_LS]
+
+    def answer(self, solved: np.ndarray) -> np.ndarray:
+        self._row[: solved.size] = solved.ravel()
+        return self._row
+
+
 class Many(EaikArm):
     """`IK_batched` over all targets, and the first answer of each."""
 

@@ -39,3 +39,23 @@ class Ssik:
 
     def answer(self, solved: Any) -> Any:
         return solved[0].q if solved else None
+
+
+class All(Ssik):
+    """Every answer, one after the other in a row as long as the start, which is not looked at.
+
+    It gives all whole turns inside the limits; those are taken together, untimed.
+    """
+
+    def start(self, q: np.ndarray) -> np.ndarray:
+        self._row = np.full(len(q), np.nan)
+        return q
+
+    def solve(self, target: np.ndarray, start: np.ndarray) -> Any:
+        return self._arm.solve(target)
+
+    def answer(self, solved: Any) -> Any:
+        found = np.array([each.q for each in solved])
+        found = np.unique(np.round(found - 2 * np.pi * np.round(found / (2 * np.pi)), 9), axis=0).ravel()
+        self._row[: len(found)] = found
+        return self._row

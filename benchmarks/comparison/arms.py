@@ -26,10 +26,10 @@ LEFT_OUT_OF_CHAIN = ("inertial",)
 
 @dataclass(frozen=True)
 class ArmSource:
-    """An arm of a robot in the catalogue.
+    """An arm of a robot.
 
     Attributes:
-        robot: The robot's name in pinik's catalogue.
+        robot: The robot's name in pinik's catalogue, or the path of a URDF file.
         base: The link that targets are expressed in: the root of the file that the peers get.
         tip: The link that is placed.
         alone: Whether the file holds the links from base to tip only; else it holds the whole robot.
@@ -86,8 +86,9 @@ class Arm:
         return pinocchio.SE3(*self.plain.placements([self.tip], angles))
 
     def random(self, rng: np.random.Generator) -> Array:
-        """Joint values (n,) uniform between the limits."""
-        return rng.uniform(self.lower, self.upper)
+        """Joint values (n,) uniform between the limits; of continuous joints, within a turn."""
+        low = np.where(np.isfinite(self.lower), self.lower, -np.pi)
+        return rng.uniform(low, np.where(np.isfinite(self.upper), self.upper, np.pi))
 
     def as_json(self) -> dict[str, object]:
         """What an adapter is told."""
@@ -104,10 +105,17 @@ class Arm:
         }
 
 
-def write_arm(name: str, folder: Path) -> Arm:
-    """Write the URDF files of an arm into a folder: the robot's own without shapes, and one of its chain alone."""
-    source = ARMS[name]
-    robot = ElementTree.parse(robot_catalog.find(source.robot).urdf).getroot()
+def write_arm(name: str, folder: Path, source: ArmSource | None = None) -> Arm:
+    """Write the URDF files of an arm into a folder: the robot's own without shapes, and one of its chain alone.
+
+    Args:
+        name: The arm's short name.
+        folder: The folder.
+        source: Where the arm comes from; that of this name in `ARMS` when None.
+    """
+    source = ARMS[name] if source is None else source
+    file = source.robot if source.robot.endswith(".urdf") else robot_catalog.find(source.robot).urdf
+    robot = ElementTree.parse(file).getroot()
     _leave_out(robot, LEFT_OUT_OF_ROBOT)
     for link in robot.iter("link"):
         _leave_out(link, LEFT_OUT_OF_LINK)

@@ -169,12 +169,46 @@ class Robot(RobotModel):
         )  # fmt: skip
         return answer(self, targets, method, wanted, q0, given, solver_parameters)
 
-    def solve_all(self, targets: str | Target | Sequence[Target], **words: Any) -> Branches:
+    def solve_all(
+        self,
+        targets: str | Target | Sequence[Target],
+        position: Position | None = None,
+        *,
+        rotation: ArrayLike | None = None,
+        rpy: ArrayLike | None = None,
+        quat_xyzw: ArrayLike | None = None,
+        quat_wxyz: ArrayLike | None = None,
+        placement: pinocchio.SE3 | ArrayLike | None = None,
+        axis: str | ArrayLike | None = None,
+        direction: ArrayLike | None = None,
+        at: ArrayLike | None = None,
+        tool: pinocchio.SE3 | ArrayLike | None = None,
+        relative_to: str | None = None,
+        weight: float = UNWEIGHTED,
+        method: Method = "dls",
+        q0: ArrayLike | Mapping[str, float] | None = None,
+        limits: bool = True,
+        locked: Iterable[str] = (),
+        restarts: int | None = None,
+        seed: int = 0,
+        max_iterations: int | None = None,
+        tolerance: Tolerance | ArrayLike | None = None,
+        time_limit: float | None = None,
+        engine: str = "auto",
+        avoid: Avoided = None,
+        **solver_parameters: Any,
+    ) -> Branches:
         """Find all distinct configurations that move frames of the robot to their targets, inside the limits.
 
         `pinik.solve_all` explains the arguments, the answers and the errors.
         """
-        return solve_all(self, targets, **words)
+        return solve_all(
+            self, targets, method, position=position, rotation=rotation, rpy=rpy, quat_xyzw=quat_xyzw,
+            quat_wxyz=quat_wxyz, placement=placement, axis=axis, direction=direction, at=at, tool=tool,
+            relative_to=relative_to, weight=weight, q0=q0, limits=limits, locked=locked, restarts=restarts, seed=seed,
+            max_iterations=max_iterations, tolerance=tolerance, time_limit=time_limit, engine=engine, avoid=avoid,
+            **solver_parameters,
+        )  # fmt: skip
 
     def self_motion(
         self,

@@ -10,7 +10,7 @@ import pytest
 
 import pinik
 
-COMMANDS = ("solve", "track", "fk", "jacobian", "info", "check", "robots", "compare")
+COMMANDS = ("solve", "solve-all", "track", "fk", "jacobian", "info", "check", "robots", "compare")
 
 
 def examples(text: str) -> list[str]:

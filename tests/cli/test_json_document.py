@@ -29,6 +29,7 @@ PLACEHOLDERS = {
     "parameters": "NAME",
     "poses": "POSE",
     "stiffness": "JOINT",
+    "windings": "JOINT",
 }
 TARGETS = [
     {"frame": "tip", "position": [0.2, 0.1, 0.8], "rpy": [0, 0.3, 0], "tool": [0, 0, 0.1], "weight": 2},
@@ -42,6 +43,9 @@ RUNS = {
         ("solve", "arm", "--targets", "-", "--root", "planar", "--json"),
         ("solve", "arm", "--frame", "tip", "--position", "0", "0", "9", "--method", "ccd", "--json"),
         ("solve", "ur5", "--frame", "tool0", *TOUCH, "--avoid-self", "--restarts", "0", "--json"),
+    ],
+    "solve-all": [
+        ("solve-all", "ur5", "--frame", "tool0", "--position", "0.4", "0.1", "0.4", "--rpy", "0", "0", "0", "--json"),
     ],
     "track": [
         ("track", "two_link", JUMP, "--frame", "tip", "--start", "joint1=-2.64", "--start", "joint2=1.5", "--json"),

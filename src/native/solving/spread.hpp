@@ -35,13 +35,13 @@ class Spread {
     double root = 2.0;
     for (int i = 0; i < 64; ++i) root = std::pow(1.0 + root, exponent);
     double step = 1.0;
-    steps_.resize(problem.mechanism->joints.size());
+    steps_.resize(static_cast<std::size_t>(problem.mechanism->nq));
     offsets_.resize(steps_.size());
     for (int j : table_.drawn()) {
       const Joint& joint = problem.mechanism->joints[static_cast<std::size_t>(j)];
       step /= root;
-      steps_[static_cast<std::size_t>(joint.idx_v)] = step;
-      offsets_[static_cast<std::size_t>(joint.idx_v)] =
+      steps_[static_cast<std::size_t>(joint.idx_q)] = step;
+      offsets_[static_cast<std::size_t>(joint.idx_q)] =
           uniform(seed, problem.constants.table_key, 0, static_cast<std::uint64_t>(joint.idx_v));
     }
   }
@@ -51,8 +51,8 @@ class Spread {
     start_ = &start;
     if (table_.drawn().empty()) return 0;
     table_.rank(kinematics, start, [&](std::uint64_t k, const Joint& joint) {
-      const double sum = offsets_[static_cast<std::size_t>(joint.idx_v)] +
-                         static_cast<double>(k) * steps_[static_cast<std::size_t>(joint.idx_v)];
+      const double sum = offsets_[static_cast<std::size_t>(joint.idx_q)] +
+                         static_cast<double>(k) * steps_[static_cast<std::size_t>(joint.idx_q)];
       return sum - std::floor(sum);
     });
     choose_nearest();
@@ -99,7 +99,7 @@ class Spread {
   const Problem& problem_;
   const Limits& limits_;
   Table<Rows> table_;
-  std::vector<double> steps_, offsets_;  // by coordinate
+  std::vector<double> steps_, offsets_;  // by entry of q
   const Vector* start_ = nullptr;
   std::vector<Eigen::Index> candidates_;
   std::vector<float> values_;  // of the candidates, one drawn joint after the other

@@ -151,6 +151,11 @@ class Joint:
             return q[self.idx_q + 2 : self.idx_q + 4], "(cos, sin)"
         return None
 
+    def slides(self, index: int = 0) -> bool:
+        """Whether tangent coordinate `index` of the joint translates along its axis instead of rotating about it."""
+        kind = self.kind
+        return kind == "prismatic" or (kind == "floating" and index < 3) or (kind == "planar" and index < 2)
+
     def range_to_draw_from(self, lower: float, upper: float, slide_about: float = 0.0) -> tuple[float, float]:
         """A finite range inside the limits [rad or m], from which random angles are drawn.
 

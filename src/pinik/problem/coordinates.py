@@ -38,8 +38,7 @@ class Coordinate:
     @cached_property
     def slides(self) -> bool:
         """Whether the first mover translates along its axis instead of rotating about it."""
-        kind = self.movers[0][0].kind
-        return kind == "prismatic" or (kind == "floating" and self.index < 3) or (kind == "planar" and self.index < 2)
+        return self.movers[0][0].slides(self.index)
 
     def line(self, data: Any) -> tuple[Array, Array]:
         """(unit axis (3,), a point on it (3,) [m]) of the first mover in the world, from `data.oMi`."""

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from ..model.robot_model import RobotModel
 from ..problem.targets import Target
+from ..problem.tolerance import TargetError
 from .origin import unwound
 from .question import Question
 from .self_motion import SelfMotion, self_motion
@@ -23,6 +24,8 @@ from .windings import winding_ranges, wound
 __all__ = ["Branches"]
 
 Array = NDArray[np.float64]
+
+_FROM_THE_QUESTION = ("robot", "method", "joint_names", "windings", "errors")
 
 
 @dataclass(frozen=True, eq=False)
@@ -70,10 +73,26 @@ class Branches:
     _engine: str = field(repr=False)
     _words: str | None = field(repr=False)
 
-    @property
+    def __getstate__(self) -> dict[str, Any]:
+        """Pickle the results only, without the compiled problem."""
+        state = {name: getattr(self, name) for name in self.__dataclass_fields__ if name != "_question"}
+        return state | {name: getattr(self, name) for name in _FROM_THE_QUESTION}
+
+    @cached_property
     def robot(self) -> RobotModel:
         """The robot."""
         return self._question.robot
+
+    @cached_property
+    def method(self) -> str:
+        """The method's short name."""
+        return self._question.solver.name
+
+    @cached_property
+    def joint_names(self) -> list[str]:
+        """The joints that the search moves, in the order of `robot.joint_names`."""
+        moving = {coordinate.joint.name for coordinate in self._question.problem.coordinates}
+        return [name for name in self.robot.joint_names if name in moving]
 
     @property
     def targets(self) -> tuple[Target, ...]:
@@ -162,10 +181,10 @@ class Branches:
 
         There may be very many: 64 for an arm of six joints with two turns each.
         """
-        return wound(self._question.limits.robot, self.q[index], self.windings[index])
+        return wound(self.robot, self.q[index], self.windings[index])
 
-    @property
-    def errors(self) -> list[tuple[Any, ...]]:
+    @cached_property
+    def errors(self) -> list[tuple[TargetError, ...]]:
         """The error of each target at each branch, by plain Pinocchio."""
         tolerance = self._question.options.tolerance
         return [measure_errors(self.robot, self._targets, q, tolerance) for q in self.q]
@@ -220,7 +239,7 @@ class Branches:
             "colliding": self.colliding,
             "starts": self.starts,
             "time_s": self.time,
-            "method": self._question.options.method.name,
+            "method": self.method,
             "engine": self._engine,
         }  # fmt: skip
 

@@ -22,7 +22,7 @@ def joint_scales(problem: Problem) -> Array:
     """The factors (nv,) on tangent coordinates: 1 for radians, and 1 per length of the chain for metres."""
     scales = np.ones(problem.model.nv)
     for coordinate in problem.coordinates:
-        if coordinate.slides:
+        if coordinate.joint.slides(coordinate.index):
             scales[coordinate.joint.idx_v + coordinate.index] = 1.0 / problem.size_of_chain
     return scales
 

@@ -92,8 +92,8 @@ class Table:
 
 
 def drawn_joints(problem: Problem) -> list[Joint]:
-    """The free joints of one axis, whose values starts choose."""
-    return [joint for joint in problem.robot.joints if joint.has_one_axis and joint.nv and problem.free[joint.idx_v]]
+    """The free joints of one axis, whose values starts choose, in the order of the problem's coordinates."""
+    return [coordinate.joint for coordinate in problem.coordinates if coordinate.joint.has_one_axis]
 
 
 def configuration_at(problem: Problem, limits: Limits, start: Array, share: Share) -> Array:

@@ -2,31 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from typing import Any
 
-from ...errors import PinikError
-from ...problem.targets import Target
-from ...robot import Robot
-from ...solvers.base import Solver
 from ...solving.front import solve as solve_targets
-from ...solving.solution import Solution
 from ..inputs import solve_options as given
-from ..inputs.assignments import numbers_by_joint, origin, solver_with
+from ..inputs.assignments import failures_in_words, numbers_by_joint, origin, solver_with
 from ..inputs.loading import load_robot
 from ..inputs.obstacles import AvoidSelf, WorldFile, avoided
 from ..inputs.options import AllowOutside, AsJson, Degrees, PackageDirs, RobotSource, Root, XacroArgs
-from ..inputs.targets import (
-    check_frames,
-    named_by_option,
-    option_of,
-    read_position,
-    target_from_options,
-    targets_from_file,
-)
+from ..inputs.targets import asked_targets, check_frames, named_by_option, read_position
 from ..reports.solution_report import emit_solution
 from ..terminal import output
-from ..terminal.exits import CommandError, ExitStatus, in_words
+from ..terminal.exits import ExitStatus
 from ..terminal.units import Units
 
 __all__ = ["solve"]
@@ -84,7 +71,7 @@ def solve(
     rpy = rpy and tuple(map(units.radians, rpy))  # type: ignore[assignment]
     wanted: dict[str, Any] = {"position": read_position(position), "rpy": rpy, "quat_xyzw": quat_xyzw}
     wanted |= {"axis": axis, "direction": direction, "at": at, "tool": tool, "relative_to": relative_to}
-    asked = _asked(frame, wanted, targets)
+    asked = asked_targets(frame, wanted, targets)
     solver = solver_with(method, param)
     machine = load_robot(robot, root=root, package_dirs=package_dir, xacro_args=xacro_arg, allow_outside=allow_outside)
     if targets is not None:
@@ -102,36 +89,10 @@ def solve(
         "choose_weights": numbers_by_joint(choose_weight, "--choose-weight", "JOINT=W"),
         "q0": origin(machine, pose, start, "--start", units, None if no_limits else "moved inside"),
     }
-    solution = _solved(machine, asked, solver, method, options)
-    _emit(solution, units, as_json)
-    return ExitStatus.ANSWERED if solution.success else ExitStatus.MISSED
-
-
-def _asked(frame: str | None, wanted: Mapping[str, Any], file: str | None) -> list[Target]:
-    """The targets, from the options or from the file."""
-    if file is None:
-        return [target_from_options(frame, wanted)]
-    for name, value in {"frame": frame, **wanted}.items():
-        if value is not None:
-            raise CommandError(f"--targets reads all targets from the file; put {option_of(name)} into it")
-    return targets_from_file(file)
-
-
-def _solved(robot: Robot, asked: list[Target], solver: Solver, method: str, options: Mapping[str, Any]) -> Solution:
-    """`pinik.solve`; its errors name the option, and a failure inside the user's own solver becomes one sentence."""
-    try:
-        with named_by_option(options):
-            return solve_targets(robot, asked, solver, **options)
-    except (PinikError, CommandError):
-        raise
-    except (Exception, SystemExit) as error:
-        if type(solver).__module__.startswith("pinik."):
-            raise
-        raise CommandError(f"--method {method}: the solver failed: {in_words(error)}") from None
-
-
-def _emit(solution: Solution, units: Units, as_json: bool) -> None:
+    with failures_in_words(solver, method), named_by_option(options):
+        solution = solve_targets(machine, asked, solver, **options)
     if as_json:
         output.emit_json(solution.to_dict())
     else:
         emit_solution(solution, units)
+    return ExitStatus.ANSWERED if solution.success else ExitStatus.MISSED

@@ -5,7 +5,8 @@ from __future__ import annotations
 import json
 import os
 import sys
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
+from contextlib import contextmanager
 from typing import Any
 
 from ...errors import PinikError, UnknownNameError
@@ -17,7 +18,7 @@ from ..terminal.exits import CommandError, in_words
 from ..terminal.output import say
 from ..terminal.units import Units
 
-__all__ = ["configuration", "numbers_by_joint", "origin", "solver_with", "solvers_with"]
+__all__ = ["configuration", "failures_in_words", "numbers_by_joint", "origin", "solver_with", "solvers_with"]
 
 
 def configuration(
@@ -106,6 +107,23 @@ def solver_with(method: str, parameters: Iterable[str] | None) -> Solver:
         CommandError, InputError: A text or value that cannot be used.
     """
     return _changed(_solver(method), parameters)
+
+
+@contextmanager
+def failures_in_words(solver: Solver, method: str) -> Iterator[None]:
+    """Let a failure inside the user's own solver, which `--method` named so, become one sentence.
+
+    Raises:
+        CommandError: In place of what that solver raised.
+    """
+    try:
+        yield
+    except (PinikError, CommandError):
+        raise
+    except (Exception, SystemExit) as error:
+        if type(solver).__module__.startswith("pinik."):
+            raise
+        raise CommandError(f"--method {method}: the solver failed: {in_words(error)}") from None
 
 
 def solvers_with(solvers: Mapping[str, Solver], parameters: Iterable[str] | None) -> dict[str, Solver]:

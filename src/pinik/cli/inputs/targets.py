@@ -19,6 +19,7 @@ from ..terminal.exits import CommandError
 from .files import label_of, read_bytes
 
 __all__ = [
+    "asked_targets",
     "check_frames",
     "named_by_option",
     "option_of",
@@ -41,6 +42,25 @@ _CHECKS: Mapping[str, Callable[[Any, str], object]] = {
     "tool": as_point,
 }
 """What `Target` checks as well; here the errors name the option instead of the keyword."""
+
+
+def asked_targets(frame: str | None, wanted: Mapping[str, Any], file: str | None) -> list[Target]:
+    """The targets, from the options or from the file.
+
+    Args:
+        frame: The frame to move.
+        wanted: The other keywords of `Target`; None for an option that was not given.
+        file: The path of a JSON file, which leaves no room for the others.
+
+    Raises:
+        CommandError, InputError: As for `target_from_options` and `targets_from_file`, or both ways were taken.
+    """
+    if file is None:
+        return [target_from_options(frame, wanted)]
+    for name, value in {"frame": frame, **wanted}.items():
+        if value is not None:
+            raise CommandError(f"--targets reads all targets from the file; put {option_of(name)} into it")
+    return targets_from_file(file)
 
 
 def target_from_options(frame: str | None, wanted: Mapping[str, Any]) -> Target:

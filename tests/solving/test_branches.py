@@ -1,0 +1,111 @@
+"""`Branches` on findings made by hand: the estimate of what is missing, and whole turns."""
+
+from __future__ import annotations
+
+import itertools
+import math
+
+import numpy as np
+import pytest
+
+import pinik
+from every_answer import hinge_arm, puma
+from pinik.solving.branches import missing
+from robots import load_quietly
+from urdf_texts import joint
+
+
+@pytest.mark.parametrize(
+    ("hits", "wanted"),
+    [
+        ([], 0.0),
+        ([5, 7, 3], 0.0),
+        ([1, 5, 7], 0.0),  # 1 · 0 / (2 · 1)
+        ([1, 1, 4], 1.0),  # 2 · 1 / (2 · 1)
+        ([1, 1, 1, 2, 9], 1.5),  # 3 · 2 / (2 · 2)
+        ([1, 1, 1, 1, 2, 2], 2.0),  # 4 · 3 / (2 · 3)
+    ],
+)
+def test_the_estimate_is_the_bound_of_chao(hits, wanted):
+    assert missing(np.array(hits, dtype=np.int64), 0, False) == pytest.approx(wanted)
+
+
+def test_nothing_is_missing_of_what_is_complete_and_infinitely_many_of_a_family():
+    once = np.ones(5, dtype=np.int64)
+    assert missing(once, 0, True) == 0.0
+    assert math.isinf(missing(once, 1, False))
+
+
+def test_the_estimate_is_right_on_average_where_answers_are_found_at_random():
+    rng, gaps = np.random.default_rng(0), []
+    for _ in range(300):
+        drawn = np.bincount(rng.integers(0, 8, 16), minlength=8)
+        gaps.append(missing(drawn[drawn > 0], 0, False) - (drawn == 0).sum())
+    assert abs(np.mean(gaps)) < 0.35  # of 0.94 that are missing on average
+
+
+class TestWholeTurns:
+    def test_a_hinge_between_uneven_limits(self):
+        robot = pinik.load(hinge_arm("z", [(0, 0, 0), (1, 0, 0)], (-1.0, 14.0)))
+        branches = robot.solve_all("tip", [math.cos(0.5), math.sin(0.5), 0.0])
+        assert branches[0] == pytest.approx([0.5])
+        assert branches.windings.tolist() == [[[0, 2]]]  # 0.5 + 4π = 13.07
+        turned = [0.5, 0.5 + 2.0 * math.pi, 0.5 + 4.0 * math.pi]
+        assert [float(q[0]) for q in branches.wound(0)] == pytest.approx(turned)
+
+    def test_a_locked_hinge_does_not_turn(self):
+        robot = pinik.load(puma((-6.3, 6.3)))
+        q = np.array([0.4, -0.5, 1.1, 0.7, 0.8, -1.2])
+        branches = robot.solve_all("tip", placement=robot.placement("tip", q), q0=q, locked=["j6"])
+        assert branches[0] == pytest.approx(q, abs=1e-6)
+        assert branches.windings[0, 5].tolist() == [0, 0]
+        assert branches.windings[0, :5].any(axis=1).all()
+        assert branches.joint_names == ["j1", "j2", "j3", "j4", "j5"]
+
+    def test_a_leader_whose_follower_does_not_come_back_does_not_turn(self):
+        text = hinge_arm("z", [(0, 0, 0), (1, 0, 0)], (-7.0, 7.0))
+        half = joint("f", "tip", "finger", '<axis xyz="0 0 1"/>', '<mimic joint="j1" multiplier="0.5"/>')
+        free = pinik.load(text).solve_all("tip", [1.0, 0.0, 0.0])
+        tied = pinik.load(text.replace("</robot>", f'<link name="finger"/>{half}</robot>'))
+        assert free.windings.tolist() == [[[-1, 1]]]
+        assert tied.solve_all("tip", [1.0, 0.0, 0.0]).windings.tolist() in ([[[0, 0]]], [[[0, 0]], [[0, 0]]])
+
+    def test_without_limits_there_is_nothing_to_count(self):
+        robot = pinik.load(puma((-6.3, 6.3)))
+        q = np.array([0.4, -0.5, 1.1, 0.7, 0.8, -1.2])
+        branches = robot.solve_all("tip", placement=robot.placement("tip", q), limits=False)
+        assert not branches.windings.any()
+
+    def test_those_with_the_fewest_turns_come_first(self):
+        robot = pinik.load(hinge_arm("z", [(0, 0, 0), (1, 0, 0)], (-14.0, 14.0)))
+        branches = robot.solve_all("tip", [math.cos(0.5), math.sin(0.5), 0.0])
+        turns = [round((float(q[0]) - 0.5) / (2.0 * math.pi)) for q in branches.wound(0)]
+        assert turns == [0, -1, 1, -2, 2]
+
+
+class TestSequence:
+    def test_it_is_a_sequence_of_configurations(self):
+        branches = load_quietly("two_link").solve_all("tip", [0.4, 0.3, 0.0])
+        assert len(branches) == 2
+        assert bool(branches)
+        assert all(np.array_equal(a, b) for a, b in zip(branches, branches.q, strict=True))
+        assert np.array_equal(branches[1], branches.q[1])
+        assert str(branches) == branches.message
+
+    def test_distances_are_the_largest_changes(self):
+        robot, start = load_quietly("two_link"), np.array([0.3, -0.4])
+        branches = robot.solve_all("tip", [0.4, 0.3, 0.0], q0=start)
+        assert branches.distance == pytest.approx([np.abs(q - start).max() for q in branches])
+        assert all(a <= b for a, b in itertools.pairwise(branches.distance))
+
+    def test_errors_are_those_of_plain_pinocchio(self):
+        robot = load_quietly("ur5")
+        branches = robot.solve_all("tool0", [0.4, 0.1, 0.4])
+        for q, errors, position, orientation in zip(
+            branches, branches.errors, branches.position_error, branches.orientation_error, strict=True
+        ):
+            missed = np.linalg.norm(robot.placement("tool0", q).translation - [0.4, 0.1, 0.4])
+            assert errors[0].position == pytest.approx(missed, abs=1e-12)
+            assert position == pytest.approx(missed, abs=1e-12)
+            assert missed <= 1e-9
+            assert np.isnan(orientation)
