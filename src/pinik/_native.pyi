@@ -11,7 +11,7 @@ pinocchio_version: str = "4.1.0"
 
 coal_version: str = "3.0.3"
 
-abi: str = "8a1102934d0f6dfa"
+abi: str = "02e4b751847afb40"
 
 class JointKind(enum.Enum):
     revolute = 0
@@ -380,6 +380,45 @@ class Solver:
     @printed_scaling.setter
     def printed_scaling(self, arg: bool, /) -> None: ...
 
+class WayOutSettings:
+    def __init__(self) -> None: ...
+    @property
+    def ways(self) -> int: ...
+    @ways.setter
+    def ways(self, arg: int, /) -> None: ...
+    @property
+    def steps(self) -> int: ...
+    @steps.setter
+    def steps(self, arg: int, /) -> None: ...
+    @property
+    def iterations(self) -> int: ...
+    @iterations.setter
+    def iterations(self, arg: int, /) -> None: ...
+    @property
+    def longest_step(self) -> float: ...
+    @longest_step.setter
+    def longest_step(self, arg: float, /) -> None: ...
+    @property
+    def gap(self) -> float: ...
+    @gap.setter
+    def gap(self, arg: float, /) -> None: ...
+    @property
+    def probe(self) -> float: ...
+    @probe.setter
+    def probe(self, arg: float, /) -> None: ...
+    @property
+    def same_rank(self) -> float: ...
+    @same_rank.setter
+    def same_rank(self, arg: float, /) -> None: ...
+    @property
+    def stuck(self) -> float: ...
+    @stuck.setter
+    def stuck(self, arg: float, /) -> None: ...
+    @property
+    def damping(self) -> float: ...
+    @damping.setter
+    def damping(self, arg: float, /) -> None: ...
+
 class Settings:
     def __init__(self) -> None: ...
     @property
@@ -430,6 +469,11 @@ class Settings:
     def polish(self) -> bool: ...
     @polish.setter
     def polish(self, arg: bool, /) -> None: ...
+    @property
+    def way_out(self) -> WayOutSettings: ...
+    @way_out.setter
+    def way_out(self, arg: WayOutSettings, /) -> None: ...
+    def avoid(self, shapes: Shapes) -> None: ...
 
 class Status(enum.Enum):
     CONVERGED = 0
@@ -442,7 +486,9 @@ class Status(enum.Enum):
 
     UNREACHABLE = 4
 
-    RUNNING = 5
+    COLLIDING = 5
+
+    RUNNING = 6
 
 class Answer:
     @property
@@ -572,19 +618,47 @@ class Searcher:
     def search(
         self, start: NDArray[numpy.float64], goals: NDArray[numpy.float64]
     ) -> tuple[
+        tuple[
+            NDArray[numpy.float64],
+            NDArray[numpy.float64],
+            NDArray[numpy.float64],
+            NDArray[numpy.float64],
+            NDArray[numpy.int64],
+            NDArray[numpy.int64],
+            int,
+            int,
+            int,
+            int,
+            int,
+            bool,
+            float,
+        ],
         NDArray[numpy.float64],
-        NDArray[numpy.float64],
-        NDArray[numpy.float64],
-        NDArray[numpy.int64],
-        NDArray[numpy.int64],
-        int,
-        int,
-        int,
-        int,
-        int,
-        bool,
-        float,
     ]: ...
+    def search_at(
+        self, start: NDArray[numpy.float64], place: object
+    ) -> (
+        tuple[
+            tuple[
+                NDArray[numpy.float64],
+                NDArray[numpy.float64],
+                NDArray[numpy.float64],
+                NDArray[numpy.float64],
+                NDArray[numpy.int64],
+                NDArray[numpy.int64],
+                int,
+                int,
+                int,
+                int,
+                int,
+                bool,
+                float,
+            ],
+            NDArray[numpy.float64],
+            tuple[NDArray[numpy.float64]],
+        ]
+        | None
+    ): ...
 
 class SolidKind(enum.Enum):
     box = 0
@@ -613,7 +687,14 @@ class Shapes:
     def report(
         self, q: object
     ) -> list[
-        tuple[int, float, tuple[float, float, float], tuple[float, float, float], tuple[float, float, float]]
+        tuple[
+            int,
+            float,
+            tuple[float, float, float],
+            tuple[float, float, float],
+            tuple[float, float, float],
+            tuple[int, int],
+        ]
     ]: ...
     def clearance(self, q: object) -> tuple[int, float, tuple[float, float, float], tuple[float, float, float]]: ...
     def touches(self, q: object, threads: int) -> NDArray[numpy.uint8]: ...

@@ -1,6 +1,9 @@
 // How far two configurations are apart; follows pinik.solving.metric.
 #pragma once
 
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
 #include <vector>
 
 #include "../model/fast.hpp"
@@ -8,6 +11,17 @@
 #include "../problem/problem.hpp"
 
 namespace pinik {
+
+// Add to `sums` the squares of `values` minus `value`, each times `scale`, modulo whole turns of length `turn` unless that is 0.
+PINIK_FAST static void add_squared_changes(const double* values, double value, double scale, double turn,
+                                           std::size_t count, double* sums) {
+  const double inverse = turn > 0.0 ? 1.0 / turn : 0.0;
+  for (std::size_t k = 0; k < count; ++k) {
+    const double change = values[k] - value;
+    const double left = (change - turn * std::nearbyint(change * inverse)) * scale;
+    sums[k] += left * left;
+  }
+}
 
 // Changes of the free coordinates in radians, or in lengths of the chain; whole turns of hinges count as no change.
 class Metric {
@@ -35,6 +49,26 @@ class Metric {
     double most = 0.0;
     each(a, b, [&](double change) { most = std::max(most, std::abs(change)); });
     return most;
+  }
+
+  // Write the squared distances of many configurations from q. `columns` has their coordinates, one after the other, with
+  // `stride` numbers for each, if every coordinate is an entry of q; else they are taken from `configuration(k)`.
+  template <class Configuration>
+  void squared(const Vector& q, const double* columns, std::size_t stride, std::size_t count,
+               const Configuration& configuration, double* sums) const {
+    if (!problem_.is_plain) {
+      for (std::size_t k = 0; k < count; ++k) sums[k] = squared(q, configuration(k));
+      return;
+    }
+    std::fill(sums, sums + count, 0.0);
+    for (std::size_t c = 0; c < entries_.size(); ++c)
+      add_squared_changes(columns + c * stride, q[entries_[c]], scales_[c], turns_[c], count, sums);
+  }
+
+  // Write the coordinates of q into number k of `columns`, as above.
+  void store(const Vector& q, std::size_t k, std::size_t stride, double* columns) const {
+    if (problem_.is_plain)
+      for (std::size_t c = 0; c < entries_.size(); ++c) columns[c * stride + k] = q[entries_[c]];
   }
 
  private:

@@ -24,7 +24,6 @@ struct Found {
   std::int64_t start = 0;    // the number of the start from which it was found
   std::int64_t hits = 1;     // how many starts led to it
   double basin = 0.0;        // the distance from which a run that comes nearer is taken to end here
-  double squared = 0.0;      // the squared distance of the present run's last state
   double distance = 0.0;     // the largest change of a joint from the start [rad or m]
   TargetError error;         // the largest of all targets, by plain Pinocchio
   bool certified = false;    // whether all are within tolerance
@@ -59,6 +58,10 @@ class Search {
     findings_ = Findings();
     last_new_ = 0;
     const std::int64_t most = std::min<std::int64_t>(spread_.begin(kinematics_, start), settings_.restarts);
+    stride_ = static_cast<std::size_t>(most) + 1;
+    columns_.resize(stride_ * problem_.coordinates.size());
+    before_.resize(stride_);
+    now_.resize(stride_);
     spread_.mark(start);
     if (redundancy_ < 0) redundancy_ = redundancy(start);
     findings_.redundancy = redundancy_;
@@ -83,6 +86,9 @@ class Search {
   int redundancy_ = -1;  // unknown until the first search
   std::int64_t last_new_ = 0;
   Vector reached_;
+  std::size_t stride_ = 0;               // the most answers that there can be
+  std::vector<double> columns_;          // the coordinates of the answers, for metric_
+  std::vector<double> before_, now_;     // squared distances of the present run's last two states from each answer
   Linearization<Rows> at_;
 
   // The problem with tolerances that only exact answers meet.
@@ -156,14 +162,14 @@ class Search {
   // The known answer that a run is heading for, which is now at q: it is nearby, and the last step led towards it.
   Found* heading_for(const Vector& q, bool has_stepped) {
     const double approach = problem_.constants.search_approach * problem_.constants.search_approach;
-    Found* known = nullptr;
-    for (Found& answer : findings_.answers) {
-      const double before = answer.squared;
-      answer.squared = metric_.squared(q, answer.q);
-      if (has_stepped && !known && answer.squared < answer.basin * answer.basin && answer.squared < approach * before)
-        known = &answer;
-    }
-    return known;
+    std::vector<Found>& answers = findings_.answers;
+    before_.swap(now_);
+    metric_.squared(q, columns_.data(), stride_, answers.size(), [&](std::size_t k) -> const Vector& { return answers[k].q; },
+                    now_.data());
+    if (has_stepped)
+      for (std::size_t k = 0; k < answers.size(); ++k)
+        if (now_[k] < answers[k].basin * answers[k].basin && now_[k] < approach * before_[k]) return &answers[k];
+    return nullptr;
   }
 
   void add(const Vector& near, std::int64_t number) {
@@ -175,6 +181,7 @@ class Search {
     answer.start = number;
     if (redundancy_ == 0) answer.basin = problem_.constants.search_basin * least_singular_value(answer.q);
     spread_.mark(answer.q);
+    metric_.store(answer.q, findings_.answers.size(), stride_, columns_.data());
     findings_.answers.push_back(std::move(answer));
     last_new_ = number;
   }

@@ -123,7 +123,7 @@ class Spread {
   void choose_nearest() {
     const Vector& scores = table_.scores();
     const auto wanted = static_cast<std::size_t>(std::min<Eigen::Index>(problem_.constants.spread_nearest, scores.size()));
-    double highest = scores.maxCoeff();
+    double highest = infinity;
     // The score below which about twice as many lie as are wanted, by every sixteenth of them.
     sample_.clear();
     for (Eigen::Index k = 0; k < scores.size(); k += 16) sample_.push_back(scores[k]);
