@@ -34,6 +34,7 @@ class Body:
         opacity: In 0..1.
         gloss: The strength of its highlights, in 0..1.
         glow: The light that it emits, which keeps its colour in the shade.
+        ghost: Whether it is not there, but could be: everything else hides it, and it casts no shadow.
     """
 
     solid: Solid
@@ -41,6 +42,7 @@ class Body:
     opacity: float = 1.0
     gloss: float = 0.15
     glow: float = 0.0
+    ghost: bool = False
 
 
 @dataclass(frozen=True, eq=False)

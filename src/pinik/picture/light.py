@@ -35,7 +35,7 @@ def to_srgb(light: Array) -> Array:
 
 @dataclass(frozen=True, eq=False)
 class Mesh:
-    """Several bodies of the same opacity, merged into one mesh.
+    """Several bodies of the same opacity, ghosts or not, merged into one mesh.
 
     Attributes:
         vertices: (v, 3) [m].
@@ -45,6 +45,7 @@ class Mesh:
         gloss: Of each face (f,).
         glow: Of each face (f,).
         opacity: In 0..1.
+        ghost: Whether everything else hides it.
     """
 
     vertices: Array
@@ -54,10 +55,11 @@ class Mesh:
     gloss: Array
     glow: Array
     opacity: float
+    ghost: bool
 
     @classmethod
     def of(cls, bodies: Sequence[Body]) -> Mesh:
-        """Merge one or more bodies; the first gives the opacity."""
+        """Merge one or more bodies; the first gives the opacity, and whether they are ghosts."""
         solids = [body.solid for body in bodies]
         starts = np.cumsum([0, *(len(solid.vertices) for solid in solids[:-1])])
         counts = [len(solid.faces) for solid in solids]
@@ -69,6 +71,7 @@ class Mesh:
             np.repeat([body.gloss for body in bodies], counts),
             np.repeat([body.glow for body in bodies], counts),
             bodies[0].opacity,
+            bodies[0].ghost,
         )
 
     def drawn_by(self, camera: Camera, size: tuple[int, int], rows: tuple[int, int] | None = None) -> Raster:

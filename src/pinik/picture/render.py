@@ -19,6 +19,7 @@ __all__ = ["render"]
 Array = NDArray[np.float64]
 
 _SAMPLES = 2  # along each side of a pixel
+_BEHIND = 2.0**40  # the depth of a ghost counts so much, and keeps all its digits
 # Bounds on what is in memory at once, whatever the size of the picture and the number of ghosts:
 _AT_ONCE = 400_000  # pixels
 _MOST = 8_000_000  # samples of all layers together
@@ -30,7 +31,7 @@ def render(
     """Render a picture.
 
     Args:
-        layers: Bodies; those of one layer have the same opacity and hide each other.
+        layers: Bodies; those of one layer hide each other, have the same opacity, and are all ghosts or none.
         camera: The camera.
         size: Width and height [pixels].
         floor: The height of the ground [m]; None for no ground.
@@ -43,7 +44,8 @@ def render(
     points = np.vstack([_box(body.solid.vertices) for layer in layers for body in layer])
     width, height = size
     sun = Sun(meshes, camera, size, points)
-    ground = None if floor is None or camera.position[2] <= floor else Ground(floor, meshes, sun, points)
+    standing = [mesh for mesh in meshes if not mesh.ghost]
+    ground = None if floor is None or camera.position[2] <= floor else Ground(floor, standing, sun, points)
     bands: list[NDArray[np.uint8]] = []
     top, count = 0, max(_AT_ONCE // width, 1)
     while top < height:
@@ -165,7 +167,7 @@ def _shaded(mesh: Mesh, sun: Sun, camera: Camera, size: tuple[int, int], band: t
     normals /= np.maximum(_lengths(normals), 1e-12)
     sample = columns % _SAMPLES + _SAMPLES * (rows % _SAMPLES)
     light = sun.shade(mesh, triangles, points, normals, back, sample)
-    depth = raster.depth[rows, columns].astype(np.float32)
+    depth = raster.depth[rows, columns].astype(np.float32) * np.float32(_BEHIND if mesh.ghost else 1.0)
     key = (rows * size[0] + columns).astype(np.uint64) << np.uint64(32) | depth.view(np.uint32).astype(np.uint64)
     return _Fragments(key, to_srgb(light).astype(np.float32), np.full(len(key), mesh.opacity, np.float32))
 
