@@ -22,7 +22,8 @@ SOURCE = ROOT / "src" / "pinik"
 # Package → the modules and rooms that alone may import it.
 ONLY_THERE = {
     "yourdfpy": {"shapes.second_opinion"},
-    "trimesh": {"shapes.meshes", "shapes.neighbours", "shapes.triangles"},
+    "coal": {"engine", "shapes.coal_checker"},
+    "trimesh": {"shapes.mesh_files", "shapes.meshes", "shapes.neighbours", "shapes.triangles"},
     "robot_descriptions": {"description.downloads"},
     "xacro": {"description.xacro_process"},
     "xacrodoc": {"description.xacro_process"},

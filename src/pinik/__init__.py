@@ -29,6 +29,8 @@ from .problem.kinematics import Kinematics, Linearization
 from .problem.targets import Target
 from .problem.tolerance import TargetError, Tolerance
 from .robot import Robot
+from .shapes.collisions import Clearance, Collision
+from .shapes.world import World
 from .solvers.base import JacobianSolver, Patience, Solver, SweepingSolver
 from .solvers.ccd import CCD
 from .solvers.damped_least_squares import DampedLeastSquares
@@ -60,6 +62,8 @@ __all__ = [
     "SOLVERS",
     "Arc",
     "Branches",
+    "Clearance",
+    "Collision",
     "DampedLeastSquares",
     "End",
     "EngineError",
@@ -101,6 +105,7 @@ __all__ = [
     "TwoBoneSolver",
     "UnknownNameError",
     "UrdfWarning",
+    "World",
     "catalog",
     "draw",
     "iterate",

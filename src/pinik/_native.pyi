@@ -9,7 +9,9 @@ from numpy.typing import NDArray
 
 pinocchio_version: str = "4.1.0"
 
-abi: str = "66d7b25b000cca6a"
+coal_version: str = "3.0.3"
+
+abi: str = "8a1102934d0f6dfa"
 
 class JointKind(enum.Enum):
     revolute = 0
@@ -582,3 +584,36 @@ class Searcher:
         bool,
         float,
     ]: ...
+
+class SolidKind(enum.Enum):
+    box = 0
+
+    sphere = 1
+
+    cylinder = 2
+
+    capsule = 3
+
+class Geometry:
+    def __init__(self, kind: SolidKind, sizes: Sequence[float]) -> None: ...
+    @staticmethod
+    def mesh(vertices: object, triangles: Sequence[Sequence[int]]) -> Geometry: ...
+
+class Shapes:
+    def __init__(self, robot: Robot) -> None: ...
+    def add_shape(
+        self,
+        geometry: Geometry,
+        joint: int,
+        rotation: Annotated[NDArray[numpy.float64], dict(shape=(3, 3), order="F")],
+        translation: Annotated[NDArray[numpy.float64], dict(shape=(3), order="C")],
+    ) -> int: ...
+    def add_pair(self, first: int, second: int, group: int) -> None: ...
+    def report(
+        self, q: object
+    ) -> list[
+        tuple[int, float, tuple[float, float, float], tuple[float, float, float], tuple[float, float, float]]
+    ]: ...
+    def clearance(self, q: object) -> tuple[int, float, tuple[float, float, float], tuple[float, float, float]]: ...
+    def touches(self, q: object, threads: int) -> NDArray[numpy.uint8]: ...
+    def counts(self, q: object, threads: int) -> NDArray[numpy.int64]: ...

@@ -13,6 +13,9 @@ from .model.robot_model import RobotModel
 from .problem.target_values import Position
 from .problem.targets import Target
 from .problem.tolerance import Tolerance
+from .shapes.collisions import Clearance, Collision, clearance, collision_pairs, collisions
+from .shapes.pairs import CollisionPairs
+from .shapes.world import World
 from .solvers.registry import Method
 from .solving import batch
 from .solving.answer import answer
@@ -74,6 +77,48 @@ class Robot(RobotModel):
                 names the first.
         """
         return batch.jacobians(self, frame, Q, axes, relative_to)
+
+    def collisions(self, q: ArrayLike, world: World | None = None) -> list[Collision]:
+        """What touches at a configuration: links of the robot, and links and objects of a world.
+
+        Collisions are those of the `<collision>` shapes of the URDF, as coal computes them. Meshes are surfaces: what
+        lies wholly inside one touches nothing. Links without collision shapes touch nothing; none are invented for
+        them. `collision_pairs` says which pairs of links count. Links that are fixed to the world are not compared with
+        objects in it.
+
+        Args:
+            q: The configuration (nq,).
+            world: What stands around the robot.
+
+        Returns:
+            One `Collision` for each two links or link and object that touch, the deepest first; none if all is free.
+
+        Raises:
+            InputError: `q` is not a configuration of this robot, `world` is no `World`, or the robot has no collision
+                shapes.
+            RobotLoadError: Its SRDF file cannot be read.
+            MissingExtraError: It has collision meshes, and trimesh, which reads them, is not installed.
+
+        Warns:
+            UrdfWarning: A collision shape cannot be read, and nothing is said about it.
+        """
+        return collisions(self, q, world)
+
+    def clearance(self, q: ArrayLike, world: World | None = None) -> Clearance:
+        """How far the nearest two parts are apart at a configuration [m], with their names and nearest points.
+
+        Arguments, errors and warnings are those of `collisions`, and so is what is compared.
+        """
+        return clearance(self, q, world)
+
+    @property
+    def collision_pairs(self) -> CollisionPairs:
+        """Which pairs of links count as collisions, and why the others do not.
+
+        They are those of the SRDF file if it disables any. Else pinik finds out, in up to a few seconds, and keeps what
+        it found in the user's cache folder. Errors and warnings are those of `collisions`.
+        """
+        return collision_pairs(self)
 
     @recalling(place=2)
     def solve(

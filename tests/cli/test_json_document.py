@@ -51,6 +51,9 @@ RUNS = {
         ("check", "two_link", "--json"),
         ("check", "{tmp}/slip.urdf", "--fix", "{tmp}/mended.urdf", "--json"),
     ],
+    "collisions": [
+        ("collisions", "ur5", "--set", "elbow_joint=2.9", "--root", "free_flyer", "--json"),
+    ],
     "robots": [("robots", "--json")],
     "compare": [("compare", "--steps", "1", "--json")],
     "accuracy": [("accuracy", "--problems", "1", "--digits", "1", "--json")],

@@ -155,7 +155,7 @@ def test_a_mesh_of_many_copies_is_counted_before_it_is_copied(tmp_path: Path) ->
 
 
 def test_all_shapes_of_a_robot_together_are_bounded(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("pinik.shapes.meshes.MOST_TRIANGLES", 500)
+    monkeypatch.setattr("pinik.shapes.mesh_files.MOST_TRIANGLES", 500)
     trimesh.creation.icosphere(2).export(tmp_path / "a.stl")  # 320 triangles
     shape = '<visual><geometry><mesh filename="a.stl" scale="{0} {0} {0}"/></geometry></visual>'
     ball, box = (

@@ -12,6 +12,7 @@ import time
 from dataclasses import dataclass
 from pathlib import Path
 
+import coal
 import numpy as np
 import pinocchio
 import pytest
@@ -19,7 +20,7 @@ import pytest
 import pinik
 from engines import REQUIRED, SANITIZED, WHY_NOT, needs_native
 from judge import assert_honest, plain_placement
-from pinik import Status, Target
+from pinik import Status, Target, engine
 from pinik.solvers.parameter import parameters_of
 from pinik.solving.native import codec, constants, module
 
@@ -30,9 +31,9 @@ STUB = Path(pinik.__file__).with_name("_native.pyi")
 @pytest.fixture
 def reload_engine():
     """`module` looks for the module anew in this test and after it."""
-    module.load.cache_clear()
+    engine.load.cache_clear()
     yield
-    module.load.cache_clear()
+    engine.load.cache_clear()
 
 
 @pytest.fixture
@@ -78,7 +79,7 @@ def test_package_and_module_hold_the_digest_of_the_stub():
     """So that a change of signatures changes it, and the module of an earlier build is told apart."""
     lines = [line for line in STUB.read_text().splitlines() if not line.startswith("abi:")]
     digest = hashlib.sha256("\n".join(lines).encode()).hexdigest()[:16]
-    assert digest == module.ABI
+    assert digest == engine.ABI
     assert f'abi: str = "{digest}"' in STUB.read_text()
     if WHY_NOT is None:
         from pinik import _native
@@ -116,6 +117,15 @@ def test_an_engine_for_another_pinocchio_refuses(another_pinocchio, panda):
     assert panda.solve("panda_hand_tcp", [0.4, 0.1, 0.5], seed=103).engine == "python"
     with pytest.raises(pinik.EngineError, match=r"99\.1\.0 is installed"):
         panda.solve("panda_hand_tcp", [0.4, 0.1, 0.5], engine="native", seed=104)
+
+
+@needs_native
+def test_an_engine_for_another_coal_refuses(monkeypatch, reload_engine, panda):
+    from pinik import _native
+
+    monkeypatch.setattr(coal, "__version__", "9.9.9")
+    assert f"built against coal {_native.coal_version}, and 9.9.9 is installed" in module.why_not()
+    assert panda.solve("panda_hand_tcp", [0.4, 0.1, 0.5], seed=107).engine == "python"
 
 
 @needs_native

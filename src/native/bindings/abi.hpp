@@ -4,7 +4,7 @@
 namespace pinik {
 
 // Identifies the signatures of the module: the digest of its stub, as tests/solving/test_native.py computes it. It must
-// equal ABI in pinik/solving/native/module.py, which refuses a module from another build.
-constexpr const char* abi = "66d7b25b000cca6a";
+// equal ABI in pinik/engine.py, which refuses a module from another build.
+constexpr const char* abi = "8a1102934d0f6dfa";
 
 }  // namespace pinik

@@ -16,5 +16,6 @@ void register_search(nb::module_& m);        // Searcher
 void register_calls(nb::module_& m);         // Call, recalling
 void register_places(nb::module_& m);        // read_places
 void register_kinematics(nb::module_& m);    // ReferenceFrame and FrameWalk
+void register_collisions(nb::module_& m);    // SolidKind, Geometry and Shapes
 
 }  // namespace pinik

@@ -1,4 +1,5 @@
 // The Python module pinik._native; only pinik.solving.native uses it.
+#include <coal/config.hh>         // only the version
 #include <pinocchio/config.hpp>  // only the version
 
 #include "../solving/pool.hpp"
@@ -11,6 +12,7 @@ NB_MODULE(_native, m) {
   pinik::prepare_to_throw();
   m.doc() = "pinik's compiled engine; use it through pinik.solve, engine=\"native\".";
   m.attr("pinocchio_version") = PINOCCHIO_VERSION;
+  m.attr("coal_version") = COAL_VERSION;
   m.attr("abi") = pinik::abi;
   pinik::register_descriptions(m);
   pinik::register_settings(m);
@@ -21,4 +23,5 @@ NB_MODULE(_native, m) {
   pinik::register_kinematics(m);
   pinik::register_track(m);
   pinik::register_search(m);
+  pinik::register_collisions(m);
 }

@@ -14,7 +14,7 @@ import typer
 from ..errors import PinikError
 from ..interrupts import Terminated, as_exceptions
 from ..version import __version__
-from .commands import accuracy, check, compare, fk, info, jacobian, live, robots, solve, track
+from .commands import accuracy, check, collisions, compare, fk, info, jacobian, live, robots, solve, track
 from .reports.solver_help import solvers_help
 from .terminal import output
 from .terminal.exits import CommandError, ExitStatus, in_words
@@ -28,6 +28,7 @@ _COMMANDS: dict[str, Callable[..., ExitStatus]] = {
     "jacobian": jacobian.jacobian,
     "info": info.info,
     "check": check.check,
+    "collisions": collisions.collisions,
     "robots": robots.robots,
     "live": live.live,
     "compare": compare.compare,

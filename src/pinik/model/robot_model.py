@@ -109,6 +109,11 @@ class RobotModel(NamedModel):
         return self.description.xml
 
     @property
+    def srdf(self) -> Path | None:
+        """The SRDF file that belongs to the URDF, with its poses and disabled collisions; None if there is none."""
+        return self._srdf
+
+    @property
     def poses(self) -> dict[str, Array]:
         """The named configurations in the SRDF file that belongs to the URDF: name → q (nq,).
 

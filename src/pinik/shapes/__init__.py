@@ -1,1 +1,1 @@
-"""A robot's meshes, and a second opinion on where they are."""
+"""A robot's meshes, its collisions, and a second opinion on where they are."""

@@ -9,10 +9,11 @@ import numpy as np
 import pinocchio
 from numpy.typing import ArrayLike, NDArray
 
+from ..engine import load
 from ..model.jacobians import as_reference_frame
 from ..model.robot_model import RobotModel
 from .native.kinematics import make_walk
-from .native.module import load, why_not
+from .native.module import why_not
 from .processors import processors
 
 __all__ = ["jacobians", "placements"]

@@ -11,6 +11,7 @@ import numpy as np
 import pinocchio
 from numpy.typing import ArrayLike, NDArray
 
+from ..engine import load
 from ..errors import EngineError, InputError
 from ..model.robot_model import RobotModel
 from ..problem.targets import Target, as_targets
@@ -18,7 +19,7 @@ from ..solvers.base import Solver
 from .attempts import Attempts
 from .native.codec import goals_of
 from .native.compiling import make_engine
-from .native.module import load, why_not
+from .native.module import why_not
 from .native.recalling import make_call, note
 from .options import Options
 from .origin import Origin

@@ -12,13 +12,13 @@ import pinocchio
 from numpy.typing import ArrayLike, NDArray
 
 from ..checks import as_positive_number
+from ..engine import load
 from ..errors import InputError
 from ..model.robot_model import RobotModel
 from ..problem.targets import Target
 from ..problem.tolerance import Tolerance, largest_of
 from ..solvers.registry import Method
 from .native.codec import goals_of
-from .native.module import load
 from .options import OPTION_NAMES, Options
 from .origin import Origin, turned_near
 from .path import careful

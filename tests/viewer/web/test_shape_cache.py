@@ -15,9 +15,10 @@ import pytest
 import trimesh
 
 import pinik
+from pinik.caches import cache_folder
 from pinik.viewer.web import scene, shape_cache
 from pinik.viewer.web.scene import Shapes, make_shapes
-from pinik.viewer.web.shape_cache import cache_folder, shapes_of
+from pinik.viewer.web.shape_cache import shapes_of
 from robots import load_quietly
 from urdf_texts import link, robot
 
@@ -45,7 +46,7 @@ def conversions(monkeypatch):
 
 
 def files():
-    return sorted(cache_folder().iterdir()) if cache_folder().is_dir() else []
+    return sorted(cache_folder("shapes").iterdir()) if cache_folder("shapes").is_dir() else []
 
 
 def only_file():
@@ -327,8 +328,8 @@ def test_without_the_variable_files_are_in_the_users_cache_folder(monkeypatch, t
     monkeypatch.delenv("PINIK_CACHE_DIR")
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "xdg"))
     if sys.platform == "linux":
-        assert cache_folder() == tmp_path / "xdg" / "pinik" / "shapes"
-    assert cache_folder().is_absolute()
+        assert cache_folder("shapes") == tmp_path / "xdg" / "pinik" / "shapes"
+    assert cache_folder("shapes").is_absolute()
 
 
 @pytest.mark.parametrize("kind", ["pipe", "endless"])

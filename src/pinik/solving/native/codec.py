@@ -8,8 +8,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...checks import FARTHEST
+from ...engine import load
 from ...problem.targets import Target
-from .module import load, why_not
+from .module import why_not
 
 __all__ = ["goals_of", "read_places", "targets_of"]
 

@@ -1,16 +1,16 @@
-"""The conversion of robots, problems and solvers for the compiled engine."""
+"""The conversion of problems and solvers for the compiled engine."""
 
 from __future__ import annotations
 
 import math
 from typing import TYPE_CHECKING, Any
-from weakref import WeakKeyDictionary
 
 import numpy as np
 import pinocchio
 
+from ...engine import load
+from ...model.compiled import native_robot
 from ...model.limits import Limits
-from ...model.robot_model import RobotModel
 from ...problem.problem import Problem
 from ...problem.reach import reach_bounds
 from ...problem.tolerance import Tolerance
@@ -21,16 +21,14 @@ from ...solvers.pseudo_inverse import PseudoInverse
 from ...solvers.transpose import JacobianTranspose
 from ..question import Question
 from .constants import make_constants
-from .module import load
 
-__all__ = ["make_engine", "native_robot"]
+__all__ = ["make_engine"]
 
 if TYPE_CHECKING:
     from ..._native import Engine
 
 _MOST = 2**62  # the engine counts restarts and iterations in 64 bits; larger limits are reduced to this
 _IDENTITY = pinocchio.SE3.Identity()
-_ROBOTS: WeakKeyDictionary[RobotModel, Any] = WeakKeyDictionary()
 
 
 def make_engine(question: Question) -> Engine:
@@ -53,40 +51,6 @@ def make_engine(question: Question) -> Engine:
     asked.polish = options.polish and question.solver.converges_quadratically
     engine: Engine = module.Engine(robot, _problem(robot, problem), asked)
     return engine
-
-
-def native_robot(robot: RobotModel) -> Any:
-    """The engine's copy of a robot, which is built once and then cached."""
-    if robot not in _ROBOTS:
-        _ROBOTS[robot] = _make_robot(robot)
-    return _ROBOTS[robot]
-
-
-def _make_robot(robot: RobotModel) -> Any:
-    native, kinds = load().Robot(), load().JointKind
-    turning = Limits.of(robot).turning
-    model = robot.model
-    for joint in robot.joints:
-        placement = model.jointPlacements[joint.id]
-        native.add_joint(
-            kind=kinds[joint.kind],
-            parent=model.parents[joint.id],
-            rotation=placement.rotation,
-            translation=placement.translation,
-            axis=np.array(joint.axis),
-            idx_q=joint.idx_q,
-            nq=joint.nq,
-            idx_v=joint.idx_v,
-            nv=joint.nv,
-            follows=joint.leader is not None,
-            multiplier=joint.multiplier,
-            offset=joint.offset,
-            lower=float(robot.lower_q[joint.idx_q]) if joint.nq == 1 else -math.inf,
-            upper=float(robot.upper_q[joint.idx_q]) if joint.nq == 1 else math.inf,
-            turns=joint.nq == 1 and bool(turning[joint.idx_q]),
-        )
-    native.finish()
-    return native
 
 
 def _problem(robot: Any, asked: Problem) -> Any:

@@ -5,11 +5,11 @@ from __future__ import annotations
 from typing import Any
 
 from ... import checks
+from ...engine import load
 from ...model import configurations, joint, limits
 from ...problem import problem, reach, slack, targets, tolerance
 from ...solvers import ccd, chaser, damped_least_squares, pseudo_inverse
 from .. import aims, attempts, changes, choice, run, search, spread, starts, walk
-from .module import load
 
 __all__ = ["CONSTANTS", "make_constants"]
 

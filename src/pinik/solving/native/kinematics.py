@@ -6,10 +6,10 @@ from typing import TYPE_CHECKING
 
 import pinocchio
 
+from ...engine import load
+from ...model.compiled import native_robot
 from ...model.configurations import LARGEST_UNIT_ERROR, UNIT_ROUNDING
 from ...model.robot_model import RobotModel
-from .compiling import native_robot
-from .module import load
 
 __all__ = ["make_walk"]
 

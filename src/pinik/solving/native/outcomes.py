@@ -8,13 +8,13 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from ...engine import load
 from ...problem.reach import Shortfall
 from ...problem.targets import Target
 from ...problem.tolerance import TargetError
 from ..attempts import Outcomes
 from ..state import State, Status
 from .codec import targets_of
-from .module import load
 
 __all__ = ["NativeOutcome", "attempt_many", "follow"]
 

@@ -9,9 +9,9 @@ import numpy as np
 import pinocchio
 from numpy.typing import NDArray
 
+from ...engine import load
 from ...solvers.registry import SOLVERS
 from ..question import Question
-from .module import load
 
 __all__ = ["make_call", "note", "recalling"]
 

@@ -5,18 +5,17 @@ from __future__ import annotations
 import contextlib
 import hashlib
 import os
-import stat
 from collections.abc import Iterator
 from pathlib import Path
 
-import platformdirs
 import umsgpack
 
-from ...files import FileError, read_within, write_whole
+from ...caches import cache_folder, keep
+from ...files import FileError, read_within
 from ...robot import Robot
 from .scene import Shapes, make_shapes
 
-__all__ = ["LIMIT", "cache_folder", "shapes_of"]
+__all__ = ["LIMIT", "shapes_of"]
 
 FORMAT = 1  # raise this whenever the format or the content of the files changes
 LIMIT = 500_000_000
@@ -32,6 +31,7 @@ _MAKERS = [
         ("description", "part.py"),
         ("description", "shape_tags.py"),
         ("shapes", "mesh_checks.py"),
+        ("shapes", "mesh_files.py"),
         ("shapes", "meshes.py"),
         ("shapes", "neighbours.py"),
         ("shapes", "triangles.py"),
@@ -61,21 +61,10 @@ def shapes_of(robot: Robot) -> Shapes:
 def _path(robot: Robot) -> Path | None:
     """The robot's file; None without a home folder, or if its meshes cannot be looked at."""
     try:
-        folder = cache_folder()
-        return folder / f"{_key(robot)}.shapes" if folder.is_absolute() else None
+        folder = cache_folder("shapes")
+        return None if folder is None else folder / f"{_key(robot)}.shapes"
     except (OSError, ValueError):
         return None
-
-
-def cache_folder() -> Path:
-    """Return the folder of the files: `shapes` in pinik's cache folder, or in PINIK_CACHE_DIR if that is set.
-
-    It is a relative one if the user has no home folder; then nothing is cached.
-    """
-    chosen = os.environ.get("PINIK_CACHE_DIR")
-    if chosen:
-        return Path(chosen).absolute() / "shapes"
-    return Path(platformdirs.user_cache_dir("pinik", appauthor=False)) / "shapes"
 
 
 def _key(robot: Robot) -> str:
@@ -122,10 +111,7 @@ def _write(path: Path, shapes: Shapes) -> None:
     # ValueError: a warning may quote a file name that is not valid Unicode.
     with contextlib.suppress(OSError, ValueError):
         body = umsgpack.packb([shapes.parts, shapes.commands, shapes.warnings])
-        path.parent.mkdir(parents=True, exist_ok=True)
-        if os.path.lexists(path) and not stat.S_ISREG(path.lstat().st_mode):
-            path.unlink()  # for a pipe or a device would be written to, and a pipe would wait for a reader
-        write_whole(path, hashlib.sha256(body).digest() + body)
+        keep(path, hashlib.sha256(body).digest() + body)
         _make_room(path.parent)
 
 

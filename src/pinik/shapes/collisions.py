@@ -1,0 +1,188 @@
+"""Collisions of a robot with itself and with the world around it."""
+
+from __future__ import annotations
+
+import itertools
+import warnings
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from weakref import WeakKeyDictionary
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from ..description.flaw import Flaw, summarised
+from ..echoes import bounded
+from ..errors import InputError, UrdfWarning
+from ..model.robot_model import RobotModel
+from .checker import Checker, make_checker
+from .pairs import CollisionPairs, find_pairs, solid_pairs
+from .robot_solids import robot_solids
+from .solids import Solid
+from .touch import Pair
+from .world import World
+
+__all__ = ["Clearance", "Collision", "Guard", "RobotShapes", "clearance", "collision_pairs", "collisions", "shapes_of"]
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Collision:
+    """Two links that touch, or a link and an object of the world.
+
+    Attributes:
+        pair: The names of both: two links, or a link and the object.
+        depth: How far they go into each other [m]: the shortest way along which one could be moved to part their convex
+            hulls. That is exact for primitives and convex meshes, and at least as long as needed for others.
+        normal: A unit vector (3,) from the first to the second, in the world; moved by the depth against it, the first
+            is free of the second.
+        points: The deepest point of each hull in the other (2, 3), in the world [m].
+    """
+
+    pair: tuple[str, str]
+    depth: float
+    normal: Array = field(compare=False)
+    points: Array = field(compare=False)
+
+
+@dataclass(frozen=True)
+class Clearance:
+    """How far the nearest two parts are apart.
+
+    Attributes:
+        distance: Their distance [m]; minus the depth where they touch, and infinite if there is nothing to compare.
+        pair: The names of both: two links, or a link and an object of the world; None if there is nothing to compare.
+        points: The nearest point of each (2, 3), in the world [m]; None if there is nothing to compare.
+    """
+
+    distance: float
+    pair: tuple[str, str] | None
+    points: Array | None = field(compare=False)
+
+
+@dataclass(frozen=True, eq=False)
+class Guard:
+    """A checker, with the names of its groups of pairs."""
+
+    checker: Checker
+    names: Sequence[tuple[str, str]]
+
+    def collisions(self, q: Array) -> list[Collision]:
+        """What touches at a valid configuration, the deepest first; of each two names their deepest shapes."""
+        deepest: dict[int, Collision] = {}
+        for touch in self.checker.report(q):
+            known = deepest.get(touch.group)
+            if known is None or touch.depth > known.depth:
+                at = np.array(touch.points)
+                deepest[touch.group] = Collision(self.names[touch.group], touch.depth, np.array(touch.normal), at)
+        return sorted(deepest.values(), key=lambda collision: -collision.depth)
+
+    def clearance(self, q: Array) -> Clearance:
+        """The least distance at a valid configuration."""
+        gap = self.checker.clearance(q)
+        if gap is None:
+            return Clearance(np.inf, None, None)
+        return Clearance(gap.distance, self.names[gap.group], np.array(gap.points))
+
+
+class RobotShapes:
+    """A robot's collision shapes, and which pairs of its links count; read once for each robot by `shapes_of`.
+
+    Attributes:
+        solids: The collision shapes.
+        flaws: Shapes of the file that could not be read.
+    """
+
+    solids: tuple[Solid, ...]
+    flaws: tuple[Flaw, ...]
+
+    def __init__(self, robot: RobotModel) -> None:
+        self.solids, flaws = robot_solids(robot)
+        self.flaws = tuple(flaws)
+        self._pairs: CollisionPairs | None = None
+        self._guards: dict[str, tuple[tuple[Solid, ...], Guard]] = {}
+
+    def pairs(self, robot: RobotModel) -> CollisionPairs:
+        """Which pairs of links count, and why the others do not."""
+        if self._pairs is None:
+            self._pairs = find_pairs(robot, self.solids)
+        return self._pairs
+
+    def guard(
+        self, robot: RobotModel, world: World | None = None, *, itself: bool = True, engine: str = "auto"
+    ) -> Guard:
+        """The checker for the robot itself, for a world, or for both; that for the last version is kept.
+
+        Parts that are fixed to the world are not compared with it.
+
+        Args:
+            robot: The robot.
+            world: The world around it.
+            itself: Whether the robot's own links are compared with each other.
+            engine: "native", "python", or "auto" for the compiled engine where there is one.
+        """
+        around = () if world is None else world.solids
+        kept = self._guards.get(f"{itself} {engine}")
+        if kept is not None and kept[0] is around:
+            return kept[1]
+        own = self.pairs(robot).counting if itself else ()
+        pairs, names = solid_pairs(self.solids, own), list(own)
+        groups: dict[tuple[str, str], int] = {}
+        for (first, solid), (second, other) in itertools.product(
+            enumerate(self.solids), enumerate(around, len(self.solids))
+        ):
+            if solid.joint != 0:
+                group = groups.setdefault((solid.owner, other.owner), len(names) + len(groups))
+                pairs.append(Pair(first, second, group))
+        guard = Guard(make_checker(robot, (*self.solids, *around), pairs, engine), [*names, *groups])
+        self._guards[f"{itself} {engine}"] = (around, guard)
+        return guard
+
+
+_KEPT: WeakKeyDictionary[RobotModel, RobotShapes] = WeakKeyDictionary()
+
+
+def shapes_of(robot: RobotModel) -> RobotShapes:
+    """A robot's collision shapes, which are read when they are first asked for.
+
+    Raises:
+        InputError: The robot has no collision shapes.
+        MissingExtraError: There are meshes, and trimesh, which reads them, is not installed.
+
+    Warns:
+        UrdfWarning: A collision shape cannot be read, and nothing is said about it; once for each sort of flaw.
+    """
+    if robot not in _KEPT:
+        shapes = _KEPT[robot] = RobotShapes(robot)
+        for words in summarised(shapes.flaws):
+            warnings.warn(bounded(f"{robot.name}: collisions are not complete: {words}"), UrdfWarning, stacklevel=4)
+    shapes = _KEPT[robot]
+    if not shapes.solids:
+        raise InputError(
+            f"{robot.name!r} has no collision shapes (<collision> in its URDF), so pinik cannot tell what touches"
+        )
+    return shapes
+
+
+def collisions(robot: RobotModel, q: ArrayLike, world: World | None = None) -> list[Collision]:
+    """See `Robot.collisions`."""
+    values = robot.check_configuration(q)
+    return shapes_of(robot).guard(robot, _checked(world)).collisions(values)
+
+
+def clearance(robot: RobotModel, q: ArrayLike, world: World | None = None) -> Clearance:
+    """See `Robot.clearance`."""
+    values = robot.check_configuration(q)
+    return shapes_of(robot).guard(robot, _checked(world)).clearance(values)
+
+
+def collision_pairs(robot: RobotModel) -> CollisionPairs:
+    """See `Robot.collision_pairs`."""
+    return shapes_of(robot).pairs(robot)
+
+
+def _checked(world: World | None) -> World | None:
+    if world is not None and not isinstance(world, World):
+        raise InputError(f"must be a pinik.World; got {world!r}", argument="world")
+    return world
