@@ -581,6 +581,7 @@ class Searcher:
         int,
         int,
         int,
+        int,
         bool,
         float,
     ]: ...

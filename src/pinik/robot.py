@@ -13,6 +13,7 @@ from .model.robot_model import RobotModel
 from .problem.target_values import Position
 from .problem.targets import Target
 from .problem.tolerance import Tolerance
+from .shapes.avoid import Avoided
 from .shapes.collisions import Clearance, Collision, clearance, collision_pairs, collisions
 from .shapes.pairs import CollisionPairs
 from .shapes.world import World
@@ -151,6 +152,7 @@ class Robot(RobotModel):
         polish: bool = True,
         choose: str = "first",
         choose_weights: Mapping[str, float] | None = None,
+        avoid: Avoided = None,
         **solver_parameters: Any,
     ) -> Solution:
         """Find joint values that move frames of the robot to their targets.
@@ -163,7 +165,7 @@ class Robot(RobotModel):
         )  # fmt: skip
         given = (
             limits, locked, restarts, seed, max_iterations, tolerance, time_limit, engine, trace, polish, choose,
-            choose_weights,
+            choose_weights, avoid,
         )  # fmt: skip
         return answer(self, targets, method, wanted, q0, given, solver_parameters)
 

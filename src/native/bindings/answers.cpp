@@ -54,6 +54,7 @@ void register_answers(nb::module_& m) {
       .value("MAX_ITERATIONS", Status::max_iterations)
       .value("TIME_LIMIT", Status::time_limit)
       .value("UNREACHABLE", Status::unreachable)
+      .value("COLLIDING", Status::colliding)
       .value("RUNNING", Status::running);
   nb::class_<Answer>(m, "Answer")
       .def_ro("status", &Answer::status)

@@ -21,7 +21,7 @@ using namespace nb::literals;
 namespace {
 
 using Triple = std::tuple<double, double, double>;
-using TouchNumbers = std::tuple<int, double, Triple, Triple, Triple>;
+using TouchNumbers = std::tuple<int, double, Triple, Triple, Triple, std::pair<int, int>>;
 
 Triple triple(const Vec3& v) { return {v[0], v[1], v[2]}; }
 
@@ -39,10 +39,17 @@ const double* configurations(const RobotShapes& self, nb::handle q, std::size_t&
 
 int group_of(const RobotShapes& self, int pair) { return self.shapes->pairs()[static_cast<std::size_t>(pair)].group; }
 
+std::pair<int, int> joints_of(const RobotShapes& self, int pair) {
+  const Shapes::Pair& own = self.shapes->pairs()[static_cast<std::size_t>(pair)];
+  const std::vector<Shapes::Shape>& shapes = self.shapes->shapes();
+  return {shapes[static_cast<std::size_t>(own.first)].joint, shapes[static_cast<std::size_t>(own.second)].joint};
+}
+
 std::vector<TouchNumbers> report(const RobotShapes& self, nb::handle q) {
   std::vector<TouchNumbers> found;
   for (const Touch& touch : Collisions(self.shapes).report(configuration(self, q)))
-    found.emplace_back(group_of(self, touch.pair), touch.depth, triple(touch.normal), triple(touch.points[0]), triple(touch.points[1]));
+    found.emplace_back(group_of(self, touch.pair), touch.depth, triple(touch.normal), triple(touch.points[0]),
+                       triple(touch.points[1]), joints_of(self, touch.pair));
   return found;
 }
 

@@ -16,15 +16,16 @@ using namespace nb::literals;
 
 namespace {
 
-// For each answer inside the limits: q, the largest errors, the number of its start, and how many starts led to it. Then
-// how many answers are outside, the starts, the iterations, the redundancy, whether time ran out, and the seconds.
+// For each free answer inside the limits: q, the largest errors, the number of its start, and how many starts led to it.
+// Then how many answers collide and how many are outside, the starts, the iterations, the redundancy, whether time ran out, and the seconds.
 nb::tuple columns(Findings&& findings, std::size_t nq) {
   std::vector<double> q, position, orientation;
   std::vector<std::int64_t> start, hits;
-  std::int64_t outside = 0;
+  std::int64_t colliding = 0, outside = 0;
   for (const Found& answer : findings.answers) {
     if (!answer.inside) ++outside;
-    if (!answer.certified) continue;
+    if (answer.collides) ++colliding;
+    if (!answer.certified || answer.collides) continue;
     q.insert(q.end(), answer.q.data(), answer.q.data() + answer.q.size());
     position.push_back(answer.error.position);
     orientation.push_back(answer.error.orientation);
@@ -34,7 +35,7 @@ nb::tuple columns(Findings&& findings, std::size_t nq) {
   const std::size_t count = start.size();
   return nb::make_tuple(as_array(std::move(q), {count, nq}), as_array(std::move(position), {count}),
                         as_array(std::move(orientation), {count}), as_array(std::move(start), {count}),
-                        as_array(std::move(hits), {count}), outside, findings.starts, findings.iterations,
+                        as_array(std::move(hits), {count}), colliding, outside, findings.starts, findings.iterations,
                         findings.redundancy, findings.ended_early, findings.seconds);
 }
 
@@ -63,7 +64,7 @@ void register_search(nb::module_& m) {
       .def("search", &search, "start"_a, "goals"_a,
            nb::sig("def search(self, start: NDArray[numpy.float64], goals: NDArray[numpy.float64]) -> "
                    "tuple[NDArray[numpy.float64], NDArray[numpy.float64], NDArray[numpy.float64], "
-                   "NDArray[numpy.int64], NDArray[numpy.int64], int, int, int, int, bool, float]"));
+                   "NDArray[numpy.int64], NDArray[numpy.int64], int, int, int, int, int, bool, float]"));
 }
 
 }  // namespace pinik

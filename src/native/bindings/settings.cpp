@@ -4,6 +4,7 @@
 
 #include "../solving/settings.hpp"
 #include "interface.hpp"
+#include "shapes.hpp"
 
 namespace pinik {
 
@@ -40,6 +41,17 @@ void register_settings(nb::module_& m) {
       .def_rw("loose_relaxation", &Solver::loose_relaxation)
       .def_rw("position_weight", &Solver::position_weight)
       .def_rw("printed_scaling", &Solver::printed_scaling);
+  nb::class_<WayOutSettings>(m, "WayOutSettings")
+      .def(nb::init<>())
+      .def_rw("ways", &WayOutSettings::ways)
+      .def_rw("steps", &WayOutSettings::steps)
+      .def_rw("iterations", &WayOutSettings::iterations)
+      .def_rw("longest_step", &WayOutSettings::longest_step)
+      .def_rw("gap", &WayOutSettings::gap)
+      .def_rw("probe", &WayOutSettings::probe)
+      .def_rw("same_rank", &WayOutSettings::same_rank)
+      .def_rw("stuck", &WayOutSettings::stuck)
+      .def_rw("damping", &WayOutSettings::damping);
   nb::class_<Settings>(m, "Settings")
       .def(nb::init<>())
       .def_rw("solver", &Settings::solver)
@@ -53,7 +65,9 @@ void register_settings(nb::module_& m) {
       .def_rw("trace", &Settings::trace)
       .def_rw("choose_nearest", &Settings::choose_nearest)
       .def_rw("choose_weights", &Settings::choose_weights)
-      .def_rw("polish", &Settings::polish);
+      .def_rw("polish", &Settings::polish)
+      .def_rw("way_out", &Settings::way_out)
+      .def("avoid", [](Settings& self, const RobotShapes& shapes) { self.avoid = shapes.shapes; }, "shapes"_a);
 }
 
 }  // namespace pinik

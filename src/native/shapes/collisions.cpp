@@ -162,14 +162,18 @@ Collisions::~Collisions() = default;
 Collisions::Collisions(Collisions&&) noexcept = default;
 
 void Collisions::place(const double* q) {
+  place_joints(q);
+  for (std::size_t k = 0; k < boxes_.size(); ++k) {
+    const Shapes::Shape& shape = shapes_->shapes()[k];
+    if (shape.joint != 0) boxes_[k].at = joints_[static_cast<std::size_t>(shape.joint)] * shape.box.at;
+  }
+}
+
+void Collisions::place_joints(const double* q) {
   const Mechanism& mechanism = shapes_->mechanism();
   for (std::size_t j = 1; j < joints_.size(); ++j) {
     const Joint& joint = mechanism.joints[j];
     joints_[j] = mechanism.moved(joints_[static_cast<std::size_t>(joint.parent)], joint, q);
-  }
-  for (std::size_t k = 0; k < boxes_.size(); ++k) {
-    const Shapes::Shape& shape = shapes_->shapes()[k];
-    if (shape.joint != 0) boxes_[k].at = joints_[static_cast<std::size_t>(shape.joint)] * shape.box.at;
   }
 }
 

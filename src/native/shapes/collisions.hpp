@@ -85,6 +85,12 @@ class Collisions {
   // Put all shapes where they are at q, for `touches(pair)`.
   void place(const double* q);
 
+  // Put the joints alone where they are at q.
+  void place_joints(const double* q);
+
+  // Where the joints were put, along their turned axes.
+  const std::vector<Placement>& joints() const { return joints_; }
+
   // Whether one pair touches where the shapes were placed.
   bool touches(const Shapes::Pair& pair);
 

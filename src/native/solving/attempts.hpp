@@ -7,6 +7,7 @@
 #include "settings.hpp"
 #include "starts.hpp"
 #include "watch.hpp"
+#include "way_out.hpp"
 
 namespace pinik {
 
@@ -14,12 +15,14 @@ namespace pinik {
 template <int Rows>
 class Attempts {
  public:
-  Attempts(const Problem& problem, const Settings& settings, const Interrupts& interrupts)
+  // Without `collisions`, nothing is to be avoided.
+  Attempts(const Problem& problem, const Settings& settings, const Interrupts& interrupts, Collisions* collisions)
       : problem_(problem), settings_(settings), watch_(interrupts, settings.time_limit), kinematics_(problem),
         run_(settings_.solver, kinematics_),
         limits_(Limits::of(*problem.mechanism, settings.limits, problem.constants.barely_outside)),
         loose_(limits_.loosened()),
-        choice_(problem, limits_, settings.choose_weights), starts_(problem, limits_, settings.seed) {
+        choice_(problem, limits_, settings.choose_weights), starts_(problem, limits_, settings.seed),
+        way_out_(settings_, kinematics_, run_, limits_, loose_, watch_, collisions) {
     kinematics_.target_jacobian = settings.solver.target_jacobian;
     for (const Joint& joint : problem.mechanism->joints) has_circles_ = has_circles_ || joint.nq == 2;
   }
@@ -30,6 +33,7 @@ class Attempts {
     watch_.start();
     outcome_ = Outcome();
     least_miss_ = infinity;
+    colliding_.clear();
     given_ = start;
     limits_.wrap(start, given_);
     given_ = start;
@@ -65,8 +69,10 @@ class Attempts {
   std::int64_t first_number_ = 0;  // 1 if the first attempt begins at the first of starts_
   Choice choice_;
   Starts<Rows> starts_;
+  WayOut<Rows> way_out_;
+  std::vector<Vector> colliding_;  // answers at which something touches
   bool has_circles_ = false, loosens_ = true;
-  Vector given_, drawn_;
+  Vector given_, drawn_, answer_;
   Linearization<Rows> inside_;
 
   Status attempt_and_restart(const Vector& start) {
@@ -97,11 +103,31 @@ class Attempts {
       outcome_.chosen_from = choice_.count();
       return Status::converged;
     }
-    if (status == Status::converged || status == Status::time_limit) return status;
-    loosens_ = true;
-    const Vector best = outcome_.q;
-    return attempt(best, problem_.constants.to_the_end, settings_.iterations_to_the_end, false, true,
-                   outcome_.restarts + 1);
+    if (status == Status::converged) return status;
+    if (colliding_.empty() && status != Status::time_limit) {
+      loosens_ = true;
+      const Vector best = outcome_.q;
+      status = attempt(best, problem_.constants.to_the_end, settings_.iterations_to_the_end, false, true,
+                       outcome_.restarts + 1);
+    }
+    return colliding_.empty() ? status : leave_touches();
+  }
+
+  // Try the way out of the shallowest touches. Take the first answer that is free, or else the shallowest.
+  Status leave_touches() {
+    std::vector<std::pair<double, std::size_t>> order;
+    for (std::size_t k = 0; k < colliding_.size(); ++k) order.emplace_back(way_out_.depth(colliding_[k]), k);
+    std::sort(order.begin(), order.end());
+    order.resize(std::min(order.size(), static_cast<std::size_t>(settings_.way_out.ways)));
+    double least = infinity;
+    for (const auto& [before, number] : order) {
+      const double depth = way_out_(colliding_[number], given_);
+      if (depth >= least) continue;
+      least = depth;
+      outcome_.q = colliding_[number];
+      if (depth < 0.0) return Status::converged;
+    }
+    return Status::colliding;
   }
 
   const Vector& start_of(std::int64_t attempt, const Vector& given) {
@@ -131,7 +157,16 @@ class Attempts {
     run_(start, given_, limits_, loose_, run, see);
     outcome_.iterations += iterations;
     outcome_.joint_updates += updates;
-    return ended;
+    return ended == Status::converged && collides() ? Status::colliding : ended;
+  }
+
+  // Whether something touches at the answer, which is then kept among the colliding ones.
+  bool collides() {
+    answer_ = outcome_.q;
+    limits_.wrap(answer_, given_);
+    const bool touches = way_out_.touches(answer_);
+    if (touches) colliding_.push_back(answer_);
+    return touches;
   }
 
   // Keep a state outside the limits if it is the best so far after it has been put inside.

@@ -5,6 +5,8 @@
 #include <memory>
 #include <mutex>
 #include <new>
+#include <optional>
+#include <stdexcept>
 #include <variant>
 
 #include "attempts.hpp"
@@ -16,8 +18,12 @@ namespace pinik {
 
 class Engine {
  public:
+  // Throws std::invalid_argument if what is to be avoided belongs to another robot.
   Engine(std::shared_ptr<const Robot> robot, const Problem& problem, const Settings& settings)
-      : robot_(std::move(robot)), problem_(problem), settings_(settings) {}
+      : robot_(std::move(robot)), problem_(problem), settings_(settings) {
+    if (settings.avoid && &settings.avoid->mechanism() != &robot_->mechanism)
+      throw std::invalid_argument("the shapes to be avoided must be those of the engine's robot");
+  }
 
   const Problem& problem() const { return problem_; }
 
@@ -62,16 +68,19 @@ class Engine {
     Problem problem;
     Certifier::Memory memory;
     Interrupts interrupts;
+    std::optional<Collisions> collisions;
     std::variant<std::monostate, Attempts<3>, Attempts<6>, Attempts<Eigen::Dynamic>> attempts;
 
     Worker(const Robot& robot, const Problem& asked, const Settings& settings)
         : problem(asked), memory(*robot.certifier) {
+      if (settings.avoid) collisions.emplace(settings.avoid);
+      Collisions* const avoided = collisions ? &*collisions : nullptr;
       if (problem.rows == 3)
-        attempts.emplace<1>(problem, settings, interrupts);
+        attempts.emplace<1>(problem, settings, interrupts, avoided);
       else if (problem.rows == 6)
-        attempts.emplace<2>(problem, settings, interrupts);
+        attempts.emplace<2>(problem, settings, interrupts, avoided);
       else
-        attempts.emplace<3>(problem, settings, interrupts);
+        attempts.emplace<3>(problem, settings, interrupts, avoided);
     }
 
     // Solve one problem; `start` is put inside the limits.
@@ -92,10 +101,10 @@ class Engine {
       for (std::size_t t = 0; t < answer.errors.size(); ++t)
         within = within && answer.errors[t].within(problem.terms[t].tolerance);
       if (within)
-        answer.status = Status::converged;
+        answer.status = collisions && collisions->touches(answer.q.data()) ? Status::colliding : Status::converged;
       else if (answer.proof)
         answer.status = Status::unreachable;
-      else if (answer.status == Status::converged)
+      else if (answer.status == Status::converged || answer.status == Status::colliding)
         answer.status = Status::stalled;
       problem.goals.swap(goals);
       answer.seconds = std::chrono::duration<double>(Clock::now() - began).count();

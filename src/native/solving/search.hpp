@@ -26,6 +26,7 @@ struct Found {
   double basin = 0.0;        // the distance from which a run that comes nearer is taken to end here
   TargetError error;         // the largest of all targets, by plain Pinocchio
   bool certified = false;    // whether all are within tolerance
+  bool collides = false;     // whether something touches that is to be avoided
 };
 
 // What a search came to.
@@ -192,6 +193,7 @@ class Searcher {
  public:
   explicit Searcher(const Engine& engine)
       : robot_(engine.robot()), settings_(engine.settings()), problem_(engine.problem()), memory_(*robot_->certifier) {
+    if (settings_.avoid) collisions_.emplace(settings_.avoid);
     if (problem_.rows == 3)
       search_.emplace<1>(problem_, settings_, interrupts_);
     else if (problem_.rows == 6)
@@ -224,6 +226,7 @@ class Searcher {
         answer.error.position = std::fmax(answer.error.position, errors[t].position);
         answer.error.orientation = std::fmax(answer.error.orientation, errors[t].orientation);
       }
+      answer.collides = answer.certified && collisions_ && collisions_->touches(answer.q.data());
     }
     findings.seconds = std::chrono::duration<double>(Clock::now() - began).count();
     return findings;
@@ -235,6 +238,7 @@ class Searcher {
   Problem problem_;
   Certifier::Memory memory_;
   Interrupts interrupts_;
+  std::optional<Collisions> collisions_;
   std::variant<std::monostate, Search<3>, Search<6>, Search<Eigen::Dynamic>> search_;
 };
 

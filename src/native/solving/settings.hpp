@@ -2,13 +2,23 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 #include "../problem/constants.hpp"
 #include "../problem/targets.hpp"
+#include "../shapes/collisions.hpp"
 #include "../solvers/solver.hpp"
 
 namespace pinik {
+
+// The numbers of pinik.solving.way_out.
+struct WayOutSettings {
+  int ways = 0;  // answers from which a way out is tried
+  int steps = 0, iterations = 0;
+  double longest_step = not_given, gap = not_given, probe = not_given;
+  double same_rank = not_given, stuck = not_given, damping = not_given;
+};
 
 struct Settings {
   Solver solver;
@@ -23,6 +33,8 @@ struct Settings {
   bool choose_nearest = false;  // of all distinct answers; otherwise the first one is taken
   std::vector<double> choose_weights;  // for each coordinate, a factor on its change
   bool polish = true;  // whether a run goes on once it has reached the targets
+  std::shared_ptr<const Shapes> avoid;  // what must not touch; null if nothing is to be avoided
+  WayOutSettings way_out;
 };
 
 }  // namespace pinik

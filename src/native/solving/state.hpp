@@ -8,7 +8,7 @@
 
 namespace pinik {
 
-enum class Status { converged, stalled, max_iterations, time_limit, unreachable, running };
+enum class Status { converged, stalled, max_iterations, time_limit, unreachable, colliding, running };
 
 struct State {
   Vector q;

@@ -19,12 +19,14 @@ class Track {
  public:
   explicit Track(const Engine& engine)
       : robot_(engine.robot()), settings_(engine.settings()), problem_(engine.problem()), memory_(*robot_->certifier) {
+    if (settings_.avoid) collisions_.emplace(settings_.avoid);
+    Collisions* const avoided = collisions_ ? &*collisions_ : nullptr;
     if (problem_.rows == 3)
-      walk_.emplace<1>(problem_, settings_, interrupts_);
+      walk_.emplace<1>(problem_, settings_, interrupts_, avoided);
     else if (problem_.rows == 6)
-      walk_.emplace<2>(problem_, settings_, interrupts_);
+      walk_.emplace<2>(problem_, settings_, interrupts_, avoided);
     else
-      walk_.emplace<3>(problem_, settings_, interrupts_);
+      walk_.emplace<3>(problem_, settings_, interrupts_, avoided);
   }
 
   Track(const Track&) = delete;  // walk_ refers to the other members
@@ -83,6 +85,7 @@ class Track {
   Problem problem_;
   Certifier::Memory memory_;
   Interrupts interrupts_;
+  std::optional<Collisions> collisions_;
   std::variant<std::monostate, Walk<3>, Walk<6>, Walk<Eigen::Dynamic>> walk_;
 
   template <class Do>
@@ -115,13 +118,13 @@ class Track {
     for (std::size_t t = 0; t < answer.errors.size(); ++t)
       within = within && answer.errors[t].within(problem_.terms[t].tolerance);
     if (within) {
-      answer.status = Status::converged;
+      answer.status = collisions_ && collisions_->touches(answer.q.data()) ? Status::colliding : Status::converged;
       return;
     }
     answer.proof = shortfall(problem_, settings_.limits);
     if (answer.proof)
       answer.status = Status::unreachable;
-    else if (answer.status == Status::converged)
+    else if (answer.status == Status::converged || answer.status == Status::colliding)
       answer.status = Status::stalled;
   }
 };

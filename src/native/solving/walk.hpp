@@ -10,6 +10,7 @@
 #include "settings.hpp"
 #include "starts.hpp"
 #include "watch.hpp"
+#include "way_out.hpp"
 
 namespace pinik {
 
@@ -25,11 +26,13 @@ struct Stride {
 template <int Rows>
 class Walk {
  public:
-  Walk(Problem& problem, const Settings& settings, const Interrupts& interrupts)
+  // Without `collisions`, nothing is to be avoided.
+  Walk(Problem& problem, const Settings& settings, const Interrupts& interrupts, Collisions* collisions)
       : problem_(problem), settings_(settings), watch_(interrupts, settings.time_limit), kinematics_(problem),
         run_(settings_.solver, kinematics_), stepping_(settings_.solver, kinematics_),
         limits_(Limits::of(*problem.mechanism, settings.limits, problem.constants.barely_outside)),
-        loose_(limits_.loosened()), starts_(problem, limits_, settings.seed) {
+        loose_(limits_.loosened()), starts_(problem, limits_, settings.seed),
+        way_out_(settings_, kinematics_, run_, limits_, loose_, watch_, collisions) {
     kinematics_.target_jacobian = settings.solver.target_jacobian;
   }
 
@@ -42,11 +45,17 @@ class Walk {
     const Pace pace{settings_.max_iterations, settings_.patience, false, true};
     best_ = &plain_;
     run(from, pace, plain_);
+    leave_touches(plain_, from);
     if (is_near(plain_, from) || plain_.status == Status::time_limit) return stride(*best_);
-    if (!is_beyond() && creep(from, pace)) return stride(crept_);
-    if (plain_.status != Status::converged) {
+    if (!is_beyond() && creep(from, pace)) {
+      crept_.status = Status::converged;
+      leave_touches(crept_, from);
+      if (crept_.status == Status::converged) return stride(crept_);
+    }
+    if (plain_.status != Status::converged && plain_.status != Status::colliding) {
       best_ = &last_;
       run(plain_.q, {settings_.iterations_to_the_end, problem_.constants.to_the_end, false, true}, last_);
+      leave_touches(last_, from);
       if (is_near(last_, from) || last_.status == Status::time_limit) return stride(*best_);
     }
     look_elsewhere(from, number);
@@ -104,6 +113,7 @@ class Walk {
   Stepping<Rows> stepping_;
   const Limits limits_, loose_;
   Starts<Rows> starts_;
+  WayOut<Rows> way_out_;
   Stride stride_;
   Ran plain_, last_, crept_, tried_, elsewhere_, straight_;
   const Ran* best_ = nullptr;
@@ -137,6 +147,12 @@ class Walk {
     };
     run_(start, start, limits_, loose_, settings, see);
     stride_.iterations += iterations;
+  }
+
+  // Go out of a touch at an answer; if there is no way out, the run counts as a miss.
+  void leave_touches(Ran& ran, const Vector& from) {
+    if (ran.status == Status::converged && way_out_.touches(ran.q) && way_out_(ran.q, from) >= 0.0)
+      ran.status = Status::colliding;
   }
 
   bool is_near(const Ran& ran, const Vector& from) {
@@ -240,6 +256,7 @@ class Walk {
       if (tried_.status == Status::time_limit) return;
       if (tried_.status != Status::converged) continue;
       limits_.wrap(tried_.q, from);
+      if (way_out_.touches(tried_.q)) continue;
       const double change = largest_change(problem_, from, tried_.q);
       if (change < least) {
         least = change;

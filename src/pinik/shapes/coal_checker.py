@@ -115,7 +115,9 @@ class CoalChecker:
         contact = result.getContact(0)
         depth = max(-contact.penetration_depth, 0.0)  # coal's is a signed distance
         points = _point(contact.getNearestPoint1()), _point(contact.getNearestPoint2())
-        return Touch(self._pairs[pair].group, depth, _point(contact.normal), points)
+        solids = self._geometry.geometryObjects
+        joints = solids[numbers[0]].parentJoint, solids[numbers[1]].parentJoint
+        return Touch(self._pairs[pair].group, depth, _point(contact.normal), points, joints)
 
 
 def _point(vector: Array) -> tuple[float, float, float]:

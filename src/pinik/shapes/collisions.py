@@ -6,6 +6,7 @@ import itertools
 import warnings
 from collections.abc import Sequence
 from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
 from weakref import WeakKeyDictionary
 
 import numpy as np
@@ -16,6 +17,7 @@ from ..echoes import bounded
 from ..errors import InputError, UrdfWarning
 from ..model.robot_model import RobotModel
 from .checker import Checker, make_checker
+from .native_checker import NativeChecker
 from .pairs import CollisionPairs, find_pairs, solid_pairs
 from .robot_solids import robot_solids
 from .solids import Solid
@@ -23,6 +25,9 @@ from .touch import Pair
 from .world import World
 
 __all__ = ["Clearance", "Collision", "Guard", "RobotShapes", "clearance", "collision_pairs", "collisions", "shapes_of"]
+
+if TYPE_CHECKING:
+    from .._native import Shapes
 
 Array = NDArray[np.float64]
 
@@ -68,6 +73,17 @@ class Guard:
     checker: Checker
     names: Sequence[tuple[str, str]]
 
+    @property
+    def native_shapes(self) -> Shapes:
+        """The compiled engine's shapes and pairs, which only its own checker has."""
+        assert isinstance(self.checker, NativeChecker)
+        shapes: Shapes = self.checker.shapes
+        return shapes
+
+    def touches(self, q: Array) -> bool:
+        """Whether anything touches at a valid configuration (nq,)."""
+        return bool(self.checker.touches(q[None])[0])
+
     def collisions(self, q: Array) -> list[Collision]:
         """What touches at a valid configuration, the deepest first; of each two names their deepest shapes."""
         deepest: dict[int, Collision] = {}
@@ -110,21 +126,20 @@ class RobotShapes:
         return self._pairs
 
     def guard(
-        self, robot: RobotModel, world: World | None = None, *, itself: bool = True, engine: str = "auto"
+        self, robot: RobotModel, around: tuple[Solid, ...] = (), *, itself: bool = True, engine: str = "auto"
     ) -> Guard:
-        """The checker for the robot itself, for a world, or for both; that for the last version is kept.
+        """The checker for the robot itself, for what is around it, or for both; the last one is kept.
 
         Parts that are fixed to the world are not compared with it.
 
         Args:
             robot: The robot.
-            world: The world around it.
+            around: The shapes around it.
             itself: Whether the robot's own links are compared with each other.
             engine: "native", "python", or "auto" for the compiled engine where there is one.
         """
-        around = () if world is None else world.solids
         kept = self._guards.get(f"{itself} {engine}")
-        if kept is not None and kept[0] is around:
+        if kept is not None and kept[0] == around:
             return kept[1]
         own = self.pairs(robot).counting if itself else ()
         pairs, names = solid_pairs(self.solids, own), list(own)
@@ -168,13 +183,13 @@ def shapes_of(robot: RobotModel) -> RobotShapes:
 def collisions(robot: RobotModel, q: ArrayLike, world: World | None = None) -> list[Collision]:
     """See `Robot.collisions`."""
     values = robot.check_configuration(q)
-    return shapes_of(robot).guard(robot, _checked(world)).collisions(values)
+    return shapes_of(robot).guard(robot, _solids(world)).collisions(values)
 
 
 def clearance(robot: RobotModel, q: ArrayLike, world: World | None = None) -> Clearance:
     """See `Robot.clearance`."""
     values = robot.check_configuration(q)
-    return shapes_of(robot).guard(robot, _checked(world)).clearance(values)
+    return shapes_of(robot).guard(robot, _solids(world)).clearance(values)
 
 
 def collision_pairs(robot: RobotModel) -> CollisionPairs:
@@ -182,7 +197,8 @@ def collision_pairs(robot: RobotModel) -> CollisionPairs:
     return shapes_of(robot).pairs(robot)
 
 
-def _checked(world: World | None) -> World | None:
+def _solids(world: World | None) -> tuple[Solid, ...]:
+    """The shapes of a world, which is checked."""
     if world is not None and not isinstance(world, World):
         raise InputError(f"must be a pinik.World; got {world!r}", argument="world")
-    return world
+    return () if world is None else world.solids

@@ -40,7 +40,8 @@ class NativeChecker:
 
     def report(self, q: Array) -> list[Touch]:
         """All pairs that touch at q (nq,), in the order of the pairs."""
-        return [Touch(group, depth, normal, (a, b)) for group, depth, normal, a, b in self.shapes.report(q)]
+        found = self.shapes.report(q)
+        return [Touch(group, depth, normal, (a, b), joints) for group, depth, normal, a, b, joints in found]
 
     def clearance(self, q: Array) -> Gap | None:
         """The pair that is the least apart at q (nq,); None without pairs."""

@@ -30,12 +30,14 @@ class Touch(NamedTuple):
         depth: How far the hulls go into each other [m]; moved so far against the normal, the first is free.
         normal: A unit vector from the first to the second, in the world.
         points: The deepest points of the first and of the second, in the world [m].
+        joints: The joints in Pinocchio's model to which the first and the second are fixed; 0 is the world.
     """
 
     group: int
     depth: float
     normal: Point
     points: tuple[Point, Point]
+    joints: tuple[int, int]
 
 
 class Gap(NamedTuple):

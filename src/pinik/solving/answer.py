@@ -13,7 +13,7 @@ from ..problem.target_values import Position
 from ..problem.targets import Target
 from ..solvers.registry import Method
 from .kept import Kept, Key, kept_of
-from .keys import key_of
+from .keys import key_of, settled
 from .prepared import Prepared
 from .solution import Solution
 from .words import UNWEIGHTED, Wanted, asked_targets, options_of
@@ -41,7 +41,7 @@ def answer(
         given: The values of the options, in the order of `OPTION_NAMES`.
         parameters: The solver's parameters.
     """
-    kept = kept_of(robot)
+    kept, given = kept_of(robot), settled(given)
     key, prepared = None, None
     if type(targets) is str and _is_plain(wanted):
         position = wanted[0]
@@ -76,7 +76,7 @@ def prepared_for(
         given: The values of the options, in the order of `OPTION_NAMES`.
         parameters: The solver's parameters.
     """
-    kept = kept_of(robot)
+    kept, given = kept_of(robot), settled(given)
     key = key_of(tuple([target.shape for target in targets]), method, given, parameters)
     prepared = _found(kept, key)
     return prepared or kept.prepared(robot, targets, options_of(method, given, parameters), key)

@@ -29,7 +29,8 @@ def lands_at_once(question: Question) -> bool:
     solver, options = question.solver, question.options
     unhurried = options.iterations_at_most > 1 and options.time_limit == math.inf
     whole = all(term.tolerance.box is None for term in question.problem.terms)
-    return isinstance(solver, TwoBoneSolver) and solver.lands_at_once and unhurried and whole
+    plain = unhurried and whole and not options.avoid
+    return isinstance(solver, TwoBoneSolver) and solver.lands_at_once and plain
 
 
 def attempt_at_once(question: Question, goals: Array, starts: Array) -> Outcomes:

@@ -20,6 +20,7 @@ from .run import TO_THE_END, Pace, run
 from .starts import Starts
 from .state import State, Status
 from .verdict import judge
+from .way_out import WayOut
 
 __all__ = ["Attempts", "Outcome", "Outcomes"]
 
@@ -30,6 +31,13 @@ EXACT_ATTEMPTS = 8
 
 RESTARTS_WHEN_UNREACHABLE = 8
 """The maximum number of restarts for a target provably out of reach: the distance to it can have local minima too."""
+
+
+RESTARTS_WHEN_EXACT = 16
+"""The maximum number of restarts of an exact method whose answer collides: the start decides which elbow it takes."""
+
+WAYS_OUT = 3
+"""If something touches at all answers, the number of those from which a way out is tried, the shallowest first."""
 
 
 class Outcome(NamedTuple):
@@ -87,11 +95,13 @@ class Attempts:
     Attributes:
         question: The kinds of the targets, and the options.
         kinematics: The kinematics of the current targets.
+        way_out: The way out of slight touches.
     """
 
     def __init__(self, question: Question) -> None:
         self.question = question
         self.kinematics = Kinematics.of(question.problem)
+        self.way_out = WayOut(question, self.kinematics)
         self._starts = Starts(self.kinematics, question.limits, question.options.seed)
 
     def __call__(
@@ -133,6 +143,7 @@ class _Search:
         restarts: The number of restarts so far.
         best: The state inside the limits with the smallest residual so far.
         choice: The answers so far, for `choose="nearest"`.
+        colliding: The answers so far at which something touches.
         states: Every state so far, if a trace was requested.
     """
 
@@ -146,6 +157,7 @@ class _Search:
         self.restarts = 0
         self.best: State | None = None
         self.choice = Choice(self.question, start)
+        self.colliding: list[Array] = []
         self.states: list[State] = []
 
     def outcome(self) -> Outcome:
@@ -154,7 +166,12 @@ class _Search:
         if not self.question.problem.free.any():
             self._attempt(self._start(), Pace(0))
             status = Status.STALLED
-        elif options.restarts_at_most == 0 or options.method.exact:  # the method alone, as in `iterate`
+        elif options.method.exact:
+            status = self._attempt(self._start(), Pace(options.iterations_at_most))
+            while status is Status.COLLIDING and self.restarts < RESTARTS_WHEN_EXACT:
+                self.restarts += 1
+                status = self._attempt(self._start(), Pace(options.iterations_at_most))
+        elif options.restarts_at_most == 0:  # the method alone, as in `iterate`
             status = self._attempt(self._start(), Pace(options.iterations_at_most))
         else:
             status = self._attempt_and_restart()
@@ -184,10 +201,26 @@ class _Search:
         if self.choice.found:
             self.best = self.best._replace(q=self.choice.nearest)
             return Status.CONVERGED
-        if status in (Status.CONVERGED, Status.TIME_LIMIT):
+        if status is Status.CONVERGED:
             return status
-        last = Pace(options.iterations_to_the_end, TO_THE_END, downhill=True, attempt=self.restarts + 1)
-        return self._attempt(self.best.q, last)
+        if not self.colliding and status is not Status.TIME_LIMIT:
+            last = Pace(options.iterations_to_the_end, TO_THE_END, downhill=True, attempt=self.restarts + 1)
+            status = self._attempt(self.best.q, last)
+        return self._leave_touches() if self.colliding else status
+
+    def _leave_touches(self) -> Status:
+        """Try the way out of the shallowest touches; take the first answer that is free, or else the shallowest."""
+        assert self.best is not None
+        way_out, tried = self.attempts.way_out, []
+        ordered = sorted([(way_out.depth(q), number) for number, q in enumerate(self.colliding)])
+        for _, number in ordered[:WAYS_OUT]:
+            q, depth = way_out(self.colliding[number], self.given, self.deadline)
+            tried.append((depth, number, q))
+            if depth < 0.0:
+                break
+        depth, _, q = min(tried, key=lambda one: one[:2])
+        self.best = self.best._replace(q=q)
+        return Status.CONVERGED if depth < 0.0 else Status.COLLIDING
 
     def _start(self) -> Array:
         return self.attempts.start(self.given, self.restarts + self.nearest, self.number)
@@ -208,6 +241,10 @@ class _Search:
         self.joint_updates += state.joint_updates
         if status is Status.CONVERGED:
             self.best = state
+            q = limits.wrap(state.q, self.given)
+            if self.question.touches(q):
+                self.colliding.append(q)
+                status = Status.COLLIDING
         elif not limits.contains(state.q):
             self._consider_inside(state)
         assert status is not None  # a run's last state has one

@@ -43,6 +43,7 @@ class Branches:
         starts: The number of starts tried.
         redundancy: The dimension of the set of answers at a general configuration. If it is 0, answers are isolated; if
             not, there are infinitely many, and `q` has a sample of them.
+        colliding: The number of answers that were left out because something touches that is to be avoided.
         is_complete: Whether these are proved to be all; only a closed form proves it.
         ended_early: Whether the time limit ended the search.
         status: `Status.CONVERGED` if there is an answer; else why there is none.
@@ -57,6 +58,7 @@ class Branches:
     hits: NDArray[np.int64]
     starts: int
     redundancy: int
+    colliding: int
     is_complete: bool
     ended_early: bool
     status: Status
@@ -94,6 +96,8 @@ class Branches:
         if self._words is not None:
             return self._words
         begin = f"{len(self)} answer{'s' * (len(self) != 1)}"
+        if self.colliding:
+            begin += f" and {self.colliding} that collide{'s' * (self.colliding == 1)}"
         if self.is_complete:
             return f"{begin}, all that there are"
         begin += f" by {self.starts} starts{', ended by the time limit' * self.ended_early}"
@@ -213,6 +217,7 @@ class Branches:
             "complete": self.is_complete,
             "estimate_missing": None if math.isinf(missing) else missing,
             "redundancy": self.redundancy,
+            "colliding": self.colliding,
             "starts": self.starts,
             "time_s": self.time,
             "method": self._question.options.method.name,

@@ -15,6 +15,7 @@ from ..problem.kinematics import Kinematics
 from ..problem.target_values import Position
 from ..problem.targets import Target
 from ..problem.tolerance import Tolerance
+from ..shapes.avoid import Avoided
 from ..solvers.registry import Method
 from .answer import answer
 from .native.recalling import recalling
@@ -63,6 +64,7 @@ def solve(
     polish: bool = True,
     choose: str = "first",
     choose_weights: Mapping[str, float] | None = None,
+    avoid: Avoided = None,
     **solver_parameters: Any,
 ) -> Solution:
     """Find joint values that move frames of the robot to their targets.
@@ -107,6 +109,10 @@ def solve(
             after `restarts` restarts, or once a quarter of them in a row has found nothing new.
         choose_weights: Joint name → factor of at least 0 on the change of that joint (rad, or m for prismatic joints)
             in "nearest"; 1 for joints not named.
+        avoid: What the answer must not touch: "self" for the robot's own links, a `pinik.World`, or a list of both. An
+            attempt that ends where something touches counts as failed. If all do, small steps away from a slight touch
+            are tried; then the status is COLLIDING, and `solution.collisions` names what touches. Joints that move no
+            target count too, with their values in `q0`, which itself may collide.
         **solver_parameters: Parameters of the solver, such as `damping=0.1`.
 
     Returns:
@@ -114,7 +120,9 @@ def solve(
 
     Raises:
         UnknownNameError: A frame, joint, method or keyword does not exist.
-        InputError: An argument has the wrong shape, type or range.
+        InputError: An argument has the wrong shape, type or range; or something is to be avoided, and the robot has no
+            collision shapes.
+        MissingExtraError: Something is to be avoided, and trimesh, which reads meshes, is not installed.
         EngineError: The requested engine is not available.
     """
     if not isinstance(robot, RobotModel):
@@ -124,7 +132,7 @@ def solve(
     )  # fmt: skip
     given = (
         limits, locked, restarts, seed, max_iterations, tolerance, time_limit, engine, trace, polish, choose,
-        choose_weights,
+        choose_weights, avoid,
     )  # fmt: skip
     return answer(robot, targets, method, wanted, q0, given, solver_parameters)
 
@@ -158,6 +166,7 @@ def prepare(
     polish: bool = True,
     choose: str = "first",
     choose_weights: Mapping[str, float] | None = None,
+    avoid: Avoided = None,
     **solver_parameters: Any,
 ) -> Prepared:
     """Check and compile a problem once, to solve it many times for other target positions and starts.
@@ -171,7 +180,7 @@ def prepare(
     asked = asked_targets(targets, wanted, method, solver_parameters, OPTION_NAMES)
     given = (
         limits, locked, restarts, seed, max_iterations, tolerance, time_limit, engine, trace, polish, choose,
-        choose_weights,
+        choose_weights, avoid,
     )  # fmt: skip
     return Prepared(robot, asked, options_of(method, given, solver_parameters))
 

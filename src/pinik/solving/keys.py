@@ -7,14 +7,30 @@ from typing import Any
 import numpy as np
 
 from ..problem.tolerance import Tolerance
+from ..shapes.avoid import Avoid
 from ..solvers.registry import SOLVERS, Method
 from .kept import Key
 from .options import OPTION_NAMES
 
-__all__ = ["key_of"]
+__all__ = ["key_of", "settled"]
 
 _PAIRS = (tuple, list, Tolerance)
-_LOCKED, _TOLERANCE, _WEIGHTS = map(OPTION_NAMES.index, ("locked", "tolerance", "choose_weights"))
+_LOCKED, _TOLERANCE, _WEIGHTS, _AVOID = map(OPTION_NAMES.index, ("locked", "tolerance", "choose_weights", "avoid"))
+
+
+def settled(given: tuple[Any, ...]) -> tuple[Any, ...]:
+    """The values of the options with a world as it is now, so that no later change of it is seen.
+
+    Args:
+        given: The values of the options, in the order of `OPTION_NAMES`.
+
+    Raises:
+        InputError: What is to be avoided is not "self", a World, or a list of these.
+    """
+    avoid = given[_AVOID]
+    if avoid is None or type(avoid) is str:
+        return given
+    return (*given[:_AVOID], Avoid.of(avoid), *given[_AVOID + 1 :])
 
 
 def key_of(what: object, method: Method, given: tuple[Any, ...], parameters: dict[str, Any]) -> Key | None:

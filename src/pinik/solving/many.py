@@ -17,6 +17,7 @@ from ..model.robot_model import RobotModel
 from ..problem.reach import shortfall
 from ..problem.targets import Target
 from ..problem.tolerance import Tolerance, largest_of
+from ..shapes.avoid import Avoided
 from ..solvers.registry import Method
 from .at_once import attempt_at_once, lands_at_once
 from .attempts import Outcome, Outcomes
@@ -62,6 +63,7 @@ def solve_many(
     polish: bool = True,
     choose: str = "first",
     choose_weights: Mapping[str, float] | None = None,
+    avoid: Avoided = None,
     **solver_parameters: Any,
 ) -> Solutions:
     """Solve N problems of the same kind, independently of each other.
@@ -81,7 +83,7 @@ def solve_many(
             "nearest" for a start near each target, from a table.
         threads: The number of threads; one for each processor available to this process when None. The Python engine
             uses one thread.
-        limits, locked, restarts, seed, max_iterations, tolerance, engine, polish, choose, choose_weights: As for
+        limits, locked, restarts, seed, max_iterations, tolerance, engine, polish, choose, choose_weights, avoid: As for
             `pinik.solve`.
         time_limit: Time limit for each problem [s].
         **solver_parameters: Parameters of the solver.
@@ -100,7 +102,7 @@ def solve_many(
     options = Options.of(
         method, solver_parameters, limits=limits, locked=locked, restarts=restarts, seed=seed,
         max_iterations=max_iterations, tolerance=tolerance, time_limit=time_limit, engine=engine,
-        polish=polish, choose=choose, choose_weights=choose_weights,
+        polish=polish, choose=choose, choose_weights=choose_weights, avoid=avoid,
     )  # fmt: skip
     count = processors() if threads is None else min(as_count(threads, "threads"), _MOST_THREADS)
     began = time.perf_counter()
@@ -154,7 +156,7 @@ class Solutions(Outcomes):
 
     @property
     def success(self) -> NDArray[np.bool_]:
-        """Whether every target is within tolerance (N,)."""
+        """Whether every target is within tolerance, and nothing touches that was to be avoided (N,)."""
         return np.array(self.status == Status.CONVERGED, dtype=bool)
 
     @property

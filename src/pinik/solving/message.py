@@ -9,6 +9,7 @@ from ..closed_form.robot_bones import OffPlane
 from ..problem.reach import Shortfall
 from ..problem.targets import Target
 from ..problem.tolerance import TargetError, Tolerance, largest_of
+from ..shapes.collisions import Collision
 from .question import Question
 from .state import Status
 from .verdict import Verdict
@@ -23,6 +24,7 @@ def explain(
     active: Mapping[str, str],
     alone: Sequence[str] = (),
     chosen_from: int = 1,
+    collisions: Sequence[Collision] = (),
 ) -> str:
     """Explain why the solve ended, which errors remain, and which joints are at their limits.
 
@@ -33,6 +35,7 @@ def explain(
         active: Joint name → "lower", "upper" or "both", for the joints at a limit.
         alone: Which of "position" and "orientation" is found when it is asked for alone.
         chosen_from: The number of distinct answers that this one was chosen from.
+        collisions: What touches at the answer, the deepest first.
     """
     status, errors, proof = verdict
     if status is Status.CONVERGED:
@@ -41,6 +44,8 @@ def explain(
         words += [] if orientation is None else [_angle(orientation)]
         chosen = f"; the nearest of {chosen_from} answers" if chosen_from > 1 else ""
         return f"converged, {' and '.join(words)} off{chosen}"
+    if status is Status.COLLIDING:
+        return _colliding(targets, collisions)
     tolerances = [term.tolerance for term in question.problem.terms]
     missed = _missed(targets, errors, tolerances)
     if not question.problem.free.any():
@@ -55,6 +60,15 @@ def explain(
     why = _out_of_reach(targets, tolerances, proof, off_plane) or _each_alone(alone)
     first, *others = [*why, missed] if status is Status.UNREACHABLE else [missed, *why]
     return "; ".join([f"{begin} {first}", *others, *_limits(active)])
+
+
+def _colliding(targets: Sequence[Target], collisions: Sequence[Collision]) -> str:
+    """Which of the links and obstacles overlap, and by how much."""
+    first, *others = collisions
+    words = f"reaches the target{'s' * (len(targets) > 1)}, but {first.pair[0]} and {first.pair[1]} "
+    words += f"overlap by {_length(first.depth)}" if first.depth > 0.0 else "touch"
+    more = f"; {len(others)} more pair{'s touch' if len(others) > 1 else ' touches'}"
+    return words + more * bool(others)
 
 
 def _out_of_reach(

@@ -14,6 +14,7 @@ from numpy.typing import ArrayLike
 from ..checks import as_count, as_finite_number, as_names, as_positive_number
 from ..errors import InputError, UnknownNameError
 from ..problem.tolerance import Tolerance
+from ..shapes.avoid import Avoid, Avoided
 from ..solvers.base import Solver
 from ..solvers.damped_least_squares import DampedLeastSquares
 from ..solvers.parameter import JointValues
@@ -77,6 +78,10 @@ def _factors(value: Mapping[str, float] | None, what: str) -> JointValues:
     return JointValues(factors)
 
 
+def _avoided(value: Avoided, what: str) -> Avoid:
+    return Avoid.of(value)
+
+
 @dataclass(frozen=True)
 class Options:
     """The options of a solve: checked, immutable and hashable.
@@ -96,6 +101,7 @@ class Options:
             residual.
         choose: "first" for the first answer found; "nearest" for the distinct answer nearest to the start.
         choose_weights: Joint name → factor on the change of that joint in "nearest"; 1 for joints not named.
+        avoid: What must not touch; given as "self", a World, or a list of these.
 
     Raises:
         UnknownNameError: There is no such method, engine or choice.
@@ -115,6 +121,7 @@ class Options:
     polish: bool = field(default=True, metadata={"check": _truth})
     choose: str = field(default="first", metadata={"check": _choice})
     choose_weights: Mapping[str, float] = field(default=JointValues(), metadata={"check": _factors})
+    avoid: Avoid = field(default=Avoid(), metadata={"check": _avoided})
 
     def __post_init__(self) -> None:
         """Check every option."""

@@ -15,6 +15,7 @@ from ..model.robot_model import RobotModel
 from ..problem.problem import Problem
 from ..problem.reach import Bounds, bounds_of
 from ..problem.targets import Target
+from ..shapes.collisions import Guard
 from ..solvers.base import JacobianSolver, Solver
 from .options import Options
 
@@ -31,11 +32,13 @@ class Question:
         problem: The targets, compiled.
         options: The options.
         limits: The joint limits, enabled or disabled according to the options.
+        guard: Finds what touches of what must not; None if nothing is to be avoided.
     """
 
     problem: Problem
     options: Options
     limits: Limits
+    guard: Guard | None = None
 
     @classmethod
     def of(cls, robot: RobotModel, targets: Target | Sequence[Target], options: Options) -> Question:
@@ -43,7 +46,9 @@ class Question:
 
         Raises:
             UnknownNameError: There is no such frame or joint.
-            InputError: The method cannot solve for these targets, or a joint named in its parameters cannot be set.
+            InputError: The method cannot solve for these targets, or a joint named in its parameters cannot be set; or
+                something is to be avoided, and the robot has no collision shapes.
+            MissingExtraError: Collision shapes are meshes, and trimesh, which reads them, is not installed.
         """
         if not isinstance(robot, RobotModel):
             raise InputError(f"robot must be what pinik.load returns; got {robot!r}")
@@ -60,7 +65,8 @@ class Question:
             tolerance=options.tolerance,
         )
         solver.check(problem)
-        return cls(problem, options, Limits.of(robot, options.limits))
+        guard = options.avoid.guard(robot, options.engine)
+        return cls(problem, options, Limits.of(robot, options.limits), guard)
 
     @property
     def robot(self) -> RobotModel:
@@ -71,6 +77,10 @@ class Question:
     def solver(self) -> Solver:
         """The method with its parameters."""
         return self.options.method
+
+    def touches(self, q: Array) -> bool:
+        """Whether anything that is to be avoided touches at q (nq,)."""
+        return self.guard is not None and self.guard.touches(q)
 
     def active_limits(self, q: Array) -> dict[str, str]:
         """Joint name → "lower", "upper" or "both", for the joints at a limit that can move a target."""

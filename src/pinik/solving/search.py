@@ -88,6 +88,7 @@ class Findings:
             asked for.
         start: The numbers of the starts from which they were found (n,); 0 is the given one.
         hits: How many starts led to each (n,).
+        colliding: The number of answers inside the limits at which something touches that is to be avoided.
         outside: The number of answers outside the limits; they are not looked for where answers are not isolated.
         starts: The number of starts.
         iterations: The iterations of all runs.
@@ -101,6 +102,7 @@ class Findings:
     orientation_error: Array
     start: NDArray[np.int64]
     hits: NDArray[np.int64]
+    colliding: int
     outside: int
     starts: int
     iterations: int
@@ -112,7 +114,7 @@ class Findings:
     def nothing(cls, nq: int) -> Findings:
         """What no search comes to, for configurations of `nq` numbers."""
         none, counts = np.zeros(0), np.zeros(0, dtype=np.int64)
-        return cls(np.zeros((0, nq)), none, none, counts, counts, 0, 0, 0, 0, False, 0.0)
+        return cls(np.zeros((0, nq)), none, none, counts, counts, 0, 0, 0, 0, 0, False, 0.0)
 
     def with_answer(self, q: Array, errors: Sequence[TargetError]) -> Findings:
         """These findings and one more answer (nq,) from the given start."""
@@ -258,7 +260,11 @@ class Search:
         )
         for answer in self._answers:
             errors = measure_errors(question.robot, targets, answer.q, question.options.tolerance)
-            if answer.is_inside and all_within(errors, question):
+            if not (answer.is_inside and all_within(errors, question)):
+                continue
+            if question.touches(answer.q):
+                findings.colliding += 1
+            else:
                 findings = findings.with_answer(answer.q, errors)
                 findings.start[-1], findings.hits[-1] = answer.start, answer.hits
         findings.time = time.perf_counter() - self._began

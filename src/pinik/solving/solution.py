@@ -15,6 +15,7 @@ from ..errors import SolveError
 from ..model.robot_model import RobotModel
 from ..problem.targets import Target
 from ..problem.tolerance import TargetError, largest_of
+from ..shapes.collisions import Collision
 from .alone import found_alone
 from .attempts import Outcome
 from .message import explain
@@ -32,7 +33,9 @@ if TYPE_CHECKING:
 
 Array = NDArray[np.float64]
 
-_IN_WORDS = ("robot", "method", "_parameters", "message", "active_limits", "trace", "engine", "why_not_native")
+_IN_WORDS = (
+    "robot", "method", "_parameters", "message", "active_limits", "collisions", "trace", "engine", "why_not_native",
+)  # fmt: skip
 
 
 class Solution:
@@ -144,9 +147,18 @@ class Solution:
         """
         outcome = self._outcome
         verdict = Verdict(outcome.status, outcome.errors, outcome.proof)
-        clueless = outcome.proof is None and outcome.status not in (Status.CONVERGED, Status.TIME_LIMIT)
+        known = (Status.CONVERGED, Status.TIME_LIMIT, Status.COLLIDING)
+        clueless = outcome.proof is None and outcome.status not in known
         alone = found_alone(self._question, self.targets, self.q) if clueless else []
-        return explain(self._question, self.targets, verdict, self._sides_of_limits, alone, outcome.chosen_from)
+        sides, chosen_from = self._sides_of_limits, outcome.chosen_from
+        touching = self.collisions if outcome.status is Status.COLLIDING else ()
+        return explain(self._question, self.targets, verdict, sides, alone, chosen_from, touching)
+
+    @cached_property
+    def collisions(self) -> tuple[Collision, ...]:
+        """What touches at `q` of what was to be avoided, the deepest first; empty if nothing was."""
+        guard = self._question.guard
+        return () if guard is None else tuple(guard.collisions(self.q))
 
     @cached_property
     def active_limits(self) -> tuple[str, ...]:
@@ -184,7 +196,7 @@ class Solution:
 
     @property
     def success(self) -> bool:
-        """Whether every target is within tolerance."""
+        """Whether every target is within tolerance, and nothing touches that was to be avoided."""
         return self.status is Status.CONVERGED
 
     @property
@@ -212,10 +224,10 @@ class Solution:
         return largest_of(self.errors).orientation
 
     def raise_for_status(self) -> None:
-        """Raise an error if a target was missed.
+        """Raise an error unless this is a success.
 
         Raises:
-            SolveError: A target was missed; the error carries this solution.
+            SolveError: A target was missed, or something touches; the error carries this solution.
         """
         if not self.success:
             raise SolveError(self.message, self)
@@ -244,6 +256,7 @@ class Solution:
             "chosen_from": self.chosen_from,
             "time_s": self.time,
             "active_limits": list(self.active_limits),
+            "collisions": [{"pair": list(touch.pair), "depth_m": touch.depth} for touch in self.collisions],
             "method": self.method,
             "parameters": {name: _jsonable(value) for name, value in self.parameters.items()},
             "engine": self.engine,

@@ -17,6 +17,7 @@ from ..problem.reach import shortfall
 from ..problem.target_values import Position
 from ..problem.targets import Target
 from ..problem.tolerance import Tolerance
+from ..shapes.avoid import Avoided
 from ..solvers.registry import Method
 from .answer import prepared_for
 from .branches import Branches
@@ -35,8 +36,8 @@ __all__ = ["solve_all"]
 
 Array = NDArray[np.float64]
 
-_OPTIONS = OPTION_NAMES[:-4]
-_FIXED = (False, True, "first", None)  # trace, polish, choose, choose_weights
+_FIXED = {"trace": False, "polish": True, "choose": "first", "choose_weights": None}
+_OPTIONS = tuple(name for name in OPTION_NAMES if name not in _FIXED)
 
 
 def solve_all(
@@ -65,6 +66,7 @@ def solve_all(
     tolerance: Tolerance | ArrayLike | None = None,
     time_limit: float | None = None,
     engine: str = "auto",
+    avoid: Avoided = None,
     **solver_parameters: Any,
 ) -> Branches:
     """Find all distinct configurations that move frames of the robot to their targets, inside the limits.
@@ -98,6 +100,8 @@ def solve_all(
             unless no such answer exists.
         time_limit: Time limit [s]; a search that it ends keeps what was found.
         engine: "auto", "python" or "native".
+        avoid: What the answers must not touch, as for `pinik.solve`. Those that do are left out; `Branches.colliding`
+            counts them.
         **solver_parameters: Parameters of the solver.
 
     Returns:
@@ -114,7 +118,7 @@ def solve_all(
     asked = asked_targets(targets, wanted, method, solver_parameters, ("q0", *_OPTIONS))
     given = (
         limits, locked, NEAREST if restarts is None else restarts, seed, max_iterations, tolerance, time_limit, engine,
-        *_FIXED,
+        *_FIXED.values(), avoid,
     )  # fmt: skip
     origin = Origin.of(robot, q0, searches=False)
     prepared = prepared_for(robot, asked, method, given, solver_parameters)
@@ -144,7 +148,7 @@ def _branches(
         status, words = one.status, one.message
         if one.success:
             findings = findings.with_answer(one.q, one.errors)
-            words = "1 answer inside the tolerance; none that is exact was found"
+            words = _words_of_one(findings.colliding)
     distance = _distances(question.robot.model, start, findings.q)
     order = np.argsort(distance, kind="stable")
     return Branches(
@@ -156,6 +160,7 @@ def _branches(
         findings.hits[order],
         findings.starts,
         findings.redundancy,
+        findings.colliding,
         is_complete,
         findings.ended_early,
         status,
@@ -167,6 +172,13 @@ def _branches(
         prepared.engine,
         words,
     )
+
+
+def _words_of_one(colliding: int) -> str:
+    """What to say of the one answer that a solve found where the search found none."""
+    if colliding:
+        return f"1 answer that collides with nothing; the {colliding} that the search found do"
+    return "1 answer inside the tolerance; none that is exact was found"
 
 
 def _in_closed_form(prepared: Prepared, targets: tuple[Target, ...], origin: Origin) -> Branches:
@@ -182,7 +194,11 @@ def _in_closed_form(prepared: Prepared, targets: tuple[Target, ...], origin: Ori
     for q, inside in zip(both.q, both.inside, strict=True):
         errors = measure_errors(robot, targets, q, question.options.tolerance)
         is_new = all(np.abs(pinocchio.difference(robot.model, other, q)).max() > SAME_ANSWER for other in findings.q)
-        if inside and is_new and all_within(errors, question):
+        if not (inside and is_new and all_within(errors, question)):
+            continue
+        if question.touches(q):
+            findings.colliding += 1
+        else:
             findings = findings.with_answer(q, errors)
     findings.time = time.perf_counter() - began
     return _branches(prepared, targets, origin, findings, is_complete=True)

@@ -23,6 +23,7 @@ class Status(Enum):
     MAX_ITERATIONS = "the maximum number of iterations was reached"
     TIME_LIMIT = "the time limit was reached"
     UNREACHABLE = "the target lies outside the chain's reach"
+    COLLIDING = "the targets are reached only where something touches"
 
     def __str__(self) -> str:
         return self.value

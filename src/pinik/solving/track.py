@@ -16,6 +16,7 @@ from ..errors import InputError, UnknownNameError
 from ..model.robot_model import RobotModel
 from ..problem.targets import Target
 from ..problem.tolerance import Tolerance
+from ..shapes.avoid import Avoided
 from ..solvers.registry import Method
 from .attempts import Outcomes
 from .jumps import Excess, Jump, find_excesses, find_jumps
@@ -67,6 +68,7 @@ def track(
     time_limit: float | None = None,
     engine: str = "auto",
     polish: bool = True,
+    avoid: Avoided = None,
     **solver_parameters: Any,
 ) -> Track:
     """Follow a path of N points in one call.
@@ -92,6 +94,8 @@ def track(
             point, at which the last configuration is kept.
         tool, relative_to: As for `Target`; only with the name of a frame.
         limits, locked, restarts, seed, max_iterations, tolerance, engine, polish: As for `pinik.solve`.
+        avoid: As for `pinik.solve`: a point at which something touches is a miss. What lies between two points is not
+            looked at.
         time_limit: Time limit for each point [s].
         **solver_parameters: Parameters of the solver.
 
@@ -108,7 +112,7 @@ def track(
     options = Options.of(
         method, solver_parameters, limits=limits, locked=locked, restarts=restarts, seed=seed,
         max_iterations=max_iterations, tolerance=tolerance, time_limit=time_limit, engine=engine,
-        polish=polish,
+        polish=polish, avoid=avoid,
     )  # fmt: skip
     began = time.perf_counter()
     pattern, goals = read_questions(targets, places, tool, relative_to)

@@ -34,7 +34,7 @@ if TYPE_CHECKING:
 
 Array = NDArray[np.float64]
 
-_MISSING = ("trace", "restarts", "seed", "polish", "choose", "choose_weights")
+_MISSING = ("trace", "restarts", "seed", "polish", "choose", "choose_weights", "avoid")
 _KEYWORDS = ("q0", "rate", "velocity", *(name for name in OPTION_NAMES if name not in _MISSING))
 
 _TOLERANCE = Tolerance(1e-6, 1e-5)

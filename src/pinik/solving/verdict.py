@@ -49,17 +49,20 @@ def judge(question: Question, targets: Sequence[Target], q: Array, ended: Status
         ended: The reason why the solver stopped.
     """
     errors = measure_errors(question.robot, targets, q, question.options.tolerance)
-    return verdict(question, targets, errors, ended)
+    judged = verdict(question, targets, errors, ended)
+    if judged.status is Status.CONVERGED and question.touches(q):
+        return judged._replace(status=Status.COLLIDING)
+    return judged
 
 
 def verdict(question: Question, targets: Sequence[Target], errors: tuple[TargetError, ...], ended: Status) -> Verdict:
-    """The verdict for errors that are already measured."""
+    """The verdict for errors that are already measured, if nothing is to be avoided."""
     if all_within(errors, question):
         return Verdict(Status.CONVERGED, errors, None)
     proof = shortfall(targets, question.bounds, question.options.tolerance)
     if proof is not None or (ended is Status.STALLED and _is_nearest(question, errors)):
         return Verdict(Status.UNREACHABLE, errors, proof)
-    return Verdict(Status.STALLED if ended is Status.CONVERGED else ended, errors, None)
+    return Verdict(Status.STALLED if ended in (Status.CONVERGED, Status.COLLIDING) else ended, errors, None)
 
 
 def all_within(errors: Sequence[TargetError], question: Question) -> bool:

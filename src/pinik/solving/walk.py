@@ -21,6 +21,7 @@ from .run import TO_THE_END, Pace, run
 from .starts import Starts
 from .state import State, Status
 from .stepping import advance
+from .way_out import WayOut
 
 __all__ = ["CREEP_HALVINGS", "TICK_ITERATIONS", "Stride", "Walk"]
 
@@ -61,6 +62,7 @@ class Walk:
         self.question = question
         self.kinematics = Kinematics.of(question.problem)
         self._starts = Starts(self.kinematics, question.limits, question.options.seed)
+        self._way_out = WayOut(question, self.kinematics)
         self._iterations, self._restarts, self._deadline = 0, 0, math.inf
 
     def __call__(self, targets: tuple[Target, ...], q: Array, number: int) -> Stride:
@@ -68,7 +70,8 @@ class Walk:
 
         A plain run comes first. If it misses, or if its answer is a jump, the targets are approached from the frames'
         present places in smaller steps. If that fails too, a longer run looks for the nearest configuration, and
-        restarts look for the answer nearest to `q`.
+        restarts look for the answer nearest to `q`. An answer at which something touches that is to be avoided counts
+        as a miss, unless the way out leads to one nearby.
 
         Args:
             targets: The targets, of the question's kinds.
@@ -80,14 +83,17 @@ class Walk:
         self._iterations, self._restarts, self._deadline = 0, 0, began + options.time_limit
         self.kinematics.retarget(targets)
         pace = Pace(options.iterations_at_most, TO_THE_END if exact else options.method.patience, downhill=not exact)
-        plain = self._run(q, pace)
+        plain = self._free(self._run(q, pace), q)
         if self._is_near(plain, q) or plain.status is Status.TIME_LIMIT or exact:
             return self._stride(plain)
         if shortfall(targets, self.question.bounds, options.tolerance) is None:
             done, crept = self._creep(targets, q, pace)
             if crept is not None and done >= 1.0:
-                return self._stride(crept)
-        best = plain if plain.status is Status.CONVERGED else self._run(plain.q, self._last)
+                crept = self._free(crept, q)
+                if crept.status is Status.CONVERGED:
+                    return self._stride(crept)
+        reaches = plain.status in (Status.CONVERGED, Status.COLLIDING)
+        best = plain if reaches else self._free(self._run(plain.q, self._last), q)
         if self._is_near(best, q) or best.status is Status.TIME_LIMIT:
             return self._stride(best)
         return self._stride(self._elsewhere(q, best, number) or best)
@@ -212,6 +218,13 @@ class Walk:
         self._iterations += state.iteration
         return (best or state)._replace(status=status)
 
+    def _free(self, state: State, q: Array) -> State:
+        """An answer at which nothing touches, after the way out if need be; else the state with COLLIDING."""
+        if state.status is not Status.CONVERGED or not self.question.touches(state.q):
+            return state
+        there, depth = self._way_out(state.q, q, self._deadline)
+        return state._replace(q=there, status=Status.CONVERGED if depth < 0.0 else Status.COLLIDING)
+
     def _is_near(self, state: State, q: Array) -> bool:
         """Whether a run reached its targets without a jump away from `q`."""
         return state.status is Status.CONVERGED and not is_jump(self.kinematics, q, state.q)
@@ -247,7 +260,10 @@ class Walk:
             self._restarts = attempt
             state = self._run(self._starts.next(q, target=number, number=attempt), pace)
             if state.status is Status.CONVERGED:
-                answers.append(state._replace(q=self.question.limits.wrap(state.q, q)))
+                state = state._replace(q=self.question.limits.wrap(state.q, q))
+                if self.question.touches(state.q):
+                    continue
+                answers.append(state)
                 if not is_jump(self.kinematics, q, answers[-1].q):
                     break
             elif state.status is Status.TIME_LIMIT:

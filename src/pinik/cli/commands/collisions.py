@@ -9,15 +9,14 @@ from typing import Annotated, Any
 
 import typer
 
-from ...errors import InputError, RobotLoadError
 from ...robot import Robot
 from ...shapes.collisions import Clearance, Collision
 from ...shapes.disabled_pairs import written_disabled_pairs
 from ...shapes.pairs import CollisionPairs
-from ...shapes.world import World
 from ..inputs.assignments import configuration
 from ..inputs.files import check_file, write_file
 from ..inputs.loading import check_folders, load_robot
+from ..inputs.obstacles import read_world
 from ..inputs.options import (
     AllowOutside,
     AsJson,
@@ -31,7 +30,7 @@ from ..inputs.options import (
 )
 from ..reports.configuration_json import configuration_fields
 from ..terminal import output
-from ..terminal.exits import CommandError, ExitStatus
+from ..terminal.exits import ExitStatus
 from ..terminal.tables import emit_table
 from ..terminal.units import Units, counted
 
@@ -73,7 +72,7 @@ def collisions(
     check_folders(package_dir)
     machine = load_robot(robot, root=root, package_dirs=package_dir, xacro_args=xacro_arg, allow_outside=allow_outside)
     q = configuration(machine, pose, joint_angles, "--set", Units(degrees))
-    around = None if world is None else _world(world, package_dir or [])
+    around = None if world is None else read_world(world, package_dir)
     pairs = machine.collision_pairs
     touching, nearest = machine.collisions(q, around), machine.clearance(q, around)
     if write_srdf is not None:
@@ -93,13 +92,6 @@ def collisions(
     else:
         _emit(machine, pairs, touching, nearest)
     return ExitStatus.ANSWERED
-
-
-def _world(path: Path, package_dirs: list[Path]) -> World:
-    try:
-        return World.from_urdf(path, package_dirs)
-    except (RobotLoadError, InputError) as error:
-        raise CommandError(f"--world {path}: {error}", ExitStatus.NO_ROBOT) from None
 
 
 def _pair_fields(pairs: CollisionPairs) -> dict[str, Any]:

@@ -14,6 +14,7 @@ from ...solving.solution import Solution
 from ..inputs import solve_options as given
 from ..inputs.assignments import numbers_by_joint, origin, solver_with
 from ..inputs.loading import load_robot
+from ..inputs.obstacles import AvoidSelf, WorldFile, avoided
 from ..inputs.options import AllowOutside, AsJson, Degrees, PackageDirs, RobotSource, Root, XacroArgs
 from ..inputs.targets import (
     check_frames,
@@ -60,6 +61,8 @@ def solve(
     pose: given.StartPose = None,
     lock: given.Lock = None,
     no_limits: given.NoLimits = False,
+    avoid_self: AvoidSelf = False,
+    world: WorldFile = None,
     root: Root = "fixed",
     package_dir: PackageDirs = None,
     xacro_arg: XacroArgs = None,
@@ -93,6 +96,7 @@ def solve(
         "engine": engine,
         "limits": not no_limits,
         "locked": lock or (),
+        "avoid": avoided(avoid_self, world, package_dir),
         "polish": not no_polish,
         "choose": choose,
         "choose_weights": numbers_by_joint(choose_weight, "--choose-weight", "JOINT=W"),

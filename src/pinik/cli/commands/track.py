@@ -11,6 +11,7 @@ from ...solving.track import track as follow
 from ..inputs import solve_options as given
 from ..inputs.assignments import origin, solver_with
 from ..inputs.loading import load_robot
+from ..inputs.obstacles import AvoidSelf, WorldFile, avoided
 from ..inputs.options import AllowOutside, AsJson, Degrees, PackageDirs, RobotSource, Root, XacroArgs
 from ..inputs.paths import read_path
 from ..inputs.targets import named_by_option
@@ -75,6 +76,8 @@ def track(
     pose: given.StartPose = None,
     lock: given.Lock = None,
     no_limits: given.NoLimits = False,
+    avoid_self: AvoidSelf = False,
+    world: WorldFile = None,
     root: Root = "fixed",
     package_dir: PackageDirs = None,
     xacro_arg: XacroArgs = None,
@@ -103,6 +106,7 @@ def track(
         "engine": engine,
         "limits": not no_limits,
         "locked": lock or (),
+        "avoid": avoided(avoid_self, world, package_dir),
         "polish": not no_polish,
         "on_miss": on_miss,
         "q0": origin(machine, pose, start, "--start", units, None if no_limits else "moved inside"),

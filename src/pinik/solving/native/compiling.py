@@ -20,7 +20,7 @@ from ...solvers.damped_least_squares import DampedLeastSquares
 from ...solvers.pseudo_inverse import PseudoInverse
 from ...solvers.transpose import JacobianTranspose
 from ..question import Question
-from .constants import make_constants
+from .constants import make_constants, make_way_out
 
 __all__ = ["make_engine"]
 
@@ -49,6 +49,9 @@ def make_engine(question: Question) -> Engine:
     asked.choose_nearest = options.choose == "nearest"
     asked.choose_weights = [options.choose_weights.get(c.joint.name, 1.0) for c in problem.coordinates]
     asked.polish = options.polish and question.solver.converges_quadratically
+    if question.guard is not None:
+        asked.avoid(question.guard.native_shapes)
+    asked.way_out = make_way_out()
     engine: Engine = module.Engine(robot, _problem(robot, problem), asked)
     return engine
 

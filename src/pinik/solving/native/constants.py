@@ -9,9 +9,9 @@ from ...engine import load
 from ...model import configurations, joint, limits
 from ...problem import problem, reach, slack, targets, tolerance
 from ...solvers import ccd, chaser, damped_least_squares, pseudo_inverse
-from .. import aims, attempts, changes, choice, run, search, spread, starts, walk
+from .. import aims, attempts, changes, choice, run, search, spread, starts, walk, way_out
 
-__all__ = ["CONSTANTS", "make_constants"]
+__all__ = ["CONSTANTS", "make_constants", "make_way_out"]
 
 CONSTANTS = {
     "farthest": checks.FARTHEST,
@@ -66,6 +66,20 @@ PATIENCES = {"to_the_end": run.TO_THE_END, "search_patience": search.PATIENCE}
 """The patience of runs, likewise."""
 
 
+OF_WAY_OUT = {
+    "ways": attempts.WAYS_OUT,
+    "steps": way_out.STEPS,
+    "iterations": way_out.ITERATIONS,
+    "longest_step": way_out.LONGEST_STEP,
+    "gap": way_out.GAP_SHARE_OF_CHAIN,
+    "probe": way_out.PROBE,
+    "same_rank": way_out.SAME_RANK,
+    "stuck": way_out.STUCK,
+    "damping": way_out.DAMPING,
+}
+"""The constants of the way out, likewise."""
+
+
 def make_constants() -> Any:
     """Build the compiled engine's copy of the constants."""
     native = load()
@@ -75,3 +89,11 @@ def make_constants() -> Any:
     for name, patience in PATIENCES.items():
         setattr(constants, name, native.Patience(patience.iterations, patience.progress))
     return constants
+
+
+def make_way_out() -> Any:
+    """Build the compiled engine's copy of the constants of the way out."""
+    settings = load().WayOutSettings()
+    for name, value in OF_WAY_OUT.items():
+        setattr(settings, name, value)
+    return settings
