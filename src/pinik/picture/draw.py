@@ -12,6 +12,7 @@ from ..checks import as_length
 from ..errors import InputError
 from ..model.home import robot_size
 from ..robot import Robot
+from ..shapes.world import World
 from .arguments import (
     as_any_points,
     as_color,
@@ -23,8 +24,9 @@ from .arguments import (
 )
 from .bodies import Body, bodies_of
 from .camera import Camera, look_from
+from .obstacles import obstacles_of
 from .picture import Picture
-from .poses import Drawable, Pose, poses_of
+from .poses import Drawable, Pose, names_of, poses_of
 from .render import render
 from .solids import ball
 
@@ -33,7 +35,8 @@ __all__ = ["BALL", "ball_radius", "draw"]
 Array = NDArray[np.float64]
 
 BALL = "#d81f2f"
-_TINT = 0.75
+_TINT = 0.75  # the share of a tint in a colour
+_TOUCHING, _RED = np.array([0.87, 0.04, 0.07]), 0.93  # the tint of links that touch something, and its share
 _LENS = float(np.tan(np.deg2rad(26.0) / 2))
 _FILLED = 0.86
 _SOLID = (-1, 1.0)  # the layer of all that is opaque
@@ -49,6 +52,8 @@ def draw(
     opacity: ArrayLike | None = None,
     color: str | Sequence[str] | None = None,
     offset: ArrayLike = (0.0, 0.0, 0.0),
+    collisions: bool = False,
+    world: World | None = None,
     view: str | tuple[float, float] | Camera = "angle",
     size: tuple[int, int] = (800, 500),
     ground: bool | float = True,
@@ -73,6 +78,10 @@ def draw(
             and of answers as said above, when None.
         color: "#rrggbb" that tints the robot, or one for each configuration; as said above when None.
         offset: (3,) [m] from each configuration to the next, or one position for each (n, 3).
+        collisions: Whether to draw in red the links that touch another one, or an object of `world`, as
+            `robot.collisions` finds them at each configuration. Those of a `Solution` that was to avoid them are red in
+            any case.
+        world: What stands around the robot, which is drawn as well.
         view: "angle", "front", "side" or "top"; the azimuth and elevation [rad] of the camera as seen from the robot;
             or the `camera` of another picture.
         size: Width and height [pixels], each 16 to 4000, with at most 10 million pixels in all.
@@ -90,10 +99,17 @@ def draw(
     if not isinstance(robot, Robot):
         raise InputError(f"robot must be one that pinik.load returned; got {robot!r}")
     size = checked_size(size)
-    shown = _shown(robot, q, opacity, offset, color)
+    if world is not None and not isinstance(world, World):
+        raise InputError(f"must be a pinik.World; got {world!r}", argument="world")
+    poses = poses_of(robot, q)
+    if collisions:
+        poses = [replace(pose, touching=names_of(robot.collisions(pose.q, world))) for pose in poses]
+    shown = _shown(poses, opacity, offset, color)
     paper = None if background is None else as_color(background, "background")
     spheres = _spheres(balls, ball_color, _radius(robot, ball_radius))
     layers = _layers(robot, shown)
+    if world is not None:
+        layers.setdefault(_SOLID, []).extend(obstacles_of(world))
     standing = _vertices(layers.values())
     if spheres:
         layers.setdefault(_SOLID, []).extend(spheres)
@@ -119,9 +135,8 @@ class _Placed:
 
 
 def _shown(
-    robot: Robot, q: Drawable | None, opacity: ArrayLike | None, offset: ArrayLike, color: str | Sequence[str] | None
+    poses: list[Pose], opacity: ArrayLike | None, offset: ArrayLike, color: str | Sequence[str] | None
 ) -> list[_Placed]:
-    poses = poses_of(robot, q)
     if opacity is not None:
         shares = as_opacities(opacity, len(poses))
         poses = [replace(pose, opacity=share, ghost=False) for pose, share in zip(poses, shares, strict=True)]
@@ -150,8 +165,8 @@ def _layers(robot: Robot, shown: Sequence[_Placed]) -> dict[tuple[int, float], l
 
 
 def _placed(body: Body, one: _Placed) -> Body:
-    tint = one.pose.tint
-    color = body.color if tint is None else (1.0 - _TINT) * body.color + _TINT * tint
+    tint, share = (_TOUCHING, _RED) if body.link in one.pose.touching else (one.pose.tint, _TINT)
+    color = body.color if tint is None else (1.0 - share) * body.color + share * tint
     solid = body.solid.moved(np.eye(3), one.offset)
     return replace(body, solid=solid, color=color, opacity=body.opacity * one.pose.opacity, ghost=one.pose.ghost)
 

@@ -44,8 +44,9 @@ class Mesh:
         color: Of each face (f, 3), as linear light.
         gloss: Of each face (f,).
         glow: Of each face (f,).
+        covers: Whether each face (f,) covers ghosts.
         opacity: In 0..1.
-        ghost: Whether everything else hides it.
+        ghost: Whether they are ghosts.
     """
 
     vertices: Array
@@ -54,6 +55,7 @@ class Mesh:
     color: Array
     gloss: Array
     glow: Array
+    covers: NDArray[np.bool_]
     opacity: float
     ghost: bool
 
@@ -70,6 +72,7 @@ class Mesh:
             np.repeat(to_linear(np.array([body.color for body in bodies])), counts, axis=0),
             np.repeat([body.gloss for body in bodies], counts),
             np.repeat([body.glow for body in bodies], counts),
+            np.repeat([body.opacity >= 1.0 and not body.scenery for body in bodies], counts),
             bodies[0].opacity,
             bodies[0].ghost,
         )

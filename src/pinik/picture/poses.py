@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from typing import TypeAlias, TypeGuard
 
@@ -12,18 +12,19 @@ from numpy.typing import ArrayLike, NDArray
 
 from ..errors import InputError
 from ..robot import Robot
+from ..shapes.collisions import Collision
 from ..solving.branches import Branches
 from ..solving.self_motion import SelfMotion
 from ..solving.solution import Solution
 from .arguments import as_color, as_configurations
 
-__all__ = ["GHOSTS", "TINTS", "Drawable", "Pose", "poses_of"]
+__all__ = ["GHOSTS", "TINTS", "Drawable", "Pose", "names_of", "poses_of"]
 
 Array = NDArray[np.float64]
 
 Drawable: TypeAlias = ArrayLike | Solution | Branches | SelfMotion | Sequence[SelfMotion]
 
-TINTS = ("#1f6fc4", "#d97a00", "#0c9a72", "#b9559a", "#7a5fd0", "#8a6d3b", "#2a9db0")
+TINTS = ("#1f6fc4", "#d97a00", "#0c9a72", "#b9559a", "#7a5fd0", "#94a81e", "#2a9db0")
 """The colours of ghosts, one after the other; none is red, as balls are."""
 
 GHOSTS = 12
@@ -41,13 +42,20 @@ class Pose:
         q: The configuration (nq,).
         opacity: In 0..1.
         tint: The colour (3,) that the robot is tinted with, each in 0..1; None for none.
-        ghost: Whether everything else hides it.
+        ghost: Whether solid robots cover it, even from behind.
+        touching: The names of the links that touch something.
     """
 
     q: Array
     opacity: float = 1.0
     tint: Array | None = None
     ghost: bool = False
+    touching: frozenset[str] = frozenset()
+
+
+def names_of(collisions: Iterable[Collision]) -> frozenset[str]:
+    """The names of all that touch."""
+    return frozenset(name for collision in collisions for name in collision.pair)
 
 
 def poses_of(robot: Robot, shown: Drawable | None) -> list[Pose]:
@@ -63,7 +71,7 @@ def poses_of(robot: Robot, shown: Drawable | None) -> list[Pose]:
     if isinstance(shown, SelfMotion):
         return _of(robot, _fans([shown]))
     if isinstance(shown, Solution):
-        return _of(robot, iter([Pose(shown.q)]))
+        return _of(robot, iter([Pose(shown.q, touching=names_of(shown.collisions))]))
     if _are_motions(shown):
         return _of(robot, _fans(shown))
     return [Pose(q) for q in as_configurations(robot, shown)]  # type: ignore[arg-type]
@@ -92,10 +100,10 @@ def _fans(motions: Sequence[SelfMotion]) -> Iterator[Pose]:
     yield Pose(motions[0].start)
     whole = sum(motion.length for motion in motions)
     for k, motion in enumerate(motions):
-        if motion.dimension > 1:
-            others = [(q, 0.5) for q in motion.q[1 : GHOSTS + 1]]  # those farthest from each other come first
+        if motion.length:
+            others = _fan(motion, max(round(GHOSTS * motion.length / whole), 2))
         else:
-            others = _fan(motion, max(round(GHOSTS * motion.length / whole), 2) if whole else 0)
+            others = [(q, 0.5) for q in motion.q[1 : GHOSTS + 1]]  # of a surface: first those farthest from each other
         for q, away in others:
             yield Pose(q, _NEAR + (_FAR - _NEAR) * away, _tint(k), ghost=True)
 

@@ -19,7 +19,6 @@ __all__ = ["render"]
 Array = NDArray[np.float64]
 
 _SAMPLES = 2  # along each side of a pixel
-_BEHIND = 2.0**40  # the depth of a ghost counts so much, and keeps all its digits
 # Bounds on what is in memory at once, whatever the size of the picture and the number of ghosts:
 _AT_ONCE = 400_000  # pixels
 _MOST = 8_000_000  # samples of all layers together
@@ -113,11 +112,20 @@ class _Fragments:
             sample run from front to back.
         color: sRGB (k, 3).
         opacity: (k,).
+        covers: Whether each fragment covers ghosts, wherever they are (k,).
+        ghost: Whether they are those of ghosts.
     """
 
     key: NDArray[np.uint64]
     color: NDArray[np.float32]
     opacity: NDArray[np.float32]
+    covers: NDArray[np.bool_]
+    ghost: bool
+
+    @property
+    def place(self) -> NDArray[np.int64]:
+        """The sample's index (k,)."""
+        return (self.key >> np.uint64(32)).astype(np.int64)
 
 
 def _together(drawn: Sequence[_Fragments], size: tuple[int, int]) -> tuple[Array, Array]:
@@ -125,9 +133,12 @@ def _together(drawn: Sequence[_Fragments], size: tuple[int, int]) -> tuple[Array
     width, height = size
     key = np.concatenate([one.key for one in drawn])
     color = np.concatenate([one.color for one in drawn])
-    opacity = np.concatenate([one.opacity for one in drawn])
+    covered = np.zeros(height * width, dtype=bool)
+    for one in drawn:
+        covered[one.place[one.covers]] = True
+    opacity = np.concatenate([one.opacity * ~(one.ghost & covered[one.place]) for one in drawn])
     order = np.argsort(key, kind="stable")
-    place = (key[order] >> np.uint64(32)).astype(np.int64)
+    place = np.concatenate([one.place for one in drawn])[order]
     rank = _ranks(place)
     ends = np.cumsum(np.bincount(rank))
     by_rank = np.argsort(rank, kind="stable")
@@ -167,9 +178,10 @@ def _shaded(mesh: Mesh, sun: Sun, camera: Camera, size: tuple[int, int], band: t
     normals /= np.maximum(_lengths(normals), 1e-12)
     sample = columns % _SAMPLES + _SAMPLES * (rows % _SAMPLES)
     light = sun.shade(mesh, triangles, points, normals, back, sample)
-    depth = raster.depth[rows, columns].astype(np.float32) * np.float32(_BEHIND if mesh.ghost else 1.0)
+    depth = raster.depth[rows, columns].astype(np.float32)
     key = (rows * size[0] + columns).astype(np.uint64) << np.uint64(32) | depth.view(np.uint32).astype(np.uint64)
-    return _Fragments(key, to_srgb(light).astype(np.float32), np.full(len(key), mesh.opacity, np.float32))
+    opacity = np.full(len(key), mesh.opacity, np.float32)
+    return _Fragments(key, to_srgb(light).astype(np.float32), opacity, mesh.covers[triangles], mesh.ghost)
 
 
 def _lengths(vectors: Array) -> Array:

@@ -3,9 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
+
+if TYPE_CHECKING:
+    import trimesh
 
 __all__ = ["Solid", "ball", "rod"]
 
@@ -27,6 +31,15 @@ class Solid:
     vertices: Array
     normals: Array
     faces: NDArray[np.int64]
+
+    @classmethod
+    def of(cls, mesh: trimesh.Trimesh) -> Solid:
+        """The surface of a mesh."""
+        return cls(
+            np.asarray(mesh.vertices, dtype=np.float64),
+            np.asarray(mesh.vertex_normals, dtype=np.float64),
+            np.asarray(mesh.faces, dtype=np.int64),
+        )
 
     def moved(self, rotation: Array, translation: Array) -> Solid:
         """This surface after a rotation (3, 3) and a translation (3,) [m]."""
