@@ -3,13 +3,10 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-
-if TYPE_CHECKING:
-    import trimesh
 
 __all__ = ["Solid", "ball", "rod"]
 
@@ -33,8 +30,8 @@ class Solid:
     faces: NDArray[np.int64]
 
     @classmethod
-    def of(cls, mesh: trimesh.Trimesh) -> Solid:
-        """The surface of a mesh."""
+    def of(cls, mesh: Any) -> Solid:
+        """The surface of one of trimesh's meshes."""
         return cls(
             np.asarray(mesh.vertices, dtype=np.float64),
             np.asarray(mesh.vertex_normals, dtype=np.float64),
