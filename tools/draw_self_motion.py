@@ -15,7 +15,6 @@ import pinik
 ROOT = Path(__file__).parents[1]
 IMAGES = ROOT / "docs" / "images"
 FRAME = "panda_hand_tcp"
-GHOSTS = 7
 COLORS = ("#1f6fc4", "#d97a00", "#0c9a72", "#b9559a", "#7a5fd0", "#8a6d3b", "#4d7c8a")
 
 
@@ -28,12 +27,9 @@ def motion() -> pinik.SelfMotion:
 def draw_fan(found: pinik.SelfMotion) -> None:
     """Draw configurations at equal distances along the arc, as ghosts around the one that it was found from."""
     robot = found.robot
-    chosen = found.q[np.linspace(0, len(found) - 1, GHOSTS).round().astype(int)]
-    configurations = np.vstack((chosen, found.start))
-    opacity = [0.22] * GHOSTS + [1.0]
     hand = robot.placement(FRAME, found.start).translation
-    picture = pinik.draw(robot, configurations, opacity=opacity, balls=hand, view=(0.5, 0.35), size=(900, 620))
-    picture.save(IMAGES / "self_motion.png")
+    picture = pinik.draw(robot, found, balls=hand, view=(0.5, 0.35), size=(900, 620))
+    (IMAGES / "self_motion.png").write_bytes(picture.png(colors=256))
 
 
 def draw_angles(found: pinik.SelfMotion) -> None:

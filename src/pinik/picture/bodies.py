@@ -34,6 +34,10 @@ class Body:
         opacity: In 0..1.
         gloss: The strength of its highlights, in 0..1.
         glow: The light that it emits, which keeps its colour in the shade.
+        link: The name of the link that it belongs to; empty if there is none.
+        ghost: Whether it is not there, but could be: it casts no shadow, and whatever is opaque and no scenery covers
+            it, even from behind.
+        scenery: Whether it is one of the things around the robots, in front of which ghosts are seen.
     """
 
     solid: Solid
@@ -41,6 +45,9 @@ class Body:
     opacity: float = 1.0
     gloss: float = 0.15
     glow: float = 0.0
+    link: str = ""
+    ghost: bool = False
+    scenery: bool = False
 
 
 @dataclass(frozen=True, eq=False)
@@ -67,7 +74,12 @@ def bodies_of(robot: Robot, q: Array) -> list[Body]:
         return list(_skeleton(robot, q))
     places = {part.link: robot.placement(part.link, q) for part in parts}
     return [
-        Body(part.solid.moved(places[part.link].rotation, places[part.link].translation), part.color, part.opacity)
+        Body(
+            part.solid.moved(places[part.link].rotation, places[part.link].translation),
+            part.color,
+            part.opacity,
+            link=part.link,
+        )
         for part in parts
     ]
 
@@ -84,11 +96,7 @@ def _parts(robot: Robot) -> list[_Part]:
         _PARTS[robot] = [
             _Part(
                 shape.link,
-                Solid(
-                    np.asarray(shape.mesh.vertices, dtype=np.float64),
-                    np.asarray(shape.mesh.vertex_normals, dtype=np.float64),
-                    np.asarray(shape.mesh.faces, dtype=np.int64),
-                ).moved(shape.placement[:3, :3], shape.placement[:3, 3]),
+                Solid.of(shape.mesh).moved(shape.placement[:3, :3], shape.placement[:3, 3]),
                 np.clip(shape.color[:3], 0.0, 1.0),
                 float(np.clip(shape.color[3], 0.0, 1.0)),
             )

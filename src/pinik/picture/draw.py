@@ -12,11 +12,11 @@ from ..checks import as_length
 from ..errors import InputError
 from ..model.home import robot_size
 from ..robot import Robot
+from ..shapes.world import World
 from .arguments import (
     as_any_points,
     as_color,
     as_colors,
-    as_configurations,
     as_offsets,
     as_opacities,
     checked_size,
@@ -24,7 +24,9 @@ from .arguments import (
 )
 from .bodies import Body, bodies_of
 from .camera import Camera, look_from
+from .obstacles import obstacles_of
 from .picture import Picture
+from .poses import Drawable, Pose, names_of, poses_of
 from .render import render
 from .solids import ball
 
@@ -33,7 +35,8 @@ __all__ = ["BALL", "ball_radius", "draw"]
 Array = NDArray[np.float64]
 
 BALL = "#d81f2f"
-_TINT = 0.75
+_TINT = 0.75  # the share of a tint in a colour
+_TOUCHING, _RED = np.array([0.87, 0.04, 0.07]), 0.93  # the tint of links that touch something, and its share
 _LENS = float(np.tan(np.deg2rad(26.0) / 2))
 _FILLED = 0.86
 _SOLID = (-1, 1.0)  # the layer of all that is opaque
@@ -41,14 +44,16 @@ _SOLID = (-1, 1.0)  # the layer of all that is opaque
 
 def draw(
     robot: Robot,
-    q: ArrayLike | None = None,
+    q: Drawable | None = None,
     *,
     balls: ArrayLike = (),
     ball_color: str | Sequence[str] = BALL,
     ball_radius: float | None = None,
-    opacity: ArrayLike = 1.0,
+    opacity: ArrayLike | None = None,
     color: str | Sequence[str] | None = None,
     offset: ArrayLike = (0.0, 0.0, 0.0),
+    collisions: bool = False,
+    world: World | None = None,
     view: str | tuple[float, float] | Camera = "angle",
     size: tuple[int, int] = (800, 500),
     ground: bool | float = True,
@@ -56,18 +61,27 @@ def draw(
 ) -> Picture:
     """Draw a robot with its own shapes, at one or several configurations in one picture.
 
-    A robot without shapes is drawn as a skeleton. Drawing takes a fraction of a second; reading the meshes of a large
-    robot adds a second or two the first time.
+    A robot without shapes is drawn as a skeleton. Drawing takes a fraction of a second, and about as much for several
+    ghosts; reading the meshes of a large robot adds a second or two the first time.
 
     Args:
         robot: The robot.
-        q: One configuration (nq,) or several (n, nq); the robot's rest configuration when None.
+        q: One configuration (nq,) or several (n, nq); the robot's rest configuration when None. Or an answer: a
+            `Solution`; `Branches`, of which the first is solid and the others are ghosts, each in its own tint; a
+            `SelfMotion`, as a fan of ghosts that fade with the way from its solid start; or several of them, such as
+            the families of `Branches`, each in its own tint. `Branches` that are infinitely many are drawn as their
+            families, or as 12 ghosts.
         balls: Points (3,) or (k, 3) [m] to mark with a ball, such as targets.
         ball_color: "#rrggbb", for all balls or for each.
         ball_radius: [m]; in proportion to the robot when None.
-        opacity: In 0..1, for all configurations or for each (n,); those below 1 look like ghosts.
-        color: "#rrggbb" that tints the robot, or one for each configuration.
+        opacity: In 0..1, for all configurations or for each (n,); those below 1 look like ghosts. Of configurations 1,
+            and of answers as said above, when None.
+        color: "#rrggbb" that tints the robot, or one for each configuration; as said above when None.
         offset: (3,) [m] from each configuration to the next, or one position for each (n, 3).
+        collisions: Whether to draw in red the links that touch another one, or an object of `world`, as
+            `robot.collisions` finds them at each configuration. Those of a `Solution` that was to avoid them are red in
+            any case.
+        world: What stands around the robot, which is drawn as well.
         view: "angle", "front", "side" or "top"; the azimuth and elevation [rad] of the camera as seen from the robot;
             or the `camera` of another picture.
         size: Width and height [pixels], each 16 to 4000, with at most 10 million pixels in all.
@@ -85,10 +99,17 @@ def draw(
     if not isinstance(robot, Robot):
         raise InputError(f"robot must be one that pinik.load returned; got {robot!r}")
     size = checked_size(size)
-    shown = _shown(robot, q, opacity, offset, color)
+    if world is not None and not isinstance(world, World):
+        raise InputError(f"must be a pinik.World; got {world!r}", argument="world")
+    poses = poses_of(robot, q)
+    if collisions:
+        poses = [replace(pose, touching=names_of(robot.collisions(pose.q, world))) for pose in poses]
+    shown = _shown(poses, opacity, offset, color)
     paper = None if background is None else as_color(background, "background")
     spheres = _spheres(balls, ball_color, _radius(robot, ball_radius))
     layers = _layers(robot, shown)
+    if world is not None:
+        layers.setdefault(_SOLID, []).extend(obstacles_of(world))
     standing = _vertices(layers.values())
     if spheres:
         layers.setdefault(_SOLID, []).extend(spheres)
@@ -106,23 +127,23 @@ def ball_radius(robot: Robot) -> float:
 
 
 @dataclass(frozen=True, eq=False)
-class _Shown:
-    """One configuration (nq,), where it stands (3,) [m], and how it looks."""
+class _Placed:
+    """A pose, and where it stands (3,) [m]."""
 
-    q: Array
+    pose: Pose
     offset: Array
-    opacity: float
-    tint: Array | None
 
 
 def _shown(
-    robot: Robot, q: ArrayLike | None, opacity: ArrayLike, offset: ArrayLike, color: str | Sequence[str] | None
-) -> list[_Shown]:
-    configurations = as_configurations(robot, q)
-    count = len(configurations)
-    opacities, offsets = as_opacities(opacity, count), as_offsets(offset, count)
-    tints = [None] * count if color is None else as_colors(color, count, "color", "configurations")
-    return [_Shown(*one) for one in zip(configurations, offsets, opacities, tints, strict=True)]
+    poses: list[Pose], opacity: ArrayLike | None, offset: ArrayLike, color: str | Sequence[str] | None
+) -> list[_Placed]:
+    if opacity is not None:
+        shares = as_opacities(opacity, len(poses))
+        poses = [replace(pose, opacity=share, ghost=False) for pose, share in zip(poses, shares, strict=True)]
+    if color is not None:
+        tints = as_colors(color, len(poses), "color", "configurations")
+        poses = [replace(pose, tint=tint) for pose, tint in zip(poses, tints, strict=True)]
+    return [_Placed(*one) for one in zip(poses, as_offsets(offset, len(poses)), strict=True)]
 
 
 def _spheres(balls: ArrayLike, color: str | Sequence[str], radius: float) -> list[Body]:
@@ -131,21 +152,23 @@ def _spheres(balls: ArrayLike, color: str | Sequence[str], radius: float) -> lis
     return [Body(ball(at, radius), tone, gloss=0.6, glow=0.4) for at, tone in zip(points, colors, strict=True)]
 
 
-def _layers(robot: Robot, shown: Sequence[_Shown]) -> dict[tuple[int, float], list[Body]]:
+def _layers(robot: Robot, shown: Sequence[_Placed]) -> dict[tuple[int, float], list[Body]]:
     """The visible bodies: one layer for all opaque ones, and one for each opacity of each configuration."""
     layers: dict[tuple[int, float], list[Body]] = {}
     for k, one in enumerate(shown):
-        for body in bodies_of(robot, one.q):
+        for body in bodies_of(robot, one.pose.q):
             placed = _placed(body, one)
             if placed.opacity > 0.0:
-                layers.setdefault(_SOLID if placed.opacity >= 1.0 else (k, placed.opacity), []).append(placed)
+                solid = placed.opacity >= 1.0 and not placed.ghost
+                layers.setdefault(_SOLID if solid else (k, placed.opacity), []).append(placed)
     return layers
 
 
-def _placed(body: Body, one: _Shown) -> Body:
-    color = body.color if one.tint is None else (1.0 - _TINT) * body.color + _TINT * one.tint
+def _placed(body: Body, one: _Placed) -> Body:
+    tint, share = (_TOUCHING, _RED) if body.link in one.pose.touching else (one.pose.tint, _TINT)
+    color = body.color if tint is None else (1.0 - share) * body.color + share * tint
     solid = body.solid.moved(np.eye(3), one.offset)
-    return replace(body, solid=solid, color=color, opacity=body.opacity * one.opacity)
+    return replace(body, solid=solid, color=color, opacity=body.opacity * one.pose.opacity, ghost=one.pose.ghost)
 
 
 def _vertices(layers: Iterable[Sequence[Body]]) -> Array:

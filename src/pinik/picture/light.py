@@ -35,7 +35,7 @@ def to_srgb(light: Array) -> Array:
 
 @dataclass(frozen=True, eq=False)
 class Mesh:
-    """Several bodies of the same opacity, merged into one mesh.
+    """Several bodies of the same opacity, ghosts or not, merged into one mesh.
 
     Attributes:
         vertices: (v, 3) [m].
@@ -44,7 +44,9 @@ class Mesh:
         color: Of each face (f, 3), as linear light.
         gloss: Of each face (f,).
         glow: Of each face (f,).
+        covers: Whether each face (f,) covers ghosts.
         opacity: In 0..1.
+        ghost: Whether they are ghosts.
     """
 
     vertices: Array
@@ -53,11 +55,13 @@ class Mesh:
     color: Array
     gloss: Array
     glow: Array
+    covers: NDArray[np.bool_]
     opacity: float
+    ghost: bool
 
     @classmethod
     def of(cls, bodies: Sequence[Body]) -> Mesh:
-        """Merge one or more bodies; the first gives the opacity."""
+        """Merge one or more bodies; the first gives the opacity, and whether they are ghosts."""
         solids = [body.solid for body in bodies]
         starts = np.cumsum([0, *(len(solid.vertices) for solid in solids[:-1])])
         counts = [len(solid.faces) for solid in solids]
@@ -68,7 +72,9 @@ class Mesh:
             np.repeat(to_linear(np.array([body.color for body in bodies])), counts, axis=0),
             np.repeat([body.gloss for body in bodies], counts),
             np.repeat([body.glow for body in bodies], counts),
+            np.repeat([body.opacity >= 1.0 and not body.scenery for body in bodies], counts),
             bodies[0].opacity,
+            bodies[0].ghost,
         )
 
     def drawn_by(self, camera: Camera, size: tuple[int, int], rows: tuple[int, int] | None = None) -> Raster:

@@ -30,7 +30,7 @@ def render(
     """Render a picture.
 
     Args:
-        layers: Bodies; those of one layer have the same opacity and hide each other.
+        layers: Bodies; those of one layer hide each other, have the same opacity, and are all ghosts or none.
         camera: The camera.
         size: Width and height [pixels].
         floor: The height of the ground [m]; None for no ground.
@@ -43,7 +43,8 @@ def render(
     points = np.vstack([_box(body.solid.vertices) for layer in layers for body in layer])
     width, height = size
     sun = Sun(meshes, camera, size, points)
-    ground = None if floor is None or camera.position[2] <= floor else Ground(floor, meshes, sun, points)
+    standing = [mesh for mesh in meshes if not mesh.ghost]
+    ground = None if floor is None or camera.position[2] <= floor else Ground(floor, standing, sun, points)
     bands: list[NDArray[np.uint8]] = []
     top, count = 0, max(_AT_ONCE // width, 1)
     while top < height:
@@ -111,11 +112,20 @@ class _Fragments:
             sample run from front to back.
         color: sRGB (k, 3).
         opacity: (k,).
+        covers: Whether each fragment covers ghosts, wherever they are (k,).
+        ghost: Whether they are those of ghosts.
     """
 
     key: NDArray[np.uint64]
     color: NDArray[np.float32]
     opacity: NDArray[np.float32]
+    covers: NDArray[np.bool_]
+    ghost: bool
+
+    @property
+    def place(self) -> NDArray[np.int64]:
+        """The sample's index (k,)."""
+        return (self.key >> np.uint64(32)).astype(np.int64)
 
 
 def _together(drawn: Sequence[_Fragments], size: tuple[int, int]) -> tuple[Array, Array]:
@@ -123,9 +133,12 @@ def _together(drawn: Sequence[_Fragments], size: tuple[int, int]) -> tuple[Array
     width, height = size
     key = np.concatenate([one.key for one in drawn])
     color = np.concatenate([one.color for one in drawn])
-    opacity = np.concatenate([one.opacity for one in drawn])
+    covered = np.zeros(height * width, dtype=bool)
+    for one in drawn:
+        covered[one.place[one.covers]] = True
+    opacity = np.concatenate([one.opacity * ~(one.ghost & covered[one.place]) for one in drawn])
     order = np.argsort(key, kind="stable")
-    place = (key[order] >> np.uint64(32)).astype(np.int64)
+    place = np.concatenate([one.place for one in drawn])[order]
     rank = _ranks(place)
     ends = np.cumsum(np.bincount(rank))
     by_rank = np.argsort(rank, kind="stable")
@@ -167,7 +180,8 @@ def _shaded(mesh: Mesh, sun: Sun, camera: Camera, size: tuple[int, int], band: t
     light = sun.shade(mesh, triangles, points, normals, back, sample)
     depth = raster.depth[rows, columns].astype(np.float32)
     key = (rows * size[0] + columns).astype(np.uint64) << np.uint64(32) | depth.view(np.uint32).astype(np.uint64)
-    return _Fragments(key, to_srgb(light).astype(np.float32), np.full(len(key), mesh.opacity, np.float32))
+    opacity = np.full(len(key), mesh.opacity, np.float32)
+    return _Fragments(key, to_srgb(light).astype(np.float32), opacity, mesh.covers[triangles], mesh.ghost)
 
 
 def _lengths(vectors: Array) -> Array:

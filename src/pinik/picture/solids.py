@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -27,6 +28,15 @@ class Solid:
     vertices: Array
     normals: Array
     faces: NDArray[np.int64]
+
+    @classmethod
+    def of(cls, mesh: Any) -> Solid:
+        """The surface of one of trimesh's meshes."""
+        return cls(
+            np.asarray(mesh.vertices, dtype=np.float64),
+            np.asarray(mesh.vertex_normals, dtype=np.float64),
+            np.asarray(mesh.faces, dtype=np.int64),
+        )
 
     def moved(self, rotation: Array, translation: Array) -> Solid:
         """This surface after a rotation (3, 3) and a translation (3,) [m]."""

@@ -1,0 +1,130 @@
+"""The poses in a picture: configurations, and how each looks, whatever answer they come from."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass, replace
+from typing import TypeAlias, TypeGuard
+
+import numpy as np
+import pinocchio
+from numpy.typing import ArrayLike, NDArray
+
+from ..errors import InputError
+from ..robot import Robot
+from ..shapes.collisions import Collision
+from ..solving.branches import Branches
+from ..solving.self_motion import SelfMotion
+from ..solving.solution import Solution
+from .arguments import as_color, as_configurations
+
+__all__ = ["GHOSTS", "TINTS", "Drawable", "Pose", "names_of", "poses_of"]
+
+Array = NDArray[np.float64]
+
+Drawable: TypeAlias = ArrayLike | Solution | Branches | SelfMotion | Sequence[SelfMotion]
+
+TINTS = ("#1f6fc4", "#d97a00", "#0c9a72", "#b9559a", "#7a5fd0", "#94a81e", "#2a9db0")
+"""The colours of ghosts, one after the other; none is red, as balls are."""
+
+GHOSTS = 12
+"""How many ghosts stand for infinitely many answers."""
+
+_BRANCH = 0.42  # the opacity of another branch
+_NEAR, _FAR = 0.46, 0.16  # the opacities of a fan near its start and at its far end
+
+
+@dataclass(frozen=True, eq=False)
+class Pose:
+    """A configuration, and how it looks.
+
+    Attributes:
+        q: The configuration (nq,).
+        opacity: In 0..1.
+        tint: The colour (3,) that the robot is tinted with, each in 0..1; None for none.
+        ghost: Whether solid robots cover it, even from behind.
+        touching: The names of the links that touch something.
+    """
+
+    q: Array
+    opacity: float = 1.0
+    tint: Array | None = None
+    ghost: bool = False
+    touching: frozenset[str] = frozenset()
+
+
+def names_of(collisions: Iterable[Collision]) -> frozenset[str]:
+    """The names of all that touch."""
+    return frozenset(name for collision in collisions for name in collision.pair)
+
+
+def poses_of(robot: Robot, shown: Drawable | None) -> list[Pose]:
+    """Configurations as they are; of several answers, the first as it is and the others as ghosts.
+
+    Raises:
+        InputError: `shown` holds no configuration of this robot.
+    """
+    if isinstance(shown, Branches):
+        if not shown:
+            raise InputError(f"has no configuration to draw: {shown.message}", argument="q")
+        return _of(robot, _fans(shown.families) if shown.families else _branches(shown))
+    if isinstance(shown, SelfMotion):
+        return _of(robot, _fans([shown]))
+    if isinstance(shown, Solution):
+        return _of(robot, iter([Pose(shown.q, touching=names_of(shown.collisions))]))
+    if _are_motions(shown):
+        return _of(robot, _fans(shown))
+    return [Pose(q) for q in as_configurations(robot, shown)]  # type: ignore[arg-type]
+
+
+def _of(robot: Robot, poses: Iterator[Pose]) -> list[Pose]:
+    return [replace(pose, q=robot.check_configuration(pose.q)) for pose in poses]
+
+
+def _are_motions(shown: Drawable | None) -> TypeGuard[Sequence[SelfMotion]]:
+    return isinstance(shown, (list, tuple)) and len(shown) > 0 and all(isinstance(one, SelfMotion) for one in shown)
+
+
+def _branches(branches: Branches) -> Iterator[Pose]:
+    """The first branch as it is, and the others as ghosts, each in its own tint; of infinitely many only some."""
+    yield Pose(branches.q[0])
+    for k, q in enumerate(branches.q[1 : GHOSTS + 1 if branches.redundancy else None]):
+        yield Pose(q, _BRANCH, _tint(k), ghost=True)
+
+
+def _fans(motions: Sequence[SelfMotion]) -> Iterator[Pose]:
+    """The start of the first motion as it is, and ghosts along each, in its own tint.
+
+    All of them share the ghosts by their lengths.
+    """
+    yield Pose(motions[0].start)
+    whole = sum(motion.length for motion in motions)
+    for k, motion in enumerate(motions):
+        if motion.length:
+            others = _fan(motion, max(round(GHOSTS * motion.length / whole), 2))
+        else:
+            others = [(q, 0.5) for q in motion.q[1 : GHOSTS + 1]]  # of a surface: first those farthest from each other
+        for q, away in others:
+            yield Pose(q, _NEAR + (_FAR - _NEAR) * away, _tint(k), ghost=True)
+
+
+def _fan(motion: SelfMotion, count: int) -> list[tuple[Array, float]]:
+    """Configurations at equal distances along a curve, and how far each is from the start, from 0 to 1 at the farthest.
+
+    An arc's ends are among them; on a closed one, the start is.
+    """
+    n = len(motion)
+    model = motion.robot.model
+    begin = np.argmin([np.linalg.norm(pinocchio.difference(model, motion.start, q)) for q in motion.q])
+    if motion.closed:
+        places = (begin + np.arange(count) * n // count) % n
+        away = (places - begin) % n
+        away = np.minimum(away, n - away)
+    else:
+        places = np.linspace(0, n - 1, count).round().astype(np.int64)
+        away = np.abs(places - begin)
+    return list(zip(motion.q[places], away / max(away.max(), 1), strict=True))
+
+
+def _tint(k: int) -> Array:
+    return as_color(TINTS[k % len(TINTS)], "tint")
