@@ -170,19 +170,24 @@ def poses(machine: pinik.Robot, count: int, seed: int) -> list[pinocchio.SE3]:
 
 @needs_native
 def test_no_answer_of_the_panda_touches_as_pinocchio_sees_it(panda):
+    """Each pose is that of a configuration where links touch, from which the solve begins."""
     plain, counting = PlainCollisions(panda), set(panda.collision_pairs.counting)
-    solved, avoided = 0, 0
-    for place in poses(panda, 60, 1):
-        without = panda.solve("panda_hand_tcp", placement=place)
-        found = panda.solve("panda_hand_tcp", placement=place, avoid="self")
+    rng = np.random.default_rng(1)
+    solved, asked = 0, 0
+    while asked < 25:
+        q = panda.random(rng)
+        if not panda.collisions(q):
+            continue
+        assert plain.touching(q) & counting
+        asked += 1
+        found = panda.solve("panda_hand_tcp", placement=panda.placement("panda_hand_tcp", q), q0=q, avoid="self")
         touching = plain.touching(found.q) & counting
         assert found.success == (not touching)
         assert {tuple(sorted(touch.pair)) for touch in found.collisions} == touching
         assert found.success or found.status is Status.COLLIDING
+        assert found.position_error < 1e-4
         solved += found.success
-        avoided += bool(found.success and plain.touching(without.q) & counting)
-    assert solved > 40
-    assert avoided > 5
+    assert solved > 5
 
 
 @needs_native

@@ -57,6 +57,7 @@ WRONG = {
     "polish": "fine",
     "choose": "best",
     "choose_weights": 2.0,
+    "avoid": "others",
 }
 
 

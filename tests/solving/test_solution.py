@@ -60,7 +60,7 @@ def test_the_json_form_is_plain_and_complete(lion):
 
 
 def test_every_status_is_its_own_words():
-    assert len({str(status) for status in Status}) == len(Status) == 5
+    assert len({str(status) for status in Status}) == len(Status) == 6
 
 
 def test_errors_travel_to_other_processes():
