@@ -12,7 +12,7 @@ import pinocchio
 
 __all__ = ["ABI", "load"]
 
-ABI = "8a1102934d0f6dfa"
+ABI = "ce468c604fb579a5"
 """The digest of the module's stub, which identifies its signatures; the module contains the same digest
 (src/native/bindings/abi.hpp)."""
 

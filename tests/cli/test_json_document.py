@@ -35,10 +35,13 @@ TARGETS = [
     {"frame": "tip", "axis": "z", "direction": [1, 0, 0], "relative_to": "bone2_x"},
     {"frame": "tip", "axis": "x", "at": [1, 0, 0], "tolerance": [1e-4, 0.1]},
 ]
+# The place of tool0 at elbow_joint=2.9, where links of the ur5 touch.
+TOUCH = ("--position", "0.02149671", "0.19145", "0.08721464", "--start", "elbow_joint=2.9")
 RUNS = {
     "solve": [
         ("solve", "arm", "--targets", "-", "--root", "planar", "--json"),
         ("solve", "arm", "--frame", "tip", "--position", "0", "0", "9", "--method", "ccd", "--json"),
+        ("solve", "ur5", "--frame", "tool0", *TOUCH, "--avoid-self", "--restarts", "0", "--json"),
     ],
     "track": [
         ("track", "two_link", JUMP, "--frame", "tip", "--start", "joint1=-2.64", "--start", "joint2=1.5", "--json"),

@@ -5,6 +5,6 @@ namespace pinik {
 
 // Identifies the signatures of the module: the digest of its stub, as tests/solving/test_native.py computes it. It must
 // equal ABI in pinik/engine.py, which refuses a module from another build.
-constexpr const char* abi = "8a1102934d0f6dfa";
+constexpr const char* abi = "ce468c604fb579a5";
 
 }  // namespace pinik

@@ -113,9 +113,9 @@ class WayOut {
         dq[c] = 0.0;
         collisions_->place_joints(probe_.data());
         for (std::size_t k = 0; k < touches.size(); ++k) {
-          const Vec3 first = joints[joint_of(touches[k], 0)] * own[k][0];
-          const Vec3 second = joints[joint_of(touches[k], 1)] * own[k][1];
-          G(static_cast<Eigen::Index>(k), c) += sign * touches[k].normal.dot(second - first) / (2.0 * own_.probe);
+          const Placement &first = joints[joint_of(touches[k], 0)], &second = joints[joint_of(touches[k], 1)];
+          const Vec3 gap = second.p + second.R * own[k][1] - first.p - first.R * own[k][0];
+          G(static_cast<Eigen::Index>(k), c) += sign * touches[k].normal.dot(gap) / (2.0 * own_.probe);
         }
       }
     return G;

@@ -46,11 +46,10 @@ DAMPING = 1e-2
 
 
 class WayOut:
-    """Leads away from touches, for one kind of question, with the working memory of one thread."""
+    """Leads away from touches, for one kind of question; each thread needs its own instance."""
 
     def __init__(self, question: Question, kinematics: Kinematics) -> None:
         self._question, self._kinematics = question, kinematics
-        self._data = kinematics.model.createData()
 
     def depth(self, q: Array) -> float:
         """The depth of the deepest touch at q (nq,) [m]; −1 if nothing touches."""
@@ -116,7 +115,8 @@ class WayOut:
 
         The points of contact move with their parts, along the normal: so the distance changes, to first order.
         """
-        model, data, free = self._kinematics.model, self._data, np.flatnonzero(self._question.problem.free)
+        model, data = self._kinematics.model, self._question.robot.data
+        free = np.flatnonzero(self._question.problem.free)
         pinocchio.forwardKinematics(model, data, q)
         own = [[data.oMi[j].actInv(np.array(p)) for j, p in zip(t.joints, t.points, strict=True)] for t in touches]
         G = np.zeros((len(touches), len(free)))
