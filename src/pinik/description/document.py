@@ -7,12 +7,12 @@ from dataclasses import dataclass
 
 from ..echoes import QUOTED, shortened
 from .flaw import Flaw
-from .xml import BrokenXMLError, DocumentError, Element, parse
+from .xml import COMMENT, BrokenXMLError, DocumentError, Element, parse
 
 __all__ = ["Document", "declared_as_utf_8", "read_document"]
 
 _DECLARED = re.compile(rb"""(<\?xml[^>]*?\sencoding\s*=\s*["'])([^"'>]*)""")
-_COMMENT = re.compile(rb"<!--.*?-->", re.DOTALL)
+_HEAD = 400  # bytes in which a declaration ends
 _UTF_16 = (b"\xff\xfe", b"\xfe\xff", b"<\0", b"\0<")
 _BEGINNINGS = (b"<?xml", b"<robot", b"<!--")
 
@@ -79,20 +79,25 @@ def _mended(content: bytes, fault: BrokenXMLError, flaws: list[Flaw]) -> bytes |
         return _blank(content, begins, len(content))
     if fault.kind == "encoding":
         return _in_utf_8(content, flaws)
-    if fault.kind == "token" and any(b"--" in comment[4:-3] for comment in _COMMENT.findall(content)):
+    if fault.kind == "token" and any(map(_is_bad, COMMENT.findall(content))):
         _note(
             flaws,
             'a comment contains "--", which XML forbids; comments are ignored',
             code="bad-comment",
             line=fault.line,
         )
-        return _COMMENT.sub(lambda comment: _blank(comment[0], 0, len(comment[0])), content)
+        return COMMENT.sub(lambda comment: _blank(comment[0], 0, len(comment[0])), content)
     return None
+
+
+def _is_bad(comment: bytes) -> bool:
+    """Whether a comment has an end, and "--" before it."""
+    return comment.endswith(b"-->") and b"--" in comment[4:-3]
 
 
 def _in_utf_8(content: bytes, flaws: list[Flaw]) -> bytes | None:
     """The document in UTF-8, decoded as it declares, else as UTF-8, else as Latin-1; None if it holds null bytes."""
-    declared = _DECLARED.search(content[:400])
+    declared = _DECLARED.search(content[:_HEAD])
     name = declared[2].decode("latin-1") if declared else "utf-8"
     if b"\0" in content:
         return None
@@ -113,7 +118,7 @@ def _in_utf_8(content: bytes, flaws: list[Flaw]) -> bytes | None:
 
 def declared_as_utf_8(content: bytes) -> bytes:
     """The document with "utf-8" in its declaration, if that names an encoding."""
-    return _DECLARED.sub(rb"\g<1>utf-8", content, count=1)
+    return _DECLARED.sub(rb"\g<1>utf-8", content[:_HEAD], count=1) + content[_HEAD:]
 
 
 def _blank(content: bytes, start: int, end: int) -> bytes:
