@@ -136,6 +136,7 @@ def _duplicate(random: Random, robot: Node, parent: Node, element: Node) -> None
     if random.randrange(2) and twin.written:
         name = random.choice(list(twin.written))
         twin.written[name] = _other_value(random, robot, name, twin.written[name])
+        twin.meant.pop(name, None)
     parent.children.insert(random.randrange(len(parent.children) + 1), twin)
 
 
