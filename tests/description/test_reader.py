@@ -119,7 +119,7 @@ FAULTS = {
     "a number too long to be one": (
         pair(f'<origin xyz="0 0 {"1" * 10**6}"/>'),
         "joint 'j'",
-        "is not a number",
+        "must be 3 numbers; 1,000,004 characters given",
     ),
     "no limit on a revolute joint": (pair(limit=""), "joint 'j'", "revolute joint needs a <limit>"),
     "no limit on a prismatic joint": (pair(limit="", kind="prismatic"), "joint 'j'", "prismatic joint needs"),
