@@ -38,6 +38,7 @@ LOOSE = [
     ("0, 0, 90 deg", "angle", (0.0, 0.0, math.pi / 2), "commas between the numbers, a unit"),
     ("90deg, 0, 0", "angle", (math.pi / 2, 0.0, 0.0), "commas between the numbers, units"),
     ("1.57rad", "angle", (1.57,), "units"),
+    ("1rad 2 3rad", "angle", (1.0, 2.0, 3.0), "units"),
     ("2.5 kg", "mass", (2.5,), "units"),
     ("250g", "mass", (0.25,), "units"),
     ("3 m/s", "speed", (3.0,), "units"),
