@@ -13,10 +13,10 @@ from pathlib import Path
 
 import pytest
 
+from permissions import open_folder, without_root
 from pinik.files import FileError, check_writable, read_within, write_whole
 
 OLD, NEW = b"what was there before", b"something new" * 1000
-AS_ROOT = os.geteuid() == 0  # whom permissions do not stop
 
 
 @pytest.fixture
@@ -124,19 +124,18 @@ def test_places_that_cannot_be_written_are_known_before_and_refused_after(tmp_pa
     assert list(tmp_path.iterdir()) == [loop]
 
 
-@pytest.mark.skipif(AS_ROOT, reason="permissions do not stop root")
-def test_protected_files_and_folders_are_not_replaced(file):
-    file.chmod(0o400)
-    for write in (check_writable, lambda path: write_whole(path, NEW)):
-        with pytest.raises(PermissionError):
-            write(file)
-    file.chmod(0o600)
-    file.parent.chmod(0o500)
-    for write in (check_writable, lambda path: write_whole(path, NEW)):
-        with pytest.raises(PermissionError):
-            write(file)
-    file.parent.chmod(0o700)
-    assert file.read_bytes() == OLD
+def test_protected_files_and_folders_are_not_replaced():
+    with open_folder() as folder:
+        file = folder / "protected"
+        file.write_bytes(OLD)
+        for file_mode, folder_mode in ((0o444, 0o777), (0o666, 0o555)):
+            file.chmod(file_mode)
+            folder.chmod(folder_mode)
+            for write in (check_writable, lambda path: write_whole(path, NEW)):
+                with without_root(), pytest.raises(PermissionError):
+                    write(file)
+        folder.chmod(0o755)
+        assert file.read_bytes() == OLD
 
 
 def test_only_regular_files_of_a_bounded_size_are_read(file, tmp_path):

@@ -28,6 +28,7 @@ from urdf_texts import link, robot
         ("file://localhost/opt/a.stl", None, "/opt/a.stl"),
         ("file:/opt/a.stl", None, "/opt/a.stl"),
         ("file:////opt/a.stl", None, "/opt/a.stl"),
+        ("file:///X/a.stl", None, "/X/a.stl"),
         ("file:meshes/a.stl", None, "meshes/a.stl"),
         ("file://meshes/a.stl", None, "meshes/a.stl"),
         ("file://[", None, "["),

@@ -19,6 +19,7 @@ LOOSE = [
     ("0,5 0 0", "length", (0.5, 0.0, 0.0), "a decimal comma"),
     ("-0,5; 1,25; 0", "length", (-0.5, 1.25, 0.0), "a decimal comma"),
     ("[0.1 0 0.3]", "length", (0.1, 0.0, 0.3), "brackets or quotes"),
+    ("[[0.1\n  0\t 0.3]]", "length", (0.1, 0.0, 0.3), "brackets or quotes"),
     ("(0.1, 0, 0.3)", "length", (0.1, 0.0, 0.3), "brackets or quotes, commas between the numbers"),
     ("'0.1 0 0.3'", "length", (0.1, 0.0, 0.3), "brackets or quotes"),
     ("0.1\u00a00\u00a00.3", "length", (0.1, 0.0, 0.3), "unusual white space"),
@@ -37,6 +38,7 @@ LOOSE = [
     ("0, 0, 90 deg", "angle", (0.0, 0.0, math.pi / 2), "commas between the numbers, a unit"),
     ("90deg, 0, 0", "angle", (math.pi / 2, 0.0, 0.0), "commas between the numbers, units"),
     ("1.57rad", "angle", (1.57,), "units"),
+    ("1rad 2 3rad", "angle", (1.0, 2.0, 3.0), "units"),
     ("2.5 kg", "mass", (2.5,), "units"),
     ("250g", "mass", (0.25,), "units"),
     ("3 m/s", "speed", (3.0,), "units"),
@@ -78,6 +80,8 @@ REFUSED = [
     ("1e999", 1, "'1e999' is not finite"),
     ("-inf", 1, "'-inf' is not finite"),
     ("1" * 1000, 1, "is not a number"),
+    ("[[[[1]]]]", 1, "'[1]' is not a number"),
+    ("1 " * 10_000, 3, "must be 3 numbers; 20,000 characters given"),
 ]
 
 

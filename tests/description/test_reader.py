@@ -119,7 +119,7 @@ FAULTS = {
     "a number too long to be one": (
         pair(f'<origin xyz="0 0 {"1" * 10**6}"/>'),
         "joint 'j'",
-        "is not a number",
+        "must be 3 numbers; 1,000,004 characters given",
     ),
     "no limit on a revolute joint": (pair(limit=""), "joint 'j'", "revolute joint needs a <limit>"),
     "no limit on a prismatic joint": (pair(limit="", kind="prismatic"), "joint 'j'", "prismatic joint needs"),
@@ -569,3 +569,14 @@ def test_all_that_read_accepts_pinocchio_accepts() -> None:
 
 def test_the_longest_admitted_description_is_read() -> None:
     assert len(urdf.read(chain(9_999, "fixed")).links) == 10_000
+
+
+def test_eight_roots_are_six_and_two_more():
+    with pytest.raises(RobotLoadError, match=r"8 root links, .*: 'a', 'b', 'c', 'd', 'e', 'f' and 2 more; connect"):
+        urdf.read(robot(*map(link, "abcdefgh")))
+
+
+@pytest.mark.parametrize(("parent", "words"), [("<parent/>", "no link"), ('<parent link=" "/>', "an empty link")])
+def test_a_name_that_is_missing_is_told_from_one_that_is_empty(parent, words):
+    with pytest.raises(RobotLoadError, match=f"<parent> has {words}"):
+        urdf.read(pair().replace('<parent link="a"/>', parent))

@@ -5,16 +5,14 @@ from __future__ import annotations
 import os
 import subprocess
 import sys
-import tempfile
 import time
-from collections.abc import Iterator
-from contextlib import contextmanager
 from pathlib import Path
 
 import pytest
 
 import pinik
 from addresses import resolve
+from permissions import open_folder, without_root
 from pinik.description.packages import Surroundings
 from urdf_texts import link, robot
 
@@ -211,24 +209,9 @@ def test_what_stands_in_place_of_a_mesh_is_named_and_not_opened(
     assert (found.path, found.why) == (None, why)
 
 
-@contextmanager
-def without_root() -> Iterator[None]:
-    """As a user whom permissions stop, if this is the one whom they do not stop."""
-    is_root = os.geteuid() == 0
-    if is_root:
-        os.seteuid(65534)
-    try:
-        yield
-    finally:
-        if is_root:
-            os.seteuid(0)
-
-
 @pytest.mark.parametrize("address", ["meshes/a.stl", "package://arm/meshes/a.stl"])
 def test_a_mesh_in_a_folder_that_cannot_be_read_is_not_called_missing(address: str) -> None:
-    with tempfile.TemporaryDirectory() as name:  # not below pytest's own folder, which only its owner may enter
-        folder = Path(name)
-        folder.chmod(0o755)
+    with open_folder() as folder:
         urdf, mesh = made(folder / "arm" / "arm.urdf"), made(folder / "arm" / "meshes" / "a.stl")
         mesh.parent.chmod(0)
         try:

@@ -234,6 +234,17 @@ def test_the_target_jacobian_at_a_reached_target_is_the_usual_one():
         np.testing.assert_allclose(J[0], J[1], atol=1e-9)
 
 
+def test_free_axes_of_a_pose_have_rows_of_zeros_and_the_others_keep_theirs(ur5):
+    rng = np.random.default_rng(15)
+    q, R = ur5.random(rng), random_rotation(rng)
+    at, whole = (Kinematics(ur5, Target("tool0", p, rotation=R)).linearize(q) for p in ((None, 1, None), (3, 1, 2)))
+    kept = [1, 3, 4, 5]
+    np.testing.assert_allclose(at.J[kept], whole.J[kept], atol=1e-12)
+    np.testing.assert_allclose(at.e[kept], whole.e[kept], atol=1e-12)
+    assert not at.J[[0, 2]].any()
+    assert not at.e[[0, 2]].any()
+
+
 def test_several_targets_are_stacked_in_order_and_weights_scale_their_rows(lion):
     rng = np.random.default_rng(7)
     fields = [

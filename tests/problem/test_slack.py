@@ -8,7 +8,7 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
-from by_hand import random_rotation
+from by_hand import random_rotation, rotation_about
 from pinik import Kinematics, Target, Tolerance
 from pinik.problem.problem import Problem
 from pinik.problem.slack import SHARE, outside_ball, outside_box
@@ -67,13 +67,13 @@ def test_what_is_outside_the_tolerances_is_measured_with_weights_and_three_tenth
     robot, rng = load_quietly("lion"), np.random.default_rng(3)
     q = robot.neutral()
     here = {frame: robot.placement(frame, q) for frame in ("nose", "left_fore_paw", "tail_tip")}
-    shift, turn = np.array([0.1, -0.2, 0.05]), rng.normal(size=3)
-    turn *= 0.4 / np.linalg.norm(turn)
-    tilted = here["left_fore_paw"].rotation @ rotation_vector(turn)
+    shift, about = np.array([0.1, -0.2, 0.05]), rng.normal(size=3)
+    turn = rotation_about(about / np.linalg.norm(about), 0.4)
+    tilted = here["left_fore_paw"].rotation @ turn
     targets = [
         Target("nose", here["nose"].translation + shift, weight=0.5, tolerance=(0.05, 0.1)),
         Target("left_fore_paw", here["left_fore_paw"].translation - shift, rotation=tilted, tolerance=(0.02, 0.1)),
-        Target("tail_tip", rotation=here["tail_tip"].rotation @ rotation_vector(turn), weight=0.2, tolerance=(1, 0.3)),
+        Target("tail_tip", rotation=here["tail_tip"].rotation @ turn, weight=0.2, tolerance=(1, 0.3)),
     ]
     kinematics = Kinematics(robot, targets)
     kinematics.loose = True
@@ -103,10 +103,3 @@ def test_an_error_in_a_box_is_told_along_the_axes_of_the_box(turned):
     own = axes.T @ missing
     left = np.sign(own) * np.maximum(np.abs(own) - SHARE * np.array([0.1, 0.2, 0.3]), 0.0)
     np.testing.assert_allclose(kinematics.linearize(q).e[:3], axes @ left, atol=1e-12)
-
-
-def rotation_vector(turn: np.ndarray) -> np.ndarray:
-    """The rotation matrix (3, 3) of a rotation vector."""
-    from scipy.spatial.transform import Rotation
-
-    return Rotation.from_rotvec(turn).as_matrix()

@@ -208,6 +208,11 @@ class TestContradictions:
         assert np.linalg.norm(direction) == pytest.approx(1.0)
 
 
+@pytest.mark.parametrize("weight", [1e-3, 1, 1000])
+def test_the_least_and_the_largest_weight_are_taken(weight):
+    assert Target("tip", (1, 2, 3), weight=weight).weight == weight
+
+
 class TestArrays:
     def test_handed_in_are_copied(self):
         position, at = np.array([1.0, 2, 3]), np.array([0.0, 0, 1])

@@ -7,10 +7,9 @@ import math
 import numpy as np
 import pinocchio
 import pytest
-from scipy.spatial.transform import Rotation
 
 import pinik
-from by_hand import axis, limit, mimic, origin, random_rotation
+from by_hand import axis, limit, mimic, origin, random_rotation, rotation_about
 from judge import judge
 from pinik import CCD, Kinematics, Target, Tolerance
 from pinik.model.limits import Limits
@@ -30,10 +29,14 @@ def chaser(robot: pinik.Robot, target: Target, q: np.ndarray, *, alpha: float = 
     return Chaser(kinematics.rows[0], alpha, math.inf, loose)
 
 
+def unit(rng: np.random.Generator) -> np.ndarray:
+    vector = rng.normal(size=3)
+    return vector / np.linalg.norm(vector)
+
+
 def turned(R: np.ndarray, rng: np.random.Generator, angle: float) -> np.ndarray:
     """A rotation matrix `angle` away from R."""
-    vector = rng.normal(size=3)
-    return Rotation.from_rotvec(angle * vector / np.linalg.norm(vector)).as_matrix() @ R
+    return rotation_about(unit(rng), angle) @ R
 
 
 @pytest.mark.parametrize("relative_to", [None, "forearm_link"])
@@ -67,10 +70,10 @@ def test_loose_axes_are_drawn_to_the_near_edge_of_the_tolerance(ur5, kind):
     for angle in (0.05, 0.17, 0.19, 0.5, 2.0):
         q = ur5.random(rng)
         here = ur5.placement("tool0", q)
-        own = rng.normal(size=3)
-        own /= np.linalg.norm(own)
-        across = np.cross(here.rotation @ own, rng.normal(size=3))
-        wanted = Rotation.from_rotvec(angle * across / np.linalg.norm(across)).as_matrix() @ here.rotation
+        own = unit(rng)
+        across = np.cross(here.rotation @ own, unit(rng))
+        across /= np.linalg.norm(across)
+        wanted = rotation_about(across, angle) @ here.rotation
         fields = {
             "rotation": {"rotation": wanted},
             "direction": {"axis": own, "direction": wanted @ own},
@@ -81,10 +84,8 @@ def test_loose_axes_are_drawn_to_the_near_edge_of_the_tolerance(ur5, kind):
         if angle <= SHARE * WIDE:
             assert drawn is None
             continue
-        part = wanted @ here.rotation.T  # the same way, less far
-        step = Rotation.from_rotvec(Rotation.from_matrix(part).as_rotvec() * (1.0 - SHARE * WIDE / angle)).as_matrix()
         axes = here.rotation if kind == "rotation" else (here.rotation @ own)[:, None]
-        np.testing.assert_allclose(drawn, step @ axes, atol=1e-9)
+        np.testing.assert_allclose(drawn, rotation_about(across, angle - SHARE * WIDE) @ axes, atol=1e-9)
 
 
 def test_axes_that_are_not_loose_are_drawn_all_the_way(ur5):
@@ -130,7 +131,7 @@ def test_the_sums_across_an_axis_tell_how_well_each_turn_about_it_aims(kind, mov
         pairs += [(u, v, 1.0) for u, v in zip(one.U.T, one.V.T, strict=True)]
 
     def aim(angle: float) -> float:
-        R = Rotation.from_rotvec((-angle if mover == "tilt" else angle) * direction).as_matrix()
+        R = rotation_about(direction, -angle if mover == "tilt" else angle)
         return sum(w * float((R @ c) @ d) for c, d, w in pairs)  # alone, a target weighs 1
 
     for angle in (-2.0, -0.3, 0.1, 1.0, 3.0):
@@ -151,11 +152,6 @@ def test_the_error_scale_of_the_sums_bounds_what_rounding_does_to_them_and_not_f
         moved = one.across(direction, point + rounding * np.linalg.norm(point) * unit(rng), own)
         largest = max(largest, abs(moved[0] - cosine), abs(moved[1] - sine))
     assert largest <= rounding * blur <= 10.0 * largest
-
-
-def unit(rng: np.random.Generator) -> np.ndarray:
-    vector = rng.normal(size=3)
-    return vector / np.linalg.norm(vector)
 
 
 @pytest.mark.parametrize("size", [1e-3, 1.0, 1e3])

@@ -296,3 +296,11 @@ def test_ctrl_c_stops_it_within_a_tenth_of_a_second(call):
     took = [float(line) for line in done.stdout.split()]
     assert len(took) == 3
     assert 0.0 <= min(took) < 0.1 * 2  # of two threads
+
+
+@pytest.mark.parametrize("engine", ["python", pytest.param("native", marks=needs_native)])
+@pytest.mark.parametrize(("kind", "none"), [("position", "orientation_error"), ("direction", "position_error")])
+def test_an_error_that_is_not_asked_for_is_nan(kind, none, engine, panda):
+    asked = {"position": {"position": [0.4, 0.0, 0.5]}, "direction": {"axis": "z", "direction": [0.0, 0.0, -1.0]}}
+    many = pinik.solve_many(panda, [Target(TIP, **asked[kind])] * 2, engine=engine)
+    assert np.isnan(getattr(many, none)).all()

@@ -94,6 +94,14 @@ def test_a_mistyped_word_is_told_apart_by_what_it_resembles(front, word, meant, 
     assert raised.value.name == word
 
 
+@pytest.mark.parametrize(
+    "method", ["dls", pinik.DampedLeastSquares, pinik.DampedLeastSquares()], ids=["name", "class", "solver"]
+)
+def test_a_mistyped_parameter_is_told_apart_however_the_method_is_given(method, arm):
+    with pytest.raises(UnknownNameError, match=r"did you mean 'damping'.*the method is 'dls'"):
+        pinik.solve(arm, "tip", position=[0.1, 0.2, 0.9], method=method, dampning=0.1)
+
+
 @pytest.mark.parametrize("front", FRONTS)
 def test_every_front_takes_a_frames_name_and_targets_alike(front, arm):
     function, _, _ = FRONTS[front]

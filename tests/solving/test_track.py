@@ -9,10 +9,13 @@ import pinocchio
 import pytest
 
 import pinik
+from by_hand import origin
 from engines import needs_native
 from judge import judge
 from pinik import Status, Target
 from robots import load_quietly
+from urdf_texts import joint, link
+from urdf_texts import robot as robot_text
 
 ENGINES = ["python", pytest.param("native", marks=needs_native)]
 HOME = {
@@ -339,3 +342,12 @@ def test_what_cannot_be_is_refused_in_words(panda, change, error, message):
     arguments = {"places": places, "q0": q} | change
     with pytest.raises(error, match=message):
         pinik.track(panda, frame, **arguments)
+
+
+@pytest.mark.parametrize("engine", ENGINES)
+def test_a_robot_without_joints_has_a_path_without_angles(engine):
+    fixed = joint("j", "a", "b", origin((1, 0, 0)), kind="fixed", limit="")
+    robot = load_quietly(robot_text(link("a"), link("b"), fixed))
+    track = pinik.track(robot, "b", [[1.0, 0.0, 0.0], [1.0, 0.5, 0.0]], engine=engine)
+    assert track.angles.shape == (2, 0)
+    assert list(track.reached) == [True, False]

@@ -314,3 +314,13 @@ def test_a_position_with_free_axes_moves_as_a_list(engine):
     assert robot.placement("tool0", way[-1]).translation[2] == pytest.approx(0.2, abs=1e-6)
     with pytest.raises(pinik.InputError, match="must have numbers where the target asks for them"):
         tracker([0.1, None, None])
+
+
+def test_the_parameters_of_the_method_are_heeded(panda):
+    """A step of at most 0.001 rad in each of at most 20 iterations is as far as a joint comes in a tick."""
+    target = pinocchio.SE3(np.eye(3), np.array([0.0, 0.0, 0.3])) * panda.placement(TIP, home(panda))
+    tracker = pinik.Tracker(panda, TIP, home(panda), rate=1.0, velocity=np.inf, max_step=0.001)
+    moved_by = np.abs(tracker(target) - home(panda)).max()
+    assert 0.0 < moved_by <= 20 * 0.001 * (1.0 + 1e-9)
+    with pytest.raises(pinik.InputError, match="max_step"):
+        pinik.Tracker(panda, TIP, max_step=-1.0)

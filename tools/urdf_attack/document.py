@@ -31,6 +31,11 @@ class Node:
     children: list[Node] = field(default_factory=list)
     text: str = ""
 
+    def write(self, name: str, value: str) -> None:
+        """Write an attribute, which then means what is written."""
+        self.written[name] = value
+        self.meant.pop(name, None)
+
     def copy(self) -> Node:
         """The element and all that is in it, once more."""
         children = [child.copy() for child in self.children]

@@ -135,7 +135,7 @@ def _duplicate(random: Random, robot: Node, parent: Node, element: Node) -> None
     twin = element.copy()
     if random.randrange(2) and twin.written:
         name = random.choice(list(twin.written))
-        twin.written[name] = _other_value(random, robot, name, twin.written[name])
+        twin.write(name, _other_value(random, robot, name, twin.written[name]))
     parent.children.insert(random.randrange(len(parent.children) + 1), twin)
 
 
@@ -204,7 +204,7 @@ def _text(random: Random, robot: Node, parent: Node, element: Node) -> None:
 
 def _attribute(random: Random, robot: Node, parent: Node, element: Node) -> None:
     if not element.written or random.randrange(8) == 0:
-        element.written[random.choice(ATTRIBUTES)] = random.choice(NUMBERS + ADDRESSES)
+        element.write(random.choice(ATTRIBUTES), random.choice(NUMBERS + ADDRESSES))
         return
     name = random.choice(list(element.written))
     value = element.written[name]
@@ -216,10 +216,9 @@ def _attribute(random: Random, robot: Node, parent: Node, element: Node) -> None
             del element.written[name]
             element.meant.pop(name, None)
             near = near_name(random, name)
-            element.written[near if near.isidentifier() else "x"] = value
+            element.write(near if near.isidentifier() else "x", value)
         case _:
-            element.meant.pop(name, None)
-            element.written[name] = _other_value(random, robot, name, value)
+            element.write(name, _other_value(random, robot, name, value))
 
 
 def _other_value(random: Random, robot: Node, name: str, value: str) -> str:

@@ -9,11 +9,10 @@ from dataclasses import dataclass
 from ..echoes import QUOTED, shortened
 from .encodings import UTF_16, as_utf_8, as_utf_8_somehow, declared_encoding
 from .flaw import Flaw
-from .xml import BrokenXMLError, DocumentError, Element, parse
+from .xml import COMMENT, BrokenXMLError, DocumentError, Element, parse
 
 __all__ = ["Document", "read_document"]
 
-_COMMENT = re.compile(rb"<!--.*?-->", re.DOTALL)
 _BEGINNINGS = (b"<?xml", b"<robot", b"<!--")
 
 
@@ -82,15 +81,20 @@ def _mended(content: bytes, fault: BrokenXMLError, flaws: list[Flaw]) -> bytes |
         return _blank(content, begins, len(content))
     if fault.kind == "encoding":
         return _in_utf_8(content, flaws)
-    if fault.kind == "token" and any(b"--" in comment[4:-3] for comment in _COMMENT.findall(content)):
+    if fault.kind == "token" and any(map(_is_bad, COMMENT.findall(content))):
         _note(
             flaws,
             'a comment contains "--", which XML forbids; comments are ignored',
             code="bad-comment",
             line=fault.line,
         )
-        return _COMMENT.sub(lambda comment: _blank(comment[0], 0, len(comment[0])), content)
+        return COMMENT.sub(lambda comment: _blank(comment[0], 0, len(comment[0])), content)
     return None
+
+
+def _is_bad(comment: bytes) -> bool:
+    """Whether a comment has an end, and "--" before it."""
+    return comment.endswith(b"-->") and b"--" in comment[4:-3]
 
 
 def _in_utf_8(content: bytes, flaws: list[Flaw]) -> bytes | None:

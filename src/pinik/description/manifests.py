@@ -7,13 +7,13 @@ import re
 from pathlib import Path
 
 from ..files import FileError, read_within
+from .xml import COMMENT
 
 __all__ = ["is_package", "manifest_name", "names_in", "packages_in"]
 
 _MANIFEST = "package.xml"
 _MOST_BYTES = 1024**2
 _MOST_FOLDERS = 1000
-_COMMENT = re.compile(rb"<!--.*?-->", re.DOTALL)
 _NAME = re.compile(rb"<name>\s*([^<\s]{1,200})\s*</name>")
 
 
@@ -23,7 +23,7 @@ def manifest_name(folder: Path) -> str | None:
         manifest = read_within(folder / _MANIFEST, _MOST_BYTES, "a package.xml")
     except FileError:
         return None
-    name = _NAME.search(_COMMENT.sub(b"", manifest))
+    name = _NAME.search(COMMENT.sub(b"", manifest))
     return None if name is None else name.group(1).decode("utf-8", "replace")
 
 

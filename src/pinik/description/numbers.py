@@ -14,6 +14,8 @@ __all__ = ["FARTHEST", "NumberError", "Reading", "plain_number", "read_numbers"]
 # [m or rad]: beyond this, sums and squares of distances could overflow, and placements would not be finite.
 FARTHEST = 1e12
 LONGEST_NUMBER = 400
+_LONGEST_TEXT = 10_000  # characters of an attribute: a few numbers, and the white space between them
+_MOST_BRACKETS = 3
 _NUMBER = r"[+-]?(?:\d+(?:\.\d*)?|\.\d+)(?:[eE][+-]?\d+)?"
 _PLAIN = re.compile(_NUMBER, re.ASCII)
 _WITH_SUFFIX = re.compile(rf"({_NUMBER})(\D.*)", re.ASCII)
@@ -25,7 +27,7 @@ _MINUS = str.maketrans(dict.fromkeys("\u2010\u2011\u2012\u2013\u2212\ufe63\uff0d
 _INVISIBLE = str.maketrans(dict.fromkeys("\u200b\u200c\u200d\u200e\u200f\u2060\ufeff", ""))
 _PAIRS = ("()", "[]", "{}", '""', "''")
 
-_ONE_UNIT, _UNITS_EACH = "a unit", "units"
+_ONE_UNIT, _UNITS_EACH, _BRACKETS = "a unit", "units", "brackets or quotes"
 _DEGREE = math.pi / 180.0
 # Quantity → unit → how many of the SI unit it is.
 _UNITS = {
@@ -92,6 +94,8 @@ def read_numbers(text: str, counts: Collection[int], quantity: str = "number", *
     Raises:
         NumberError: There are other numbers, more or fewer of them, or two ways to read them.
     """
+    if len(text) > _LONGEST_TEXT:
+        raise NumberError(f"must be {_numbers(counts)}; {len(text):,} characters given")
     plain = [plain_number(word) for word in text.split()] if text.isascii() else [None]
     if None not in plain and len(plain) in counts:
         return Reading(tuple(value for value in plain if value is not None))
@@ -118,7 +122,10 @@ def read_numbers(text: str, counts: Collection[int], quantity: str = "number", *
 
 
 def _bare(text: str) -> tuple[str, list[str]]:
-    """The text without brackets, quotes and invisible characters, with plain minus signs; and what it had of them."""
+    """The text without brackets, quotes and invisible characters, with plain minus signs; and what it had of them.
+
+    White space is a single space wherever it was, so that no expression searches it again and again.
+    """
     oddities = []
     if not text.isascii():
         visible = text.translate(_INVISIBLE)
@@ -128,10 +135,10 @@ def _bare(text: str) -> tuple[str, list[str]]:
         if visible != text or any(character.isspace() and not character.isascii() for character in text):
             oddities.append("unusual white space")
         text = dashed
-    text = text.strip()
-    while len(text) >= 2 and text[0] + text[-1] in _PAIRS:
+    text = " ".join(text.split())
+    while len(text) >= 2 and text[0] + text[-1] in _PAIRS and oddities.count(_BRACKETS) < _MOST_BRACKETS:
         text = text[1:-1].strip()
-        oddities.append("brackets or quotes")
+        oddities.append(_BRACKETS)
     return text, oddities
 
 

@@ -22,7 +22,7 @@ from ..errors import InputError, RobotLoadError, UnknownNameError
 from ..extras import needed_by
 from ..files import megabytes
 from .packages import Surroundings
-from .xml import MAX_BYTES
+from .xml import COMMENT, MAX_BYTES
 
 __all__ = ["Expansion", "check_arguments", "expand", "is_xacro"]
 
@@ -30,7 +30,6 @@ SECONDS = 60.0
 """The longest time that an expansion may take."""
 _MOST_MEMORY = 2 * 1024**3  # bytes
 _PROGRAM = Path(__file__).with_name("xacro_process.py")
-_COMMENT = re.compile(rb"<!--.*?-->", re.DOTALL)
 _TAG = re.compile(rb"<xacro:\w")
 
 
@@ -49,7 +48,7 @@ class Expansion:
 
 def is_xacro(path: Path, document: bytes) -> bool:
     """Whether a file is xacro, by its name or by the tags or expressions in it: many files that end in ".urdf" are."""
-    plain = _COMMENT.sub(b"", document)
+    plain = COMMENT.sub(b"", document)
     return (
         path.suffix.lower() == ".xacro"
         or _TAG.search(plain) is not None

@@ -2,17 +2,21 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 from xml.parsers import expat
 
-__all__ = ["BrokenXMLError", "DocumentError", "Element", "parse"]
+__all__ = ["COMMENT", "BrokenXMLError", "DocumentError", "Element", "parse"]
 
 # The largest robot of the catalogue has 0.2 MB, 5,000 elements and 9 levels; these bounds stop XML bombs only.
 MAX_BYTES = 16 * 1024 * 1024
 MAX_ELEMENTS = 500_000
 MAX_DEPTH = 100
 XINCLUDE = "http://www.w3.org/2001/XInclude"
+
+COMMENT = re.compile(rb"<!--.*?(?:-->|\Z)", re.DOTALL)
+"""A comment; one without an end reaches to the end of the document, so that it is searched only once."""
 
 
 class DocumentError(Exception):

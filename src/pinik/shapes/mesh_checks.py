@@ -51,7 +51,7 @@ _ARCHIVES = (
     b"Rar!",
 )
 _PLY_SIZES = {"char": 1, "uchar": 1, "short": 2, "ushort": 2, "int": 4, "uint": 4, "float": 4, "double": 8}
-_PLY_ELEMENT = re.compile(rb"^\s*element\s+(\S+)\s+(\S+)", re.MULTILINE)
+_PLY_ELEMENT = re.compile(rb"^[ \t]*element[ \t]+(\S+)[ \t]+(\S+)", re.MULTILINE)
 
 
 _NOT_FINITE = re.compile(rb"[nN#]")  # in numbers: as in "nan", "inf" and "-1.#IND"

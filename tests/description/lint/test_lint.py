@@ -372,3 +372,42 @@ def test_the_catalogue_raises_no_false_alarm_about_names_and_units():
     assert set(counts) <= IN_GOOD_ROBOTS
     assert counts["unknown-name"] <= 76  # <limit current=…> and the like in the three ANYmal-B files and Centauro
     assert counts["misplaced-element"] <= 1  # an <origin> in a <link> of so101
+
+
+# What is wrong in a joint → what is to be done about it, word for word.
+MENDS = {
+    "<origin>0 0 1</origin>": "Write it as <origin xyz=…>, or take it out.",
+    "<axis>0 0 1</axis>": "Write it as <axis xyz=…>, or take it out.",
+    "<axis><foo/></axis>": "Take it out; <axis> holds no elements.",
+}
+
+
+@pytest.mark.parametrize("part", MENDS)
+def test_the_mend_of_what_is_ignored_in_a_joint_says_what_to_write(part):
+    assert only(pair(part)).mend == MENDS[part]
+
+
+def test_the_mend_of_an_attribute_that_should_be_an_element_is_that_element():
+    text = pair().replace('type="revolute"', 'type="revolute" axis="0 0 1"')
+    assert only(text).mend == 'Write <axis xyz="0 0 1"/> inside <joint>.'
+
+
+# The joint's kind, its limits and axis → the mend of the reader's warning, word for word.
+MENDS_OF_THE_READER = [
+    ("revolute", LIMIT.format(-1, "inf"), ""),
+    ("revolute", LIMIT.format("-inf", "inf"), 'Write type="continuous" if the joint turns without an end.'),
+    ("prismatic", LIMIT.format("-inf", "inf"), ""),
+    ("planar", "", 'Write <axis xyz="0 0 1"/> if it moves in the xy-plane.'),
+]
+
+
+@pytest.mark.parametrize(("kind", "limit", "mend"), MENDS_OF_THE_READER)
+def test_the_mend_of_a_readers_warning_says_what_to_write(kind, limit, mend):
+    (flaw,) = reader.read(pair(kind=kind, limit=limit)).warnings
+    assert flaw.mend == mend
+
+
+@pytest.mark.parametrize("second", ['<origin xyz="0 0 1"/>', '<origin xyz="0 0 2"/>'])
+def test_second_elements_are_reported_together_whatever_joint_has_them(second):
+    (flaw,) = reader.read(pair('<origin xyz="0 0 1"/>', second)).warnings
+    assert flaw.common == "has several <origin> elements; the first is taken"
