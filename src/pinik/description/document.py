@@ -77,7 +77,7 @@ def _mended(content: bytes, fault: BrokenXMLError, flaws: list[Flaw]) -> bytes |
         _note(flaws, "text after its last element is ignored", code="junk-around", line=fault.line)
         return _blank(content, begins, len(content))
     if fault.kind == "encoding":
-        return _in_utf_8(content, flaws)
+        return _in_utf_8(content, fault.line, flaws)
     if fault.kind == "token" and any(map(_is_bad, COMMENT.findall(content))):
         _note(
             flaws,
@@ -94,14 +94,15 @@ def _is_bad(comment: bytes) -> bool:
     return comment.endswith(b"-->") and b"--" in comment[4:-3]
 
 
-def _in_utf_8(content: bytes, flaws: list[Flaw]) -> bytes | None:
+def _in_utf_8(content: bytes, line: int | None, flaws: list[Flaw]) -> bytes | None:
     """The document in UTF-8, in whatever encoding it is; None if it holds null bytes."""
     if b"\0" in content:
         return None
     mended, taken = as_utf_8_somehow(content)
     if taken:
         name = shortened(declared_encoding(content), QUOTED)
-        _note(flaws, f"its bytes are not {name!r}, as it declares; they are read as {taken}", code="encoding")
+        cause = f"its bytes are not {name!r}, as it declares; they are read as {taken}"
+        _note(flaws, cause, code="encoding", line=line or 1)
     return mended
 
 

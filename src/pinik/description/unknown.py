@@ -15,7 +15,6 @@ from .xml import Element
 __all__ = ["unknown_in_joints", "unknown_parts"]
 
 _WHY_KINEMATICS = "The joint or link is not where the file seems to say."
-_WHY = "What it says is lost, as readers of URDF ignore it without a word."
 _ORIGIN = "Write <origin xyz=… rpy=…> in <{}>, in metres and radians."
 _TREE = frozenset({"link", "joint"})
 _MOST_SHOWN = 4
@@ -220,7 +219,7 @@ def _flaw(
         owner = f"<{shortened(child.tag, QUOTED)}> {shortened(child.attributes['name'], QUOTED)!r}"
     moves = place.owner.startswith(("joint", "<robot>")) if code != "unknown-name" else place.element.tag in _PLACING
     moves = moves or (child is not None and child.tag in _TREE)
-    why = _WHY_KINEMATICS if moves else _WHY
+    why = _WHY_KINEMATICS if moves else ""
     return Flaw(owner, cause, code=code, line=element.line, why=why, mend=mend, edits=edits)
 
 

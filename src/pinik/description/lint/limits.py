@@ -29,8 +29,6 @@ def limits(robot: Element) -> Iterator[Flaw]:
                 code="no-travel",
                 line=joint.line,
                 common="its lower and its upper limit are the same, so that it cannot move",
-                why="Solves that need the joint miss their targets.",
-                mend='Give its limits, or write type="fixed".',
             )
         elif lower < upper and not lower <= 0.0 <= upper:
             yield Flaw(
@@ -39,8 +37,6 @@ def limits(robot: Element) -> Iterator[Flaw]:
                 code="zero-outside-limits",
                 line=joint.line,
                 common="0 lies outside its limits",
-                why="The neutral configuration breaks the limits; solves start from the nearest one inside.",
-                mend="Nothing, if this is meant; give a start (q0) where it matters.",
             )
 
 
@@ -78,8 +74,6 @@ def followers(joints: Sequence[JointTag], robot: Element) -> Iterator[Flaw]:
                 code="follower-narrows",
                 line=element.line,
                 common="its own limits leave the joint that it follows only a part of its range",
-                why="pinik keeps followers inside their limits, and other programs do not.",
-                mend="Give leader and follower limits that fit the multiplier and the offset.",
             )
 
 
