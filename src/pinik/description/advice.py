@@ -48,6 +48,10 @@ ADVICE: Mapping[str, Advice] = MappingProxyType({
     "inertia-triangle": Advice(_DYNAMICS, _COMPUTE),
     "massless-inertia": Advice(_DYNAMICS, "Give the mass, or remove <inertial>."),
     "density": Advice(_DYNAMICS, _UNITS),
+    "soft-limits": Advice(
+        "A controller that keeps them lets the joint go nowhere; kinematics does not use them.",
+        "Swap soft_lower_limit and soft_upper_limit, or correct one of them.",
+    ),
     "no-travel": Advice(
         "Solves that need the joint miss their targets.", 'Give its limits, or write type="fixed".'
     ),

@@ -8,13 +8,15 @@ from dataclasses import dataclass
 from ..echoes import QUOTED, shortened
 from .edits import moved_to_child, renamed_attribute, renamed_element
 from .flaw import Edit, Flaw
+from .numbers import NumberError, read_numbers
 from .slips import is_sure, meant, rivals
-from .vocabulary import ASSUMED, BOUNDED_KINDS, FOREIGN, MAIN_ATTRIBUTES, PLACES, URDF, Word
+from .vocabulary import ASSUMED, BOUNDED_KINDS, FOREIGN, MAIN_ATTRIBUTES, PLACES, SYNONYMS, URDF, Word
 from .xml import Element
 
 __all__ = ["unknown_in_joints", "unknown_parts"]
 
 _WHY_KINEMATICS = "The joint or link is not where the file seems to say."
+_DIRECTIONS = {"x": "1 0 0", "y": "0 1 0", "z": "0 0 1", "-x": "-1 0 0", "-y": "0 -1 0", "-z": "0 0 -1"}
 _ORIGIN = "Write <origin xyz=… rpy=…> in <{}>, in metres and radians."
 _TREE = frozenset({"link", "joint"})
 _MOST_SHOWN = 4
@@ -147,9 +149,10 @@ def _unknown_attribute(place: _Place, attribute: str) -> Iterator[Flaw]:
     near = meant(attribute, word.attributes, element.attributes)
     if near is None and (child := attribute.casefold()) in word.children:
         yield _attribute_of_child(place, attribute, child)
-    elif near is None and (parents := [child for child in sorted(word.children) if _holds(child, attribute)]):
-        cause = f"{held} is unknown to URDF and ignored; URDF has {attribute!r} in <{parents[0]}>"
-        yield _flaw(place, cause, code="misplaced-attribute", mend=f"Write it as <{parents[0]} {attribute}=…>.")
+    elif near is None and (homes := _homes(place, attribute)):
+        cause = f"{held} is unknown to URDF and ignored; URDF has {attribute!r} in {' or '.join(homes)}"
+        written = " or as ".join(home.replace(">", f" {attribute}=…>") for home in homes)
+        yield _flaw(place, cause, code="misplaced-attribute", mend=f"Write it as {written}.")
     elif near is not None:
         cause = f"{held} is unknown to URDF and ignored (near: {near!r}){_loss(place, near)}"
         edits: tuple[Edit, ...] = ()
@@ -158,6 +161,11 @@ def _unknown_attribute(place: _Place, attribute: str) -> Iterator[Flaw]:
             edits = renamed_attribute(place.document, element, attribute, near)
         mend = _choice(place, near) or f"Write {near}= instead of {shortened(attribute, QUOTED)}=."
         yield _flaw(place, cause, code="unknown-attribute", mend=mend, edits=edits)
+    elif (synonym := SYNONYMS.get((tag, attribute.casefold()))) and synonym[0] not in element.attributes:
+        near, value = synonym
+        cause = f"{held} is unknown to URDF and ignored; URDF has {near!r}{_loss(place, near)}"
+        mend = f"Write {near}= instead of it{f', with {value}' if value else ''}."
+        yield _flaw(place, cause, code="unknown-attribute", mend=mend)
     elif _means_origin(place, attribute):
         cause = f"{held} is unknown to URDF and ignored; URDF has <origin xyz=… rpy=…>{_loss(place, 'origin')}"
         yield _flaw(place, cause, code="unknown-attribute", mend=_ORIGIN.format(tag))
@@ -174,9 +182,11 @@ def _attribute_of_child(place: _Place, attribute: str, child: str) -> Flaw:
     written = f"<{child} {main}=…>" if main else f"<{child} …>"
     cause = f"{attribute} is an attribute here and ignored; URDF has {written}{_loss(place, child)}"
     edits: tuple[Edit, ...] = ()
-    if place.document is not None and main and child not in place.given and child not in place.rivals:
-        edits = moved_to_child(place.document, element, attribute, child, main)
     text = element.attributes[attribute]
+    is_free = child not in place.given and child not in place.rivals
+    if place.document is not None and main and is_free and _can_be(element, child, text):
+        edits = moved_to_child(place.document, element, attribute, child, main)
+    text = _DIRECTIONS.get(text.strip().casefold(), text) if child == "axis" else text
     example = f'<{child} {main}="{shortened(text, QUOTED)}"/>' if main else written
     mend = _choice(place, child) or f"Write {example} inside <{element.tag}>."
     return _flaw(place, cause, code="misplaced-attribute", mend=mend, edits=edits)
@@ -251,6 +261,28 @@ def _losses(place: _Place) -> str:
 
 def _means_origin(place: _Place, name: str) -> bool:
     return "origin" in place.word.children and name.casefold() in PLACES
+
+
+def _can_be(element: Element, child: str, text: str) -> bool:
+    """Whether a text can be the main attribute of a child; the axis of a joint that has none may be anything."""
+    if child != "axis" or element.attributes.get("type") in ("fixed", "floating"):
+        return True
+    try:
+        return any(read_numbers(text, (3,), "axis").values)
+    except NumberError:
+        return False
+
+
+def _homes(place: _Place, attribute: str) -> list[str]:
+    """The children that have an attribute of this name, in angle brackets, the likeliest first.
+
+    With rpy beside it, xyz is that of an origin.
+    """
+    homes = [child for child in sorted(place.word.children) if _holds(child, attribute)]
+    if "origin" in homes:
+        others = [] if "rpy" in place.element.attributes else [home for home in homes if home != "origin"]
+        homes = ["origin", *others]
+    return [f"<{home}>" for home in homes]
 
 
 def _holds(child: str, attribute: str) -> bool:
