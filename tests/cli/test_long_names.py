@@ -47,6 +47,9 @@ def test_check_and_the_warnings_of_a_robot_do_not_either(run, long_file):
     checked = run("check", long_file)
     assert checked.status == 0
     assert max(map(len, checked.out.splitlines())) <= 2100
+    listed = run("info", long_file)
+    assert listed.status == 0
+    assert len(listed.out) <= 2100
     shown = run("fk", long_file, "--frame", "missing")
     assert shown.status == 2
     assert max(map(len, shown.err.splitlines())) <= 2100

@@ -44,22 +44,22 @@ READ = {
     "Latin-1 without a declaration": (
         name_of("é", "latin-1"),
         "é",
-        ["the document: its bytes are not 'utf-8', as it declares; they are read as Latin-1"],
+        ["the document: its bytes are not 'utf-8', as it declares; they are read as Latin-1 (line 1)"],
     ),
     "Latin-1 declared as UTF-8": (
         DECLARED % b"utf-8" + name_of("é", "latin-1"),
         "é",
-        ["the document: its bytes are not 'utf-8', as it declares; they are read as Latin-1"],
+        ["the document: its bytes are not 'utf-8', as it declares; they are read as Latin-1 (line 1)"],
     ),
     "UTF-8 declared as ASCII": (
         DECLARED % b"us-ascii" + name_of("日本", "utf-8"),
         "日本",
-        ["the document: its bytes are not 'us-ascii', as it declares; they are read as UTF-8"],
+        ["the document: its bytes are not 'us-ascii', as it declares; they are read as UTF-8 (line 1)"],
     ),
     "an unknown encoding": (
         DECLARED % b"klingon" + name_of("é", "utf-8"),
         "é",
-        ["the document: its bytes are not 'klingon', as it declares; they are read as UTF-8"],
+        ["the document: its bytes are not 'klingon', as it declares; they are read as UTF-8 (line 1)"],
     ),
     "a comment with two hyphens": (
         PLAIN.replace(b"<link", b"<!-- old -- \n -- -->\n<link", 1),

@@ -4,13 +4,16 @@ from __future__ import annotations
 
 import pytest
 
+from pinik.description.document import read_document
 from pinik.description.encodings import as_utf_8, as_utf_8_somehow
 from pinik.description.xml import DocumentError, parse
 
 
-@pytest.mark.parametrize("encoding", ["utf-16", "utf-16-le", "utf-16-be", "iso-8859-1", "windows-1252"])
+@pytest.mark.parametrize(
+    "encoding", ["utf-16", "utf-16-le", "utf-16-be", "utf-32", "utf-32-le", "utf-32-be", "iso-8859-1", "windows-1252"]
+)
 def test_a_document_in_another_encoding_becomes_the_same_one_in_utf_8(encoding):
-    declared = f'<?xml version="1.0" encoding="{"utf-16" if "16" in encoding else encoding}"?>\n<robot name="é"/>'
+    declared = f'<?xml version="1.0" encoding="{encoding[:6] if "utf" in encoding else encoding}"?>\n<robot name="é"/>'
     given = declared.encode(encoding)
     content = as_utf_8(given)
     assert content.decode("utf-8").lstrip("\ufeff") == declared.replace(declared.split('"')[3], "utf-8")
@@ -49,3 +52,25 @@ def test_bytes_that_are_not_in_their_encoding_are_read_as_utf_8_or_latin_1(given
     content, taken = as_utf_8_somehow(document)
     assert (parse(content).attributes["name"], taken) == expected
     assert content.startswith(b"<?xml version='1.0' encoding='utf-8'?>")
+
+
+@pytest.mark.parametrize("declared", ["utf-16", "UTF-16", "utf-16le", "utf-32", "cp037"])
+@pytest.mark.parametrize("end", ["", "\n", "\n\n", "\n\n\n"])
+def test_single_bytes_that_declare_several_per_character_are_read_as_utf_8_whatever_their_number(declared, end):
+    """.NET writes "utf-16" into the text of a document, which then may be saved in UTF-8."""
+    text = f'<?xml version="1.0" encoding="{declared}"?><robot name="é"><link name="a"/></robot>{end}'
+    document = read_document(text.encode("utf-8"))
+    assert (document.root.attributes, [link.attributes["name"] for link in document.root.children]) == (
+        {"name": "é"},
+        ["a"],
+    )
+    assert [(flaw.code, "read as UTF-8" in flaw) for flaw in document.flaws] == [("encoding", True)]
+    assert parse(as_utf_8(text.encode("utf-8"))).attributes == {"name": "é"}
+
+
+@pytest.mark.parametrize("encoding", ["utf-16", "utf-16-le", "utf-16-be", "utf-32", "utf-32-le", "utf-32-be"])
+def test_a_cut_off_document_of_several_bytes_per_character_is_called_what_it_is(encoding):
+    whole = '<robot name="r"><link name="a"/></robot>'.encode(encoding)
+    with pytest.raises(DocumentError, match=f"{encoding[:6].upper()}, and its last character is cut off"):
+        read_document(whole[:-1])
+    assert read_document(whole).root.attributes == {"name": "r"}

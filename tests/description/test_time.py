@@ -7,7 +7,8 @@ import time
 
 import pytest
 
-from pinik.description.document import declared_as_utf_8, read_document
+from pinik.description.document import read_document
+from pinik.description.encodings import declared_as_utf_8
 from pinik.description.manifests import manifest_name
 from pinik.description.numbers import read_numbers
 from pinik.description.xacro import is_xacro

@@ -201,7 +201,7 @@ def test_a_leader_that_hangs_from_its_follower_changes_roles_with_it_and_a_warni
     )
     assert loaded.warnings == (
         "joint 'hip': Pinocchio's model needs a leader before its followers, and cannot have 'knee' before 'hip'; "
-        "'knee' follows 'hip' instead, with the same angles",
+        "'knee' follows 'hip' instead, with the same angles (line 1)",
     )
     # The hip's range −1…1, cut by the knee's −1.2…2: hip = −0.5 · knee + 0.2.
     assert (loaded.lower[0], loaded.upper[0]) == pytest.approx((-0.8, 0.8))
@@ -222,7 +222,7 @@ def test_a_follower_at_rest_is_left_free_only_where_its_leader_cannot_come_first
     assert loaded.mimics == {}
     assert loaded.warnings == (
         "joint 'rest': it mimics 'lead', which Pinocchio's model cannot have before it, and with multiplier 0 it "
-        "cannot lead; it is left free",
+        "cannot lead; it is left free (line 1)",
     )
 
 

@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-import contextlib
 import re
 from dataclasses import dataclass
 
 from ..echoes import QUOTED, shortened
-from .encodings import UTF_16, as_utf_8, as_utf_8_somehow, declared_encoding
+from .encodings import WIDE, as_utf_8, as_utf_8_somehow, declared_encoding
 from .flaw import Flaw
 from .xml import COMMENT, BrokenXMLError, DocumentError, Element, parse
 
@@ -23,7 +22,7 @@ class Document:
     Attributes:
         root: The root element.
         content: The bytes that were parsed: those of the file, with spaces in place of what does not belong to it; in
-            UTF-8 if the file is in UTF-16, or in another encoding than its declaration names.
+            UTF-8 if the file is in UTF-16 or UTF-32, or in another encoding than its declaration names.
         flaws: What had to be assumed; `content` does not have these flaws any more.
     """
 
@@ -53,17 +52,15 @@ def read_document(given: bytes) -> Document:
 
 
 def _without_surroundings(content: bytes, flaws: list[Flaw]) -> bytes:
-    """The document, with spaces for null bytes at its end and for text before it; in UTF-8 if it is in UTF-16."""
-    if content.startswith(UTF_16):
-        with contextlib.suppress(DocumentError):  # the parser says what is wrong with it
-            content = as_utf_8(content)
-    if not content.startswith(UTF_16):
-        whole = content.rstrip(b"\0 \t\r\n")
-        if b"\0" in content[len(whole) :]:
-            _note(flaws, "null bytes at its end are ignored", code="junk-around", line=whole.count(b"\n") + 1)
-            content = whole + content[len(whole) :].replace(b"\0", b" ")
+    """The document, with spaces for null bytes at its end and for text before it; in UTF-8 if it was in a wider one."""
+    if content.startswith(WIDE):
+        content = as_utf_8(content)
+    whole = content.rstrip(b"\0 \t\r\n")
+    if b"\0" in content[len(whole) :]:
+        _note(flaws, "null bytes at its end are ignored", code="junk-around", line=whole.count(b"\n") + 1)
+        content = whole + content[len(whole) :].replace(b"\0", b" ")
     blank = len(content) - len(content.lstrip(b"\xef\xbb\xbf \t\r\n"))
-    if not content.startswith((b"<", *UTF_16), blank):
+    if not content.startswith(b"<", blank):
         begins = min((place for word in _BEGINNINGS if (place := content.find(word)) > 0), default=0)
         if begins and b"\0" not in content[:begins]:
             _note(flaws, "text before its first element is ignored", code="junk-around", line=1)
@@ -80,7 +77,7 @@ def _mended(content: bytes, fault: BrokenXMLError, flaws: list[Flaw]) -> bytes |
         _note(flaws, "text after its last element is ignored", code="junk-around", line=fault.line)
         return _blank(content, begins, len(content))
     if fault.kind == "encoding":
-        return _in_utf_8(content, flaws)
+        return _in_utf_8(content, fault.line, flaws)
     if fault.kind == "token" and any(map(_is_bad, COMMENT.findall(content))):
         _note(
             flaws,
@@ -97,14 +94,15 @@ def _is_bad(comment: bytes) -> bool:
     return comment.endswith(b"-->") and b"--" in comment[4:-3]
 
 
-def _in_utf_8(content: bytes, flaws: list[Flaw]) -> bytes | None:
+def _in_utf_8(content: bytes, line: int | None, flaws: list[Flaw]) -> bytes | None:
     """The document in UTF-8, in whatever encoding it is; None if it holds null bytes."""
     if b"\0" in content:
         return None
     mended, taken = as_utf_8_somehow(content)
     if taken:
         name = shortened(declared_encoding(content), QUOTED)
-        _note(flaws, f"its bytes are not {name!r}, as it declares; they are read as {taken}", code="encoding")
+        cause = f"its bytes are not {name!r}, as it declares; they are read as {taken}"
+        _note(flaws, cause, code="encoding", line=line or 1)
     return mended
 
 

@@ -8,6 +8,7 @@ from functools import partial
 from typing import Any
 
 from ..echoes import bounded
+from .advice import ADVICE, Advice
 
 __all__ = ["Edit", "Flaw", "summarised"]
 
@@ -38,8 +39,8 @@ class Flaw(str):
         line: The line of the file, from 1; None if the flaw belongs to no line.
         code: The sort of flaw in a word for programs, such as "unknown-attribute".
         common: The cause without the names and numbers in it, equal for all flaws that are reported together.
-        why: Why it matters, in one sentence; empty if the cause says it.
-        mend: What to do about it, in one sentence; empty if there is nothing to do.
+        why: Why it matters, in one sentence.
+        mend: What to do about it, in one sentence.
         edits: The edits of the document that mend it; empty if there is no mend, or more than one.
         mesh: The address of a mesh that was not found; None for all other flaws.
         expanded: Whether the line is one of the URDF that xacro made of the file.
@@ -70,12 +71,13 @@ class Flaw(str):
         mesh: str | None = None,
         expanded: bool = False,
     ) -> Flaw:
-        """The sentence "element: cause (line 12)"."""
+        """The sentence "element: cause (line 12)"; without words of its own, `why` and `mend` are those of its code."""
+        advice = ADVICE.get(code, Advice("", ""))
         element, cause, common = bounded(element), bounded(cause), bounded(cause if common is None else common)
         self = super().__new__(cls, f"{element}: {cause}{_at(line, expanded)}")
         self.element, self.cause, self.line, self.code = element, cause, line, code
         self.common, self.expanded = common, expanded
-        self.why, self.mend, self.edits, self.mesh = why, mend, tuple(edits), mesh
+        self.why, self.mend, self.edits, self.mesh = why or advice.why, mend or advice.mend, tuple(edits), mesh
         return self
 
     def __reduce__(self) -> tuple[Any, ...]:

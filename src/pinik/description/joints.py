@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import sys
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 from ..echoes import QUOTED, shortened
 from .flaw import Flaw
@@ -66,6 +66,7 @@ class JointTag:
         velocity: The largest velocity [rad/s or m/s], likewise.
         damping: Viscous friction [N m s/rad or N s/m], likewise.
         friction: Dry friction [N m or N], likewise.
+        line: The line on which it begins, which makes no difference to the joint; None if it is of no file.
     """
 
     name: str
@@ -82,6 +83,7 @@ class JointTag:
     velocity: float | None = None
     damping: float | None = None
     friction: float | None = None
+    line: int | None = field(default=None, compare=False)
 
 
 def read_joint(element: Element, flaws: list[Flaw], document: bytes) -> JointTag:
@@ -114,6 +116,7 @@ def read_joint(element: Element, flaws: list[Flaw], document: bytes) -> JointTag
         velocity=_strength(limit, "velocity", "speed") if has_axis else None,
         damping=_strength(dynamics, "damping", "number", may_be_negative=True),
         friction=_strength(dynamics, "friction", "number"),
+        line=element.line,
     )
 
 

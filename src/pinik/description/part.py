@@ -10,6 +10,8 @@ from ..echoes import QUOTED, shortened
 from .edits import new_value, removed
 from .flaw import Edit, Flaw
 from .numbers import FARTHEST, NumberError, Reading, read_numbers
+from .slips import meant
+from .vocabulary import SYNONYMS, URDF
 from .xml import DocumentError, Element
 
 __all__ = ["Part", "Vector", "required_name"]
@@ -108,7 +110,7 @@ class Part:
         """
         text = self.element.attributes.get(attribute)
         if text is None or not text.strip():
-            what = f"no {attribute}" if text is None else f"an empty {attribute}"
+            what = f"no {attribute}{self._instead(attribute)}" if text is None else f"an empty {attribute}"
             raise self.fault(f"<{self.element.tag}> has {what}")
         return text
 
@@ -172,6 +174,17 @@ class Part:
         cause = f'<origin {attribute}=""> is empty, which is read as "0 0 0"'
         self.misread(attribute, cause, "0 0 0", code="empty-origin")
         return _ZERO
+
+    def _instead(self, attribute: str) -> str:
+        """What stands in the place of an attribute that is missing, in words that follow its name."""
+        for name in self.element.attributes:
+            near, value = SYNONYMS.get((self.element.tag, name.casefold()), ("", ""))
+            if attribute == near:
+                return f"; {name}= is unknown to URDF, write {near}={f' with {value}' if value else ''}"
+        known = URDF[self.element.tag].attributes if self.element.tag in URDF else ()
+        unknown = (name for name in self.element.attributes if name not in known)
+        near_name = next((name for name in unknown if meant(name, known) == attribute), None)
+        return "" if near_name is None else f"; {shortened(near_name, QUOTED)}= is unknown to URDF, write {attribute}="
 
     def _quoted(self, attribute: str) -> str:
         return f'<{self.element.tag} {attribute}="{shortened(self.element.attributes[attribute], QUOTED)}">'

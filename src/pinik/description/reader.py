@@ -121,7 +121,7 @@ def _described(document: Document, source: Source) -> Description:
     colors = named_colors(robot, flaws, document.content)
     links = [read_link(element, colors, flaws, document.content) for element in robot.named("link")]
     joints = [read_joint(element, flaws, document.content) for element in robot.named("joint")]
-    root = root_link([link.name for link in links], joints)
+    root = root_link({element.attributes["name"]: element.line for element in robot.named("link")}, joints)
     joints = resolved_mimics(joints, flaws)
     flaws.extend(unknown_in_joints(robot))
     name = robot.attributes.get("name")

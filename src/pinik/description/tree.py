@@ -30,33 +30,40 @@ def check_unique(robot: Element) -> None:
             first[name] = element.line
 
 
-def root_link(links: Sequence[str], joints: Iterable[JointTag]) -> str:
+def root_link(links: Mapping[str, int], joints: Iterable[JointTag]) -> str:
     """The root: the only link without a parent.
+
+    Args:
+        links: The line of each link.
+        joints: The joints.
 
     Raises:
         DocumentError: A joint names a link that is not defined, a link has two parents, links form a cycle, or there
             are several roots.
     """
-    names = set(links)
     joint_above: dict[str, JointTag] = {}
     for joint in joints:
         for role, link in (("parent", joint.parent), ("child", joint.child)):
-            if link not in names:
-                raise DocumentError(f"its {role} link {link!r} is not defined", owner=f"joint {joint.name!r}")
+            if link not in links:
+                cause = f"its {role} link {link!r} is not defined"
+                raise DocumentError(cause, owner=f"joint {joint.name!r}", line=joint.line)
         other = joint_above.setdefault(joint.child, joint)
         if other is not joint:
             raise DocumentError(
                 f"it has two parents: joint {other.name!r} from link {other.parent!r} and "
                 f"joint {joint.name!r} from link {joint.parent!r}",
                 owner=f"link {joint.child!r}",
+                line=joint.line,
             )
     cycle = _cycle({link: joint.parent for link, joint in joint_above.items()})
     if cycle:
-        raise DocumentError(f"links form a cycle: {_listed(cycle[::-1])}", owner=f"link {cycle[0]!r}")
+        raise DocumentError(
+            f"links form a cycle: {_listed(cycle[::-1])}", owner=f"link {cycle[0]!r}", line=links[cycle[0]]
+        )
     roots = [link for link in links if link not in joint_above]
     if len(roots) > 1:
         cause = f"{len(roots)} root links, but a robot has one: {_listed(roots)}; connect them by fixed joints"
-        raise DocumentError(cause, owner="<robot>")
+        raise DocumentError(cause, owner="<robot>", line=links[roots[1]])
     return roots[0]
 
 
@@ -87,17 +94,20 @@ def resolved_mimics(joints: Sequence[JointTag], flaws: list[Flaw]) -> list[Joint
         else:
             followers[joint.name] = joint.mimic
             continue
-        flaws.append(Flaw(f"joint {joint.name!r}", cause, code="mimic-ignored", common=common))
+        flaws.append(Flaw(f"joint {joint.name!r}", cause, code="mimic-ignored", line=joint.line, common=common))
     circle = _cycle({name: mimic.leader for name, mimic in followers.items()})
     if circle:
         cause = "it mimics itself" if len(circle) == 1 else f"joints mimic in a circle: {_listed(circle)}"
-        raise DocumentError(cause, owner=f"joint {circle[0]!r}")
-    resolved = _ultimate_leaders(followers)
+        raise DocumentError(cause, owner=f"joint {circle[0]!r}", line=by_name[circle[0]].line)
+    resolved = _ultimate_leaders(followers, {joint.name: joint.line for joint in joints})
     return [replace(joint, mimic=resolved.get(joint.name)) for joint in joints]
 
 
-def _ultimate_leaders(followers: Mapping[str, Mimic]) -> dict[str, Mimic]:
-    """The mimic of every follower, composed along its chain; without recursion, as chains may be long."""
+def _ultimate_leaders(followers: Mapping[str, Mimic], lines: Mapping[str, int | None]) -> dict[str, Mimic]:
+    """The mimic of every follower, composed along its chain; without recursion, as chains may be long.
+
+    `lines` are those of the joints.
+    """
     resolved: dict[str, Mimic] = {}
     for start in followers:
         chain = []
@@ -114,7 +124,7 @@ def _ultimate_leaders(followers: Mapping[str, Mimic]) -> dict[str, Mimic]:
                     f"it mimics {mimic.leader!r} with multiplier {mimic.multiplier:g} and offset {mimic.offset:g}, "
                     f"which must be at most {FARTHEST:g}"
                 )
-                raise DocumentError(cause, owner=f"joint {name!r}")
+                raise DocumentError(cause, owner=f"joint {name!r}", line=lines[name])
             resolved[name] = mimic
     return resolved
 

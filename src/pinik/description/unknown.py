@@ -2,22 +2,24 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 from ..echoes import QUOTED, shortened
 from .edits import moved_to_child, renamed_attribute, renamed_element
 from .flaw import Edit, Flaw
-from .slips import is_sure, meant
-from .vocabulary import ASSUMED, BOUNDED_KINDS, FOREIGN, MAIN_ATTRIBUTES, PLACES, URDF, Word
+from .numbers import NumberError, read_numbers
+from .slips import is_sure, meant, rivals
+from .vocabulary import ASSUMED, BOUNDED_KINDS, FOREIGN, MAIN_ATTRIBUTES, PLACES, SYNONYMS, URDF, Word
 from .xml import Element
 
 __all__ = ["unknown_in_joints", "unknown_parts"]
 
 _WHY_KINEMATICS = "The joint or link is not where the file seems to say."
-_WHY = "What it says is lost, as readers of URDF ignore it without a word."
+_DIRECTIONS = {"x": "1 0 0", "y": "0 1 0", "z": "0 0 1", "-x": "-1 0 0", "-y": "0 -1 0", "-z": "0 0 -1"}
 _ORIGIN = "Write <origin xyz=… rpy=…> in <{}>, in metres and radians."
 _TREE = frozenset({"link", "joint"})
+_MOST_SHOWN = 4
 _MANY = _TREE | frozenset({"visual", "collision"})  # of these an element may hold several
 # What places links → what is assumed where it is not said in the way of URDF. A limit tells of its own if it has none.
 _PLACING = {"origin": ("xyz", "rpy"), "mimic": ("multiplier", "offset"), "axis": (), "parent": (), "child": ()}
@@ -33,6 +35,7 @@ class _Place:
         owner: What messages call the link or joint that it belongs to.
         document: The bytes of the document; None if nobody wants edits.
         given: The names of those of its children that URDF knows.
+        rivals: The names that several words in it seem to mean, each with these words; empty if nobody wants edits.
     """
 
     element: Element
@@ -40,6 +43,7 @@ class _Place:
     owner: str
     document: bytes | None
     given: frozenset[str]
+    rivals: Mapping[str, Sequence[str]]
 
 
 def unknown_parts(robot: Element, document: bytes) -> list[Flaw]:
@@ -126,7 +130,9 @@ def _unknown(element: Element, owner: str, document: bytes | None) -> Iterator[F
 
 def _place(element: Element, owner: str, document: bytes | None) -> _Place:
     word = URDF[element.tag]
-    return _Place(element, word, owner, document, word.children.intersection(child.tag for child in element.children))
+    given = word.children.intersection(child.tag for child in element.children)
+    several = {} if document is None else rivals(element, given - _MANY)
+    return _Place(element, word, owner, document, given, several)
 
 
 def _stray_text(place: _Place) -> Flaw:
@@ -143,21 +149,23 @@ def _unknown_attribute(place: _Place, attribute: str) -> Iterator[Flaw]:
     near = meant(attribute, word.attributes, element.attributes)
     if near is None and (child := attribute.casefold()) in word.children:
         yield _attribute_of_child(place, attribute, child)
-    elif near is None and (parents := [child for child in sorted(word.children) if _holds(child, attribute)]):
-        cause = f"{held} is unknown to URDF and ignored; URDF has {attribute!r} in <{parents[0]}>"
-        yield _flaw(place, cause, code="misplaced-attribute", mend=f"Write it as <{parents[0]} {attribute}=…>.")
+    elif near is None and (homes := _homes(place, attribute)):
+        cause = f"{held} is unknown to URDF and ignored; URDF has {attribute!r} in {' or '.join(homes)}"
+        written = " or as ".join(home.replace(">", f" {attribute}=…>") for home in homes)
+        yield _flaw(place, cause, code="misplaced-attribute", mend=f"Write it as {written}.")
     elif near is not None:
         cause = f"{held} is unknown to URDF and ignored (near: {near!r}){_loss(place, near)}"
         edits: tuple[Edit, ...] = ()
-        if place.document is not None and is_sure(attribute, word.attributes) and near not in element.attributes:
+        is_free = near not in element.attributes and near not in place.rivals
+        if place.document is not None and is_sure(attribute, word.attributes) and is_free:
             edits = renamed_attribute(place.document, element, attribute, near)
-        yield _flaw(
-            place,
-            cause,
-            code="unknown-attribute",
-            mend=f"Write {near}= instead of {shortened(attribute, QUOTED)}=.",
-            edits=edits,
-        )
+        mend = _choice(place, near) or f"Write {near}= instead of {shortened(attribute, QUOTED)}=."
+        yield _flaw(place, cause, code="unknown-attribute", mend=mend, edits=edits)
+    elif (synonym := SYNONYMS.get((tag, attribute.casefold()))) and synonym[0] not in element.attributes:
+        near, value = synonym
+        cause = f"{held} is unknown to URDF and ignored; URDF has {near!r}{_loss(place, near)}"
+        mend = f"Write {near}= instead of it{f', with {value}' if value else ''}."
+        yield _flaw(place, cause, code="unknown-attribute", mend=mend)
     elif _means_origin(place, attribute):
         cause = f"{held} is unknown to URDF and ignored; URDF has <origin xyz=… rpy=…>{_loss(place, 'origin')}"
         yield _flaw(place, cause, code="unknown-attribute", mend=_ORIGIN.format(tag))
@@ -174,11 +182,13 @@ def _attribute_of_child(place: _Place, attribute: str, child: str) -> Flaw:
     written = f"<{child} {main}=…>" if main else f"<{child} …>"
     cause = f"{attribute} is an attribute here and ignored; URDF has {written}{_loss(place, child)}"
     edits: tuple[Edit, ...] = ()
-    if place.document is not None and main and child not in place.given:
-        edits = moved_to_child(place.document, element, attribute, child, main)
     text = element.attributes[attribute]
+    is_free = child not in place.given and child not in place.rivals
+    if place.document is not None and main and is_free and _can_be(element, child, text):
+        edits = moved_to_child(place.document, element, attribute, child, main)
+    text = _DIRECTIONS.get(text.strip().casefold(), text) if child == "axis" else text
     example = f'<{child} {main}="{shortened(text, QUOTED)}"/>' if main else written
-    mend = f"Write {example} inside <{element.tag}>."
+    mend = _choice(place, child) or f"Write {example} inside <{element.tag}>."
     return _flaw(place, cause, code="misplaced-attribute", mend=mend, edits=edits)
 
 
@@ -189,10 +199,10 @@ def _unknown_child(place: _Place, child: Element) -> Iterator[Flaw]:
     if near is not None:
         cause = f"<{tag}> is unknown to URDF and ignored with all that it holds (near: <{near}>){_loss(place, near)}"
         edits: tuple[Edit, ...] = ()
-        is_free = near in _MANY or near not in place.given
+        is_free = near in _MANY or (near not in place.given and near not in place.rivals)
         if place.document is not None and is_sure(child.tag, word.children) and is_free:
             edits = renamed_element(place.document, child, near)
-        mend = f"Write <{near}> instead of <{tag}>."
+        mend = _choice(place, near) or f"Write <{near}> instead of <{tag}>."
         yield _flaw(place, cause, child, code="unknown-element", mend=mend, edits=edits)
     elif child.tag in URDF:
         homes = ", ".join(f"<{name}>" for name, known in URDF.items() if child.tag in known.children)
@@ -219,8 +229,17 @@ def _flaw(
         owner = f"<{shortened(child.tag, QUOTED)}> {shortened(child.attributes['name'], QUOTED)!r}"
     moves = place.owner.startswith(("joint", "<robot>")) if code != "unknown-name" else place.element.tag in _PLACING
     moves = moves or (child is not None and child.tag in _TREE)
-    why = _WHY_KINEMATICS if moves else _WHY
+    why = _WHY_KINEMATICS if moves else ""
     return Flaw(owner, cause, code=code, line=element.line, why=why, mend=mend, edits=edits)
+
+
+def _choice(place: _Place, near: str) -> str:
+    """What to do if several words seem to mean one name; empty if there is only one, or there may be several."""
+    words = [] if near in _MANY else place.rivals.get(near, [])
+    name = near if near in place.word.attributes else f"<{near}>"
+    more = f" and {len(words) - _MOST_SHOWN} more" if len(words) > _MOST_SHOWN else ""
+    shown = f"{' and '.join(words[:_MOST_SHOWN])}{more}"
+    return f"{shown} seem to mean {name}; write the right one as {name}, and take out the rest." if words else ""
 
 
 def _loss(place: _Place, near: str) -> str:
@@ -242,6 +261,28 @@ def _losses(place: _Place) -> str:
 
 def _means_origin(place: _Place, name: str) -> bool:
     return "origin" in place.word.children and name.casefold() in PLACES
+
+
+def _can_be(element: Element, child: str, text: str) -> bool:
+    """Whether a text can be the main attribute of a child; the axis of a joint that has none may be anything."""
+    if child != "axis" or element.attributes.get("type") in ("fixed", "floating"):
+        return True
+    try:
+        return any(read_numbers(text, (3,), "axis").values)
+    except NumberError:
+        return False
+
+
+def _homes(place: _Place, attribute: str) -> list[str]:
+    """The children that have an attribute of this name, in angle brackets, the likeliest first.
+
+    With rpy beside it, xyz is that of an origin.
+    """
+    homes = [child for child in sorted(place.word.children) if _holds(child, attribute)]
+    if "origin" in homes:
+        others = [] if "rpy" in place.element.attributes else [home for home in homes if home != "origin"]
+        homes = ["origin", *others]
+    return [f"<{home}>" for home in homes]
 
 
 def _holds(child: str, attribute: str) -> bool:

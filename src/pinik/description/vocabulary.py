@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from types import MappingProxyType
 
-__all__ = ["ASSUMED", "BOUNDED_KINDS", "FOREIGN", "MAIN_ATTRIBUTES", "PLACES", "URDF", "Word"]
+__all__ = ["ASSUMED", "BOUNDED_KINDS", "FOREIGN", "MAIN_ATTRIBUTES", "PLACES", "SYNONYMS", "URDF", "Word"]
 
 BOUNDED_KINDS = ("revolute", "prismatic")
 """The kinds of joints with a lower and an upper limit."""
@@ -89,6 +89,17 @@ MAIN_ATTRIBUTES = MappingProxyType({
     "axis": "xyz", "parent": "link", "child": "link", "mimic": "joint", "mass": "value", "color": "rgba",
 })  # fmt: skip
 """Element → the attribute that holds what people write as an attribute of its parent, as in `<joint axis="0 0 1">`."""
+
+SYNONYMS = MappingProxyType({
+    **{("mesh", name): ("filename", "") for name in ("file", "url", "uri", "src", "path", "href")},
+    **{("texture", name): ("filename", "") for name in ("file", "url", "uri", "src", "path", "href")},
+    **{(tag, name): ("link", "") for tag in ("parent", "child") for name in ("name", "body")},
+    **{(tag, "diameter"): ("radius", "half of it") for tag in ("sphere", "cylinder", "capsule")},
+    **{(tag, "height"): ("length", "") for tag in ("cylinder", "capsule")},
+    **{("box", name): ("size", "the three lengths of its edges") for name in ("length", "width", "height")},
+})  # fmt: skip
+"""(Element, what people write as its attribute) → the attribute that URDF has for it, and what to write there if
+that is not the same value."""
 
 ASSUMED = MappingProxyType({
     ("robot", "link"): "the link is missing from the robot",

@@ -69,7 +69,8 @@ def build_model(
     for joint in movable:
         if joint.kind == "planar":
             _turn_into_plane(model, joint)
-    return model, warnings + set_position_limits(model, movable)
+    warnings += set_position_limits(model, movable, description)
+    return model, tuple(flaw.of_expansion() for flaw in warnings) if description.expanded else warnings
 
 
 def _turn_into_plane(model: pinocchio.Model, joint: Joint) -> None:

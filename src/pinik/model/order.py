@@ -42,6 +42,7 @@ def leaders_first(description: Description) -> tuple[tuple[JointTag, ...], tuple
         if tag.mimic is not None:
             groups[tag.mimic.leader][tag.name] = tag.mimic
     paths = _paths(description, {name for leader, followers in groups.items() for name in (leader, *followers)})
+    lines = {tag.name: tag.line for tag in description.joints}
     later: _Later = {}
     mimics: dict[str, Mimic] = {}
     roles: dict[str, Mimic] = {}  # leader → how it follows the joint that comes first in its stead; usually itself
@@ -54,31 +55,31 @@ def leaders_first(description: Description) -> tuple[tuple[JointTag, ...], tuple
         roles[leader] = Mimic(first, 1.0 / own.multiplier, -own.offset / own.multiplier)
         mimics |= {name: mimic.after(roles[leader]) for name, mimic in group.items() if name != first}
         if first != leader:
-            warnings.append(_changed_roles(first, leader))
+            warnings.append(_changed_roles(first, leader, lines[first]))
     for leader, followers in groups.items():
         first = roles[leader].leader
         for name in (name for name in followers if name != first and name not in mimics):
             order = _with_first(first, [name], paths, later)
             if order is None:
-                warnings.append(_left_free(name, followers[name]))
+                warnings.append(_left_free(name, followers[name], lines[name]))
             else:
                 later, mimics[name] = order, followers[name].after(roles[leader])
     tags = (replace(tag, mimic=mimics.get(tag.name)) for tag in _depth_first(description, later))
     return tuple(tags), tuple(warnings)
 
 
-def _changed_roles(first: str, leader: str) -> Flaw:
+def _changed_roles(first: str, leader: str, line: int | None) -> Flaw:
     why = "Pinocchio's model needs a leader before its followers, and cannot have"
     cause = f"{why} {leader!r} before {first!r}; {leader!r} follows {first!r} instead, with the same angles"
     common = f"{why} their leader before them; the leader follows one of them instead, with the same angles"
-    return Flaw(f"joint {first!r}", cause, code="changed-roles", common=common)
+    return Flaw(f"joint {first!r}", cause, code="changed-roles", line=line, common=common)
 
 
-def _left_free(follower: str, mimic: Mimic) -> Flaw:
+def _left_free(follower: str, mimic: Mimic, line: int | None) -> Flaw:
     why = "which Pinocchio's model cannot have before it"
     end = f"and with multiplier {mimic.multiplier:g} it cannot lead; it is left free"
     cause, common = f"it mimics {mimic.leader!r}, {why}, {end}", f"it mimics a joint, {why}, {end}"
-    return Flaw(f"joint {follower!r}", cause, code="mimic-left-free", common=common)
+    return Flaw(f"joint {follower!r}", cause, code="mimic-left-free", line=line, common=common)
 
 
 def _paths(description: Description, names: Iterable[str]) -> dict[str, _Path]:

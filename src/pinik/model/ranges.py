@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 
 import numpy as np
 import pinocchio
@@ -21,7 +21,7 @@ _ONE_VALUE = 1e-9  # [rad or m]: a range this narrow holds a single value
 _FREE_TRANSLATION = {"floating": 3, "planar": 2}  # entries of q
 
 
-def set_position_limits(model: pinocchio.Model, joints: Sequence[Joint]) -> tuple[Flaw, ...]:
+def set_position_limits(model: pinocchio.Model, joints: Sequence[Joint], description: Description) -> tuple[Flaw, ...]:
     """Set `model.lowerPositionLimit` and `model.upperPositionLimit` to the limits of the robot.
 
     The limits of a joint with one entry in q are its own, cut so that its followers stay inside theirs, and infinite
@@ -33,16 +33,18 @@ def set_position_limits(model: pinocchio.Model, joints: Sequence[Joint]) -> tupl
     Args:
         model: The model; it is modified.
         joints: All joints of the model.
+        description: The checked URDF, whose lines the warnings name.
 
     Returns:
         A warning for each follower whose limits are ignored because they would stop its leader.
     """
     lower, upper = np.array(model.lowerPositionLimit), np.array(model.upperPositionLimit)
+    lines = {tag.name: tag.line for tag in description.joints}
     warnings: list[Flaw] = []
     for joint in joints:
         if joint.nq == 1:
             followers = (follower for follower in joints if follower.leader == joint.name)
-            lower[joint.idx_q], upper[joint.idx_q] = _cut_by_followers(joint, followers, warnings)
+            lower[joint.idx_q], upper[joint.idx_q] = _cut_by_followers(joint, followers, lines, warnings)
         elif joint.kind in _FREE_TRANSLATION:
             translation = slice(joint.idx_q, joint.idx_q + _FREE_TRANSLATION[joint.kind])
             lower[translation], upper[translation] = -math.inf, math.inf
@@ -79,11 +81,13 @@ def velocity_limits(names: Sequence[str], joints: Iterable[Joint], description: 
     return np.array(list(limits.values()), dtype=np.float64)
 
 
-def _cut_by_followers(joint: Joint, followers: Iterable[Joint], warnings: list[Flaw]) -> tuple[float, float]:
+def _cut_by_followers(
+    joint: Joint, followers: Iterable[Joint], lines: Mapping[str, int | None], warnings: list[Flaw]
+) -> tuple[float, float]:
     """The limits of a joint [rad or m], cut so that its followers stay inside theirs.
 
     A follower that would leave the joint no value, or a single value of a range, is ignored and named in `warnings`,
-    which is appended to.
+    which is appended to; `lines` are those of the joints.
     """
     lower, upper = joint.lower, joint.upper
     for follower in followers:
@@ -98,7 +102,9 @@ def _cut_by_followers(joint: Joint, followers: Iterable[Joint], warnings: list[F
             common = (
                 "its limits are ignored, because they would leave the joint that it mimics no room, or a single value"
             )
-            warnings.append(Flaw(f"joint {follower.name!r}", cause, code="follower-limits", common=common))
+            line = lines.get(follower.name)
+            flaw = Flaw(f"joint {follower.name!r}", cause, code="follower-limits", line=line, common=common)
+            warnings.append(flaw)
         else:
             lower, upper = low, high
     return lower + 0.0, upper + 0.0  # no −0, which a negative multiplier makes of 0

@@ -42,24 +42,24 @@ def size_flaws(robot: RobotModel, shapes: Iterable[Corners]) -> list[Flaw]:
         mend = "Check the units of the meshes and of the joints' origins; both must be metres."
         why = "The shapes cannot be seen, or the joints stand far apart."
         return [Flaw("<robot>", cause, code="shape-too-small", why=why, mend=mend)]
+    lines = {(link.name, shape.index): shape.line for link in robot.description.link_tags for shape in link.visuals}
     flaws = []
     for (link, visual), extent in extents.items():
         if extent > _TIMES * size or 0.0 < extent < size / _TINY:
-            flaws.append(_flaw(link, visual, extent, size))
+            flaws.append(_flaw(link, int(visual), lines.get((link, int(visual))), extent, size))
     return flaws
 
 
-def _flaw(link: str, visual: str, extent: float, size: float) -> Flaw:
+def _flaw(link: str, visual: int, line: int | None, extent: float, size: float) -> Flaw:
     large = extent > size
     word = "larger" if large else "smaller"
     times = extent / size if large else size / extent
     return Flaw(
-        f"link {link!r}, visual {int(visual) + 1}",
+        f"link {link!r}, visual {visual + 1}",
         f"its shape is {extent:.3g} m large, about {times:.0f} times {word} than the robot ({size:.2g} m)",
         code="shape-too-large" if large else "shape-too-small",
+        line=line,
         common=f"its shape is over {_TIMES if large else _TINY:g} times {word} than the robot",
-        why="The shape hides the robot." if large else "The shape cannot be seen.",
-        mend='If the mesh is in millimetres, write scale="0.001 0.001 0.001".' if large else "Check the mesh's scale.",
     )
 
 

@@ -308,3 +308,37 @@ def test_whatever_became_of_a_document_its_mending_ends_in_words(changes):
         return
     if not result.fault:
         read(result.document.decode())
+
+
+@pytest.mark.parametrize(
+    "origin",
+    [
+        '<OriginX/><Origin xyz="0 0 1"/>',
+        '<Origin xyz="0 0 1"/><orgin xyz="0 0 2"/>',
+        '<origin xyz="0 0 1" Rpy="0 0 1" rpyy="0 0 2"/>',
+        '<dynamics dampin="1" Damping="2"/>',
+    ],
+)
+def test_of_two_misspelt_names_for_one_thing_none_is_chosen(origin):
+    text = TREE.format(joint="", origin=origin)
+    result = mend(text)
+    assert (result.document.decode(), result.done) == (text, ())
+    slips = [one.flaw for one in result.left if one.flaw.code.startswith("unknown")]
+    assert len(slips) == 2
+    assert all("write the right one as" in flaw.mend for flaw in slips)
+
+
+def test_an_attribute_and_an_element_for_one_axis_leave_the_choice_to_the_user():
+    text = TREE.format(joint=' axis="0 1 0"', origin='<Axis xyz="0 0 1"/>')
+    result = mend(text)
+    assert (result.document.decode(), result.done) == (text, ())
+
+
+def test_two_limits_for_one_end_are_left():
+    text = TREE.format(joint="", origin="").replace('lower="-1"', 'lowr="-1" Lower="-0.5"')
+    assert mend(text).document.decode() == text
+
+
+def test_two_misspelt_elements_that_say_the_same_become_one():
+    result = mend(TREE.format(joint="", origin='<Origin xyz="1 2 3"/><orgin xyz="1 2 3"/>'))
+    assert result.document.decode() == TREE.format(joint="", origin='<origin xyz="1 2 3"/>')

@@ -11,6 +11,7 @@ import numpy as np
 import pinocchio
 from numpy.typing import NDArray
 
+from ...echoes import shortened
 from ...errors import RobotLoadError
 from ...model.joint import Joint
 from ...robot import Robot
@@ -24,6 +25,8 @@ from ..terminal.tables import emit_table
 from ..terminal.units import Units, counted
 
 __all__ = ["info"]
+
+_LONGEST_NAME = 100
 
 
 def info(
@@ -114,8 +117,8 @@ def _limits(robot: Robot, joint: Joint) -> tuple[float | None, float | None]:
 
 def _emit(robot: Robot, units: Units) -> None:
     description, model = robot.description, robot.model
-    output.emit(f"{robot.name}  {description.source}")
-    output.emit(f"root      {description.root}, {robot.root}")
+    output.emit(f"{_shown(robot.name)}  {description.source}")
+    output.emit(f"root      {_shown(description.root)}, {robot.root}")
     output.emit(
         f"size      {counted(len(robot.joint_names), 'joint')} to set, {counted(len(robot.frame_names), 'frame')}, "
         f"nq {model.nq}, nv {model.nv}"
@@ -136,18 +139,23 @@ def _emit(robot: Robot, units: Units) -> None:
 
 def _row(robot: Robot, joint: Joint, units: Units) -> tuple[str, ...]:
     if not joint.has_one_axis:
-        return joint.name, joint.kind, "", "", "", ""
+        return _shown(joint.name), joint.kind, "", "", "", ""
     lower, upper = _limits(robot, joint)
     assert lower is not None
     assert upper is not None
-    note = _following(joint) if joint.leader else ""
-    return joint.name, joint.kind, *units.show_limits(lower, upper, joint), units.of(joint), note
+    note = _following(joint, joint.leader) if joint.leader else ""
+    return _shown(joint.name), joint.kind, *units.show_limits(lower, upper, joint), units.of(joint), note
 
 
-def _following(joint: Joint) -> str:
+def _following(joint: Joint, leader: str) -> str:
     factor = "" if joint.multiplier == 1.0 else f" × {joint.multiplier:g}"
     offset = "" if joint.offset == 0.0 else f" + {joint.offset:g}"
-    return f"follows {joint.leader}{factor}{offset}"
+    return f"follows {_shown(leader)}{factor}{offset}"
+
+
+def _shown(name: str) -> str:
+    """A name for people to read; programs get the whole one in JSON."""
+    return shortened(name, _LONGEST_NAME)
 
 
 def _width() -> int:
@@ -155,5 +163,5 @@ def _width() -> int:
 
 
 def _wrapped(title: str, names: tuple[str, ...]) -> str:
-    text = f"{title:8}  " + ", ".join(names)
+    text = f"{title:8}  " + ", ".join(map(_shown, names))
     return textwrap.fill(text, _width(), subsequent_indent=" " * 10, break_long_words=False, break_on_hyphens=False)

@@ -15,7 +15,6 @@ from .plain import joint_values, named, plain_numbers
 
 __all__ = ["inertias"]
 
-_WHY = "Dynamics with this link is wrong, or fails; kinematics does not use it."
 _ROUNDING = 1e-3  # of the largest moment: files round their inertias
 _SINGULAR = 1e-12  # of the largest moment, or [m²] of the mass: no more than rounding leaves of zero
 _DENSEST = 1e5  # [kg/m³]: four times osmium
@@ -39,15 +38,12 @@ def inertias(robot: Element) -> Iterator[Flaw]:
                     code=fault.code,
                     line=line,
                     common=fault.common or fault.cause,
-                    why=_WHY,
-                    mend=fault.mend,
                 )
 
 
 class _Fault(NamedTuple):
     code: str
     cause: str
-    mend: str
     common: str = ""
 
 
@@ -57,26 +53,24 @@ def _fault(mass: float, entries: list[float], reach: float) -> _Fault | None:
         if not any(entries):
             return None
         cause = "it has an inertia, but its mass is 0"
-        return _Fault(code="massless-inertia", cause=cause, mend="Give the mass, or remove <inertial>.")
+        return _Fault(code="massless-inertia", cause=cause)
     ixx, ixy, ixz, iyy, iyz, izz = entries
     with np.errstate(all="ignore"):
         least, middle, most = np.linalg.eigvalsh([[ixx, ixy, ixz], [ixy, iyy, iyz], [ixz, iyz, izz]]).tolist()
     if not math.isfinite(most):
         return None
     shown = f"{least:.3g}, {middle:.3g} and {most:.3g} kg m²"
-    compute = "Compute the inertia about the centre of mass again."
     zero = _SINGULAR * max(mass, most)
     if least < -max(_ROUNDING * most, zero):
         common = "its inertia is not positive definite"
         cause = f"{common}: its principal moments are {shown}"
-        return _Fault(code="inertia-not-positive", cause=cause, mend=compute, common=common)
+        return _Fault(code="inertia-not-positive", cause=cause, common=common)
     if middle <= zero:
-        mend = "Give the inertia about the centre of mass, if dynamics is wanted."
         cause = "at least two of its principal moments of inertia are 0, though its mass is not"
-        return _Fault(code="inertia-singular", cause=cause, mend=mend)
+        return _Fault(code="inertia-singular", cause=cause)
     if most - (least + middle) > _ROUNDING * most:
         common = "its inertia is that of no body, as one principal moment is larger than the sum of the others"
-        return _Fault(code="inertia-triangle", cause=f"{common}: {shown}", mend=compute, common=common)
+        return _Fault(code="inertia-triangle", cause=f"{common}: {shown}", common=common)
     with np.errstate(all="ignore"):  # a file may have any numbers, which overflow or underflow here
         radius = np.sqrt((least + middle + most) / np.float64(2.0 * mass))  # of gyration [m]
         # The solid ball of the same mass and the same sum of moments.
@@ -84,11 +78,11 @@ def _fault(mass: float, entries: list[float], reach: float) -> _Fault | None:
     if density > _DENSEST:
         common = f"its mass and inertia are those of a body of over {_DENSEST:g} kg/m³; osmium has 22,590"
         cause = f"its mass of {mass:g} kg and its inertia are those of a body of {density:.2g} kg/m³; osmium has 22,590"
-        return _Fault(code="density", cause=cause, mend="Check the units: kg and kg m².", common=common)
+        return _Fault(code="density", cause=cause, common=common)
     if reach and radius > _FARTHER * reach:
         common = f"its mass and inertia are those of a body over {_FARTHER:g} times as large as the whole robot"
         cause = f"its mass of {mass:g} kg and its inertia are those of a body of about {2.0 * radius:.2g} m"
-        return _Fault(code="density", cause=cause, mend="Check the units: kg and kg m².", common=common)
+        return _Fault(code="density", cause=cause, common=common)
     return None
 
 

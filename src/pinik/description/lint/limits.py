@@ -8,7 +8,7 @@ from ..flaw import Flaw
 from ..joints import JointTag, Mimic
 from ..vocabulary import BOUNDED_KINDS, URDF
 from ..xml import Element
-from .plain import JointValues, joint_values, named
+from .plain import JointValues, joint_values, named, plain_numbers
 
 __all__ = ["followers", "limits"]
 
@@ -19,6 +19,7 @@ _ONE_VALUE = 1e-9  # [rad or m]: a range this narrow holds a single value
 def limits(robot: Element) -> Iterator[Flaw]:
     """The flaws of the limits of single joints."""
     for joint in joint_values(robot):
+        yield from _soft_limits(joint)
         lower, upper = joint.lower, joint.upper
         if joint.kind not in BOUNDED_KINDS or lower is None or upper is None or lower > upper:
             continue
@@ -29,8 +30,6 @@ def limits(robot: Element) -> Iterator[Flaw]:
                 code="no-travel",
                 line=joint.line,
                 common="its lower and its upper limit are the same, so that it cannot move",
-                why="Solves that need the joint miss their targets.",
-                mend='Give its limits, or write type="fixed".',
             )
         elif lower < upper and not lower <= 0.0 <= upper:
             yield Flaw(
@@ -39,8 +38,23 @@ def limits(robot: Element) -> Iterator[Flaw]:
                 code="zero-outside-limits",
                 line=joint.line,
                 common="0 lies outside its limits",
-                why="The neutral configuration breaks the limits; solves start from the nearest one inside.",
-                mend="Nothing, if this is meant; give a start (q0) where it matters.",
+            )
+
+
+def _soft_limits(joint: JointValues) -> Iterator[Flaw]:
+    """Soft limits of which the lower one is above the upper one; one that is missing is 0."""
+    for controller in joint.element.named("safety_controller"):
+        ends = [
+            plain_numbers(controller.attributes.get(name, "0")) for name in ("soft_lower_limit", "soft_upper_limit")
+        ]
+        lower, upper = (end[0] if end is not None and len(end) == 1 else None for end in ends)
+        if lower is not None and upper is not None and lower > upper:
+            yield Flaw(
+                joint.owner,
+                f"its soft lower limit {lower:g} is above its soft upper limit {upper:g}",
+                code="soft-limits",
+                line=controller.line,
+                common="its soft lower limit is above its soft upper limit",
             )
 
 
@@ -78,8 +92,6 @@ def followers(joints: Sequence[JointTag], robot: Element) -> Iterator[Flaw]:
                 code="follower-narrows",
                 line=element.line,
                 common="its own limits leave the joint that it follows only a part of its range",
-                why="pinik keeps followers inside their limits, and other programs do not.",
-                mend="Give leader and follower limits that fit the multiplier and the offset.",
             )
 
 

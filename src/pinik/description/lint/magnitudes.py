@@ -58,7 +58,6 @@ def _degrees_in_limits(joints: list[JointValues]) -> Iterator[Flaw]:
             code="limit-in-degrees",
             line=joint.line,
             common=f"its limits are many turns, and look like degrees{compared}",
-            why="The joint is as good as unlimited: solutions may wind it up by whole turns.",
             mend=f'If degrees are meant, write lower="{math.radians(lower):.6g}" upper="{math.radians(upper):.6g}".',
         )
 
@@ -73,7 +72,6 @@ def _origin(origin: Element, owner: str, typical: float | None) -> Iterator[Flaw
             code="rpy-in-degrees",
             line=origin.line,
             common="rpy goes beyond a full turn in radians, and looks like degrees",
-            why="The orientation is another one than the file seems to say.",
             mend=f'If degrees are meant, write rpy="{shown}".',
         )
     xyz = plain_vector(origin, "xyz")
@@ -89,7 +87,6 @@ def _origin(origin: Element, owner: str, typical: float | None) -> Iterator[Flaw
             code="origin-in-millimetres",
             line=origin.line,
             common="its origin is over 100 times as long as the joints' usual ones, and looks like millimetres",
-            why="It stands far from the rest of the robot.",
             mend=f'If millimetres are meant, write xyz="{shown}".',
         )
 
@@ -108,7 +105,6 @@ def _millimetres_in_limit(joint: JointValues, typical: float) -> Iterator[Flaw]:
         code="limit-in-millimetres",
         line=joint.line,
         common="its limits are a travel of over 100 times the length of other parts, and look like millimetres",
-        why="The joint can slide far out of the robot.",
         mend=f'If millimetres are meant, write lower="{joint.lower / 1000.0:.6g}" upper="{joint.upper / 1000.0:.6g}".',
     )
 

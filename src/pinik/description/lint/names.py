@@ -27,8 +27,6 @@ def similar_names(robot: Element) -> Iterator[Flaw]:
                     code="similar-names",
                     line=element.line,
                     common=f"its name differs from that of another {tag} only in upper and lower case",
-                    why="The two are easily confused, and some programs take them for one.",
-                    mend="Rename one of them, and all that refers to it.",
                 )
 
 
@@ -48,8 +46,6 @@ def materials(robot: Element, document: bytes) -> Iterator[Flaw]:
                 code="material-twice",
                 line=material.line,
                 common="it is defined before with another colour",
-                why="Programs differ in which of the two colours they take.",
-                mend="Give the materials different names.",
             )
     folded: dict[str, list[str]] = {}
     for name in defined:
@@ -62,7 +58,7 @@ def materials(robot: Element, document: bytes) -> Iterator[Flaw]:
 
 def _undefined(link: Element, material: Element, near: list[str], document: bytes) -> Flaw:
     edits: tuple[Edit, ...] = ()
-    mend = "Define it, with a <color>, below <robot>."
+    mend = ""
     if len(near) == 1:
         place = start_tag(document, material).attributes["name"].value
         edits = (Edit(*place, escaped(near[0])),)
@@ -73,7 +69,6 @@ def _undefined(link: Element, material: Element, near: list[str], document: byte
         code="undefined-material",
         line=material.line,
         common="the material of its shape is defined nowhere; the shape has no colour",
-        why="The shape is drawn grey.",
         mend=mend,
         edits=edits,
     )
