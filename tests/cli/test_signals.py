@@ -29,9 +29,9 @@ sys.meta_path.insert(0, Telling())
 """
 # Whatever the tests' own parent made of the signals.
 USUAL = """
-import os, signal, sys
-signal.signal(signal.SIGINT, signal.SIG_DFL)
-signal.signal(signal.SIGTERM, signal.SIG_DFL)
+import _signal, os, sys
+_signal.signal(_signal.SIGINT, _signal.SIG_DFL)
+_signal.signal(_signal.SIGTERM, _signal.SIG_DFL)
 os.execv(sys.executable, [sys.executable, *sys.argv[1:]])
 """
 OLD = "whole and old\n"
