@@ -16,7 +16,7 @@ from ...description.packages import Found
 from ...echoes import shortened
 from ...errors import RobotLoadError, UnknownNameError
 from ...extras import needed_by
-from ...loading import Fetched, Located, fetch, locate
+from ...loading import Fetched, Located, fetch, locate, srdf_of
 from ...robot import Robot
 from ...shapes.mesh_checks import UNDRAWN
 from ..inputs.files import STDIN
@@ -143,7 +143,8 @@ def inspect(
         folders = (*(folder.expanduser() for folder in package_dirs), *located.package_dirs)
         fetched = fetch(located, package_dirs=folders, xacro_args=xacro_args)
         description = fetched.read()
-        robot = Robot(description, package_dirs=folders, allow_outside=allow_outside)
+        srdf = srdf_of(located, description)
+        robot = Robot(description, package_dirs=folders, srdf=srdf, allow_outside=allow_outside)
     except RobotLoadError as error:
         label, path = (STDIN, None) if isinstance(source, bytes) else (error.source, Path(error.source))
         faults = (Fault(error.element, error.cause),)
@@ -157,6 +158,7 @@ def inspect(
     about = [*found, *about_shapes, *collisions]
     if description.expanded:
         about = [flaw.of_expansion() for flaw in about]
+    about += _about_poses(robot)
     return Inspection(
         file=STDIN if isinstance(source, bytes) else str(located.source),
         path=located.source if isinstance(located.source, Path) else None,
@@ -209,6 +211,15 @@ def _shapes(robot: Robot) -> tuple[int, list[Flaw]]:
             logging.disable(logging.NOTSET)
     corners = ((shape.link, shape.name, shape.mesh.vertices) for shape in shapes)
     return len(shapes), [*flaws, *size_flaws(robot, corners)]
+
+
+def _about_poses(robot: Robot) -> list[Flaw]:
+    """A flaw for each pose of the SRDF that is left out, or the one for which none of them can be read."""
+    try:
+        return list(robot.srdf_poses.left_out.values())
+    except RobotLoadError as error:
+        cause = f"{error.cause}; no pose can be read from {Path(error.source).name}"
+        return [Flaw(error.element or "<srdf>", cause, code="bad-srdf")]
 
 
 def _missing_collisions(robot: Robot, known: set[str | None]) -> list[Flaw]:
