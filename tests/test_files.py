@@ -63,6 +63,18 @@ def test_a_pipe_gets_the_content_and_stays_a_pipe(tmp_path):
     assert (got, stat.S_ISFIFO(pipe.stat().st_mode)) == ([NEW], True)
 
 
+@pytest.mark.skipif(not os.path.exists("/dev/fd"), reason="needs /dev/fd")
+def test_an_open_pipe_is_written_through_its_link():
+    reading, writing = os.pipe()
+    try:
+        check_writable(Path(f"/dev/fd/{writing}"))
+        write_whole(f"/dev/fd/{writing}", OLD)
+        assert os.read(reading, 1000) == OLD
+    finally:
+        os.close(reading)
+        os.close(writing)
+
+
 @pytest.mark.skipif(not os.path.exists("/dev/full"), reason="needs /dev/full")
 def test_a_device_is_written_directly_and_its_error_is_raised():
     write_whole(os.devnull, NEW)

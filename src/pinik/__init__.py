@@ -4,7 +4,7 @@ Where are its frames (`Robot.placement`, `Robot.jacobian`), and which joint valu
 (`Robot.solve`, `solve`, `iterate`).
 """
 
-from . import interrupts as interrupts  # before the others, whose loading takes most of a short command's time
+from . import early_signals as early_signals  # before the others, whose loading takes most of a short command's time
 
 # isort: split
 from .closed_form.robot_bones import TwoBone, TwoBoneConfigurations

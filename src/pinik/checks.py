@@ -90,7 +90,10 @@ def as_plain(value: Any, what: str) -> Any:
             raise InputError(f"must have no masked entries; got {value!r}", argument=what)
         return value.data
     if isinstance(value, (memoryview, bytearray)):
-        own = memoryview(value)
+        try:
+            own = memoryview(value)
+        except ValueError:
+            raise InputError("must be numbers; got a memoryview that is released", argument=what) from None
         if own.format not in _NUMBERS_IN_MEMORY:
             raise InputError(f"must be numbers; got a {type(value).__name__} of format {own.format!r}", argument=what)
         return np.asarray(own)
@@ -179,7 +182,7 @@ def as_point(value: ArrayLike, what: str) -> Array:
 
 def as_names(value: Iterable[str], what: str) -> tuple[str, ...]:
     """`value` as a tuple; InputError for a single string and for anything that is not iterable."""
-    if isinstance(value, str) or not isinstance(value, Iterable):
+    if isinstance(value, (str, memoryview)) or not isinstance(value, Iterable):
         raise InputError(f"must be a list of joint names; got {value!r}", argument=what)
     return tuple(value)
 

@@ -73,7 +73,7 @@ def check_writable(path: Path) -> None:
     if not target.parent.is_dir():
         raise FileNotFoundError(errno.ENOENT, "no such folder", str(path))
     place = target if _is_special(target) else target.parent
-    if not os.access(place, os.W_OK) or (target.exists() and not os.access(target, os.W_OK)):
+    if not _may_write(place) or (target.exists() and not _may_write(target)):
         raise PermissionError(errno.EACCES, "no permission to write it", str(path))
 
 
@@ -96,7 +96,7 @@ def write_whole(path: str | os.PathLike[str], content: bytes) -> None:
     if target.is_dir():
         raise IsADirectoryError(errno.EISDIR, os.strerror(errno.EISDIR), str(path))
     mode = stat.S_IMODE(target.stat().st_mode) if target.exists() else None
-    if mode is not None and not os.access(target, os.W_OK):
+    if mode is not None and not _may_write(target):
         raise PermissionError(errno.EACCES, os.strerror(errno.EACCES), str(path))
     unfinished = target.with_name(f".{os.urandom(8).hex()}.unfinished")
     try:
@@ -113,13 +113,19 @@ def write_whole(path: str | os.PathLike[str], content: bytes) -> None:
         raise
 
 
+def _may_write(path: Path) -> bool:
+    """Whether this process may write here as the user it acts as, which in a setuid program is not the real one."""
+    return os.access(path, os.W_OK, effective_ids=os.access in os.supports_effective_ids)
+
+
 def _target(path: Path) -> Path:
     """The file itself, where the path is a link to it."""
     if not path.is_symlink():
         return path
     with contextlib.suppress(FileNotFoundError):  # a link to a file that is still to be made
         path.stat()  # a link to itself is an OSError
-    return path.resolve()
+    # The link of an open pipe, such as /dev/fd/63 of ">(gzip)", leads to a name that is in no folder.
+    return path if _is_special(path) else path.resolve()
 
 
 def _is_special(path: Path) -> bool:

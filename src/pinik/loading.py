@@ -17,7 +17,7 @@ from .echoes import bounded
 from .errors import InputError, RobotLoadError, UnknownNameError, UrdfWarning
 from .robot import Robot
 
-__all__ = ["load", "load_in_silence", "locate"]
+__all__ = ["load", "load_in_silence", "locate", "srdf_of"]
 
 _MOST_LISTED = 12
 
@@ -41,7 +41,7 @@ def load(
         root: How the root link is attached to the world: "fixed", "free_flyer" or "planar".
         package_dirs: Folders that are searched first for `package://` addresses of meshes.
         mimic: Whether mimic joints follow their leaders; with False they are all free.
-        strict: Whether every warning is an error.
+        strict: Whether every warning is an error, also those of `Robot.poses`.
         xacro_args: The arguments of a xacro file by name, such as {"ur_type": "ur10e"}. xacro evaluates expressions and
             opens other files, so load only xacro files that you trust.
         allow_outside: Whether the URDF may open meshes outside its own folder, its packages and `package_dirs`.
@@ -98,8 +98,9 @@ def load_in_silence(
         root=root,
         package_dirs=homes,
         mimic=mimic,
-        srdf=located.srdf or _beside(description),
+        srdf=srdf_of(located, description),
         allow_outside=allow_outside,
+        strict=strict,
     )
     robot.warnings += tuple(_unfound(robot))
     if strict and robot.warnings:
@@ -115,8 +116,10 @@ def _listed(flaws: Sequence[str]) -> str:
     return f"with strict=True, {count}: {'; '.join(sorts[:_MOST_LISTED])}{more}"
 
 
-def _beside(description: urdf.Description) -> Path | None:
-    """The SRDF file of the same name in the same folder, if there is one."""
+def srdf_of(located: Located, description: urdf.Description) -> Path | None:
+    """The SRDF file that the catalogue has, else the one of the same name in the same folder, if there is one."""
+    if located.srdf is not None:
+        return located.srdf
     path = description.path
     srdf = path.with_suffix(".srdf") if path and path.name else None
     return srdf if srdf and os.path.isfile(srdf) else None

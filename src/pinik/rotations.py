@@ -62,9 +62,8 @@ def as_rotations(values: ArrayLike, what: str, indices: NDArray[np.int64] | None
         indices: Their indices in messages (n,), if they are some of many; 0, 1, … when None.
     """
     matrices = as_many(values, (3, 3), what)
-    a, b, c = np.ascontiguousarray(
-        matrices.transpose(1, 2, 0)
-    )  # the rows of all matrices: much faster than N small products
+    # The rows of all matrices: sums over them are much faster than N small products.
+    a, b, c = np.ascontiguousarray(matrices.transpose(1, 2, 0))
     with np.errstate(over="ignore", invalid="ignore"):
         off = np.zeros(len(matrices))
         for one, other, product in ((a, a, 1.0), (b, b, 1.0), (c, c, 1.0), (a, b, 0.0), (a, c, 0.0), (b, c, 0.0)):

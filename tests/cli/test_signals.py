@@ -29,9 +29,9 @@ sys.meta_path.insert(0, Telling())
 """
 # Whatever the tests' own parent made of the signals.
 USUAL = """
-import os, signal, sys
-signal.signal(signal.SIGINT, signal.SIG_DFL)
-signal.signal(signal.SIGTERM, signal.SIG_DFL)
+import _signal, os, sys
+_signal.signal(_signal.SIGINT, _signal.SIG_DFL)
+_signal.signal(_signal.SIGTERM, _signal.SIG_DFL)
 os.execv(sys.executable, [sys.executable, *sys.argv[1:]])
 """
 OLD = "whole and old\n"
@@ -79,7 +79,7 @@ SIGNALS = {signal.SIGINT: (130, b"interrupted\n"), signal.SIGTERM: (143, b"termi
 
 
 @pytest.mark.parametrize("number", SIGNALS)
-@pytest.mark.parametrize("before", ["pinik.errors", "typer", "pinik.cli.commands.track"])
+@pytest.mark.parametrize("before", ["signal", "pinik.interrupts", "pinik.errors", "typer", "pinik.cli.commands.track"])
 def test_a_signal_while_modules_load_is_one_word_and_its_status(started, number, before):
     process = started("robots", before=before, wait=True)
     process.send_signal(number)
@@ -87,10 +87,11 @@ def test_a_signal_while_modules_load_is_one_word_and_its_status(started, number,
     assert (process.returncode, out, err) == (SIGNALS[number][0], b"", SIGNALS[number][1])
 
 
-def test_the_installed_script_is_the_command_too(started, tmp_path):
+@pytest.mark.parametrize("before", ["signal", "threading", "typing", "pinik.errors"])
+def test_the_installed_script_is_the_command_too(started, tmp_path, before):
     (tmp_path / "bin").mkdir()
     (tmp_path / "bin" / "pinik").write_text("import sys\nfrom pinik.cli import main\nsys.exit(main())\n")
-    process = started("robots", how=(str(tmp_path / "bin" / "pinik"),), before="pinik.errors", wait=True)
+    process = started("robots", how=(str(tmp_path / "bin" / "pinik"),), before=before, wait=True)
     process.send_signal(signal.SIGINT)
     assert process.communicate(timeout=30) == (b"", b"interrupted\n")
     assert process.returncode == 130

@@ -9,7 +9,7 @@ import pytest
 
 import pinik
 from pinik.description import reader as urdf
-from urdf_texts import link, robot
+from urdf_texts import joint, link, robot
 
 MESH = '<mesh filename="m.stl"{}/>'
 
@@ -103,3 +103,19 @@ def test_a_whole_humanoid_of_bad_shapes_warns_once_with_a_count():
     assert "and 34 more, 40 times: a shape that cannot be read is left out" in words
     assert 'the first: <box size="0 0 0">: sizes must be positive; the shape is left out' in words
     assert len(loaded.warnings) == 40
+
+
+@pytest.mark.parametrize(
+    "geometry",
+    ['<mesh filename="${d}/a.stl"/>', '<mesh filename="$(find p"/>', '<box size="${a} 1 1"/>'],
+)
+def test_a_xacro_expression_in_a_shape_leaves_out_the_shape_and_one_in_a_joint_is_an_error(geometry):
+    shape = f"<visual><geometry>{geometry}</geometry></visual>"
+    description = urdf.read(robot(link("a", shape), link("b"), joint("j", "a", "b", '<origin xyz="0 0 0.25"/>')))
+    (flaw,) = description.warnings
+    assert (flaw.code, flaw.element) == ("dropped-shape", "link 'a', visual")
+    assert "is a xacro expression" in flaw
+    assert [tag.visuals for tag in description.link_tags] == [(), ()]
+    for part in ('<origin xyz="0 0 ${z}"/>', '<axis xyz="${z} 0 1"/>', '<mimic joint="$(arg j)"/>'):
+        with pytest.raises(pinik.RobotLoadError, match="is a xacro expression: this is an unexpanded xacro file"):
+            urdf.read(robot(link("a", shape), link("b"), joint("j", "a", "b", part)))

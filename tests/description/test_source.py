@@ -53,6 +53,13 @@ def test_a_path_is_one_in_any_form(path, make):
     assert loads_as_a_file_does(pinik.load(make(path)), path)
 
 
+def test_bytes_that_are_released_are_refused_in_words():
+    view = memoryview(b"<robot/>")
+    view.release()
+    with pytest.raises(pinik.InputError, match="in a memoryview that is released"):
+        pinik.load(view)
+
+
 @pytest.mark.parametrize("make", [str, str.encode, bytearray, memoryview, io.StringIO, io.BytesIO])
 def test_text_and_bytes_are_read_without_a_file(make):
     text = robot(link("é"))

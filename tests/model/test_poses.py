@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import math
+import pickle
 import re
+from pathlib import Path
 
 import pytest
 
@@ -27,14 +29,14 @@ ROBOT = robot(
 def posed(tmp_path):
     """Loads the robot beside an SRDF with one pose."""
 
-    def load(*settings: tuple[str, str], pose: str = "home") -> pinik.Robot:
+    def load(*settings: tuple[str, str], pose: str = "home", strict: bool = True) -> pinik.Robot:
         joints = "".join(f'<joint name="{name}" value="{value}"/>' for name, value in settings)
         (tmp_path / "r.urdf").write_text(ROBOT)
         (tmp_path / "r.srdf").write_text(
             f'<robot name="r"><group_state name="calm" group="g"/>\n<group_state name="{pose}" group="g">{joints}'
             "</group_state></robot>"
         )
-        return pinik.load(tmp_path / "r.urdf", strict=True)
+        return pinik.load(tmp_path / "r.urdf", strict=strict)
 
     return load
 
@@ -56,11 +58,53 @@ def test_what_is_no_number_is_an_error_that_names_pose_and_joint(posed, name, va
     [("hinge", "99", "-1..1"), ("hinge", "-1.002", "-1..1"), ("slide", "6.3", "0..2"), ("wrist", "0.5", "2..6")],
 )
 def test_a_pose_with_a_number_outside_the_limits_is_left_out_with_a_warning_that_names_them(posed, name, value, range_):
-    loaded = posed((name, value))
-    words = rf"r: pose 'home' is left out: joint '{name}': .* limits {range_}; got {value} \(line 2 of r\.srdf\)"
-    with pytest.warns(pinik.UrdfWarning, match=words):
+    loaded = posed((name, value), strict=False)
+    cause = rf"limits {range_}; got {value} \(line 2 of r\.srdf\); the pose is left out"
+    with pytest.warns(pinik.UrdfWarning, match=rf"^r: pose 'home', joint '{name}': .* {cause}$") as said:
         assert list(loaded.poses) == ["calm"]
-    assert pinik.draw(loaded, size=(40, 30)).size == (40, 30)  # in silence
+    assert [Path(warning.filename).name for warning in said] == ["test_poses.py"]
+    with pytest.raises(KeyError, match=rf"no pose 'home'.*joint '{name}': .* {cause}") as caught:
+        _ = loaded.poses["home"]  # in silence, as it was said
+    assert isinstance(caught.value, pinik.UnknownNameError)
+    assert pinik.draw(loaded, size=(40, 30)).size == (40, 30)
+
+
+def test_with_strict_a_pose_outside_the_limits_is_an_error_whenever_the_poses_are_asked_for(posed):
+    loaded = posed(("hinge", "99"))
+    for strict in (loaded, loaded.with_root("planar"), pickle.loads(pickle.dumps(loaded))):
+        for _ in range(2):
+            with pytest.raises(
+                pinik.RobotLoadError, match=r"r\.srdf: pose 'home', joint 'hinge': .*; got 99"
+            ) as caught:
+                _ = strict.poses
+            assert caught.value.element == "pose 'home', joint 'hinge'"
+    assert loaded.solve("b", rpy=[0, 0, 0.5]).success
+
+
+ROUNDED = "0.7071 0 0 0.7071"  # whose square is 0.99998
+
+
+@pytest.mark.parametrize(
+    ("kind", "value", "words"),
+    [
+        ("floating", "0 0 0 0 0 0 0", "the quaternion xyzw must be of unit length; got 0 0 0 0"),
+        ("floating", "0 0 0 0 0 0 1e-200", "the quaternion xyzw must be of unit length; got 0 0 0 1e-200"),
+        ("floating", "0 0 0 0 0 0 2", "the quaternion xyzw must be of unit length; got 0 0 0 2"),
+        ("planar", "0 0 0 0", r"\(cos, sin\) must be of unit length; got 0 0"),
+        ("planar", "0 0 3 4", r"\(cos, sin\) must be of unit length; got 3 4"),
+        ("floating", f"0 0 1 {ROUNDED}", None),
+    ],
+)
+def test_a_quaternion_is_of_unit_length_up_to_rounding_or_refused(tmp_path, kind, value, words):
+    text = robot(link("a"), link("b"), joint("base", "a", "b", axis(0, 0, 1), kind=kind, limit=""))
+    (tmp_path / "r.urdf").write_text(text)
+    (tmp_path / "r.srdf").write_text(f'<robot name="r">{state("g", base=value)}</robot>')
+    loaded = pinik.load(tmp_path / "r.urdf")
+    if words is None:
+        assert loaded.poses["home"] == pytest.approx([0, 0, 1, math.sqrt(0.5), 0, 0, math.sqrt(0.5)], abs=1e-15)
+        return
+    with pytest.raises(pinik.RobotLoadError, match=rf"pose 'home', joint 'base': {words} \(line 1\)"):
+        _ = loaded.poses
 
 
 @pytest.mark.parametrize(
@@ -162,7 +206,7 @@ def test_the_catalogue_s_poses_are_inside_the_limits(name):
 
 @pytest.mark.parametrize("name", sorted(BENT_TOO_FAR))
 def test_the_catalogue_s_poses_beyond_the_file_s_own_limits_are_left_out_by_name(name):
-    with pytest.warns(pinik.UrdfWarning, match=r"pose 'half_sitting' is left out: joint '.LEG_.* within its limits"):
+    with pytest.warns(pinik.UrdfWarning, match=r"pose 'half_sitting', joint '.LEG_.* within its limits"):
         assert "half_sitting" not in load_quietly(name).poses
 
 

@@ -86,6 +86,14 @@ def test_starts_and_configurations_of_any_form_are_the_same(form, panda):
 
 
 HALF = np.array([0.5, 0.25, 0.125])
+
+
+def released(array):
+    view = memoryview(array)
+    view.release()
+    return view
+
+
 BAD = {
     "a masked entry": (lambda a: masked(a, (0,) * a.ndim), "must have no masked entries"),
     "all masked": (lambda a: np.ma.masked_all(a.shape), "must have no masked entries"),
@@ -94,6 +102,7 @@ BAD = {
     "bytes": (lambda a: bytes(a.size), "must be"),
     "a bytearray": (lambda a: bytearray(a.size), "must be"),
     "a memoryview of bytes": (lambda a: memoryview(bytes(a.size)), "must be"),
+    "a released memoryview": (released, "must"),
     "characters": (lambda a: a.astype(str), "must be"),
     "booleans": (lambda a: a.astype(bool), "must be"),
     "booleans in lists": (lambda a: a.astype(bool).tolist(), "must be"),
@@ -166,3 +175,9 @@ def test_starts_from_which_no_step_can_be_seen_are_refused(panda):
     ):
         with pytest.raises(pinik.InputError, match="q0 must be within ±1e\\+09 rad or m"):
             refuses([1e300, *panda.neutral()[1:]])
+
+
+@pytest.mark.parametrize("option", ["locked", "time_limit", "seed", "max_iterations"])
+def test_a_released_memoryview_is_no_option(panda, option):
+    with pytest.raises(pinik.InputError, match=f"{option} must be"):
+        panda.solve(TIP, position=HALF, **{option: released(HALF)})

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from pathlib import PurePosixPath
 from urllib.parse import unquote
 
-__all__ = ["Address", "UnusableAddressError", "read_address", "uses_find"]
+__all__ = ["Address", "UnusableAddressError", "is_expression", "read_address"]
 
 LONGEST = 4096  # characters; no file name of Linux or macOS is longer
 _FIND = re.compile(r"^(?:file:(?://)?|package://)?\$\(\s*find(?:-pkg-share)?\s+([^\s()$]+)\s*\)/*")
@@ -79,7 +79,15 @@ def read_address(text: str) -> Address:
             return Address(None, _spellings(text))
 
 
-def uses_find(text: str) -> bool:
+def is_expression(attribute: str, text: str) -> bool:
+    """Whether an attribute holds an expression that xacro would replace.
+
+    "$(find package)/mesh.stl" has one meaning, and files that were expanded by hand still have it.
+    """
+    return "${" in text or ("$(" in text and not (attribute == "filename" and _uses_find(text)))
+
+
+def _uses_find(text: str) -> bool:
     """Whether an address begins with "$(find package)", and holds no other expression."""
     found = _FIND.match(text.strip())
     return found is not None and "$" not in text.strip()[found.end() :]

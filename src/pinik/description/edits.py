@@ -138,7 +138,7 @@ def renamed_attribute(document: bytes, element: Element, attribute: str, name: s
 
 
 def new_value(document: bytes, element: Element, attribute: str, value: str) -> tuple[Edit, ...]:
-    """The edit that gives an attribute another value; none if it is not found, as in an empty document."""
+    """The edit that gives an attribute another value; none if the document, which may be empty, does not hold it."""
     try:
         place = start_tag(document, element).attributes.get(attribute)
     except ValueError:
@@ -147,7 +147,7 @@ def new_value(document: bytes, element: Element, attribute: str, value: str) -> 
 
 
 def new_attribute(document: bytes, element: Element, attribute: str, value: str) -> tuple[Edit, ...]:
-    """The edit that gives an element an attribute that it does not have; none if the element is not found."""
+    """The edit that adds an attribute to an element; none if the document, which may be empty, does not hold it."""
     try:
         _, end = start_tag(document, element).name
     except ValueError:
@@ -156,7 +156,7 @@ def new_attribute(document: bytes, element: Element, attribute: str, value: str)
 
 
 def removed(document: bytes, element: Element) -> tuple[Edit, ...]:
-    """The edit that takes an element out; none if it is not found, as in an empty document."""
+    """The edit that takes an element out; none if the document, which may be empty, does not hold it."""
     try:
         start, _, end = whole_element(document, element)
     except ValueError:

@@ -7,12 +7,13 @@ shapes, so that Pinocchio reads exactly that.
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
 
 from ..echoes import QUOTED, shortened
 from ..errors import RobotLoadError
-from .addresses import uses_find
+from .addresses import is_expression
 from .document import Document, read_document
 from .edits import new_attribute
 from .flaw import Flaw
@@ -159,15 +160,22 @@ def _check_root(robot: Element) -> None:
         if element.tag.startswith("xacro:"):
             raise DocumentError(f"this is {XACRO_HELP}", owner=f"<{element.tag}>", line=element.line)
     for part in [*robot.named("link"), *robot.named("joint")]:
-        for element in part.walk():
+        for element in _outside_shapes(part):
             for attribute, text in element.attributes.items():
-                # "$(find package)/mesh.stl" has one meaning, and files that were expanded by hand still have it.
-                if "${" in text or ("$(" in text and not (attribute == "filename" and uses_find(text))):
+                if is_expression(attribute, text):
                     raise DocumentError(
                         f'{attribute}="{shortened(text, QUOTED)}" is a xacro expression: this is {XACRO_HELP}',
                         owner=f"<{element.tag}>",
                         line=element.line,
                     )
+
+
+def _outside_shapes(part: Element) -> Iterator[Element]:
+    """The elements of a link or joint on which kinematics may depend."""
+    yield part
+    for child in part.children:
+        if child.tag not in ("visual", "collision"):
+            yield from child.walk()
 
 
 def _check_size(robot: Element) -> None:

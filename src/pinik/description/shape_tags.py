@@ -6,6 +6,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import partial
 
+from ..echoes import QUOTED, shortened
+from .addresses import is_expression
 from .materials import Color, color_of
 from .numbers import FARTHEST, Reading
 from .part import Part, Vector
@@ -73,6 +75,10 @@ def read_shapes(link: Part, tag: str, colors: Mapping[str, Color]) -> tuple[Shap
 
 
 def _read_shape(part: Part, index: int, colors: Mapping[str, Color]) -> ShapeTag:
+    for element in part.element.walk():
+        for attribute, text in element.attributes.items():
+            if is_expression(attribute, text):
+                raise part.fault(f'<{element.tag} {attribute}="{shortened(text, QUOTED)}"> is a xacro expression')
     xyz, rpy = part.origin()
     geometry = part.only("geometry")
     solid = geometry.of(geometry.element.children[0]) if geometry and geometry.element.children else None

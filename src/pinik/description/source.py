@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import IO, Any
 
 from ..echoes import shortened
-from ..errors import RobotLoadError
+from ..errors import InputError, RobotLoadError
 from ..files import FileError, read_within
 from .encodings import declared_as_utf_8
 from .xml import MAX_BYTES, DocumentError
@@ -55,10 +55,11 @@ class Source:
 
         Raises:
             RobotLoadError: It cannot be read; the message says why.
+            InputError: It is a memoryview that is released.
         """
         try:
             if isinstance(self.given, (bytes, bytearray, memoryview)):
-                return bytes(self.given)
+                return _copied(self.given)
             if is_document(self.given):
                 return _encoded(self.given)
             if isinstance(self.given, (str, os.PathLike)):
@@ -76,6 +77,13 @@ def is_document(given: object) -> bool:
 def is_source(given: object) -> bool:
     """Whether a robot description can be read from this."""
     return isinstance(given, (str, os.PathLike, bytes, bytearray, memoryview)) or callable(getattr(given, "read", None))
+
+
+def _copied(given: bytes | bytearray | memoryview) -> bytes:
+    try:
+        return bytes(given)
+    except ValueError:
+        raise InputError(f"the bytes of a robot are in a memoryview that is released; got {given!r}") from None
 
 
 def _shown(path: str) -> str:

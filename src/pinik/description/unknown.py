@@ -80,7 +80,7 @@ def unknown_in_joints(robot: Element) -> list[Flaw]:
 def _places(element: Element, joint: Element) -> bool:
     """Whether an element of a joint decides where links are, so that an unknown name in it matters.
 
-    The flaw of a limit that is missing names the unknown attributes beside it.
+    Unknown attributes of a `<limit>` are not reported here if a limit is missing: the flaw that says so names them.
     """
     if element.tag != "limit":
         return element.tag in _PLACING

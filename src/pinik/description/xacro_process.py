@@ -109,8 +109,8 @@ def _expanded(request: dict[str, Any], packages: _Packages) -> dict[str, Any]:
     xacrodoc.packages.get_path = packages
     xacro.parse = _parse
     xacro.print_location = lambda: None
-    _let_copies_keep_their_places()
-    _let_dirname_be_known()
+    _keep_places_of_copies()
+    _support_dirname()
     xacro.init_stacks(path)
     arguments = _Arguments(request["arguments"])
     try:
@@ -139,7 +139,7 @@ def _parse(source: Any, filename: str | None = None) -> Any:
     return _LineBuilder(str(filename)).parseString(source)
 
 
-def _let_copies_keep_their_places() -> None:
+def _keep_places_of_copies() -> None:
     original = minidom._clone_node  # type: ignore[attr-defined]
 
     def clone(node: Any, deep: bool, owner: Any) -> Any:
@@ -151,7 +151,7 @@ def _let_copies_keep_their_places() -> None:
     minidom._clone_node = clone  # type: ignore[attr-defined]
 
 
-def _let_dirname_be_known() -> None:
+def _support_dirname() -> None:
     """Tell xacro the file of `$(dirname)`: the one that is being read, where its relative includes begin too."""
     import xacro
 

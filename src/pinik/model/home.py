@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from ..errors import RobotLoadError
 from .chains import chain_of
 from .limits import Limits
+from .poses import Poses
 from .robot_model import RobotModel
 
 __all__ = ["home_configuration", "lowest_point", "robot_size"]
@@ -26,9 +27,9 @@ def home_configuration(robot: RobotModel) -> Array:
     An SRDF file with a fault counts as none.
     """
     try:
-        poses = robot.srdf_poses.by_name
+        poses = robot.srdf_poses
     except RobotLoadError:  # nobody asked for a pose
-        poses = {}
+        poses = Poses()
     limits = Limits.of(robot)
     for name in (*_HOME_POSES, *poses):
         if name in poses:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Collection, Iterable
+from collections.abc import Collection, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -11,12 +11,14 @@ import numpy as np
 import pinocchio
 from numpy.typing import NDArray
 
+from ..description.flaw import Flaw
 from ..description.numbers import FARTHEST, plain_number
 from ..description.slips import is_slip
 from ..description.xml import MAX_BYTES, DocumentError, Element, parse
 from ..echoes import QUOTED, shortened
-from ..errors import RobotLoadError
+from ..errors import RobotLoadError, UnknownNameError
 from ..files import FileError, read_within
+from .configurations import LARGEST_UNIT_ERROR, UNIT_ROUNDING
 from .joint import Joint
 
 __all__ = ["Poses", "read_poses"]
@@ -28,17 +30,31 @@ _TURN = 2.0 * math.pi
 _MOST_NEAR = 3
 
 
-@dataclass(frozen=True)
-class Poses:
-    """The poses in an SRDF file.
+@dataclass(frozen=True, eq=False)
+class Poses(Mapping[str, Array]):
+    """The poses in an SRDF file: name → q (nq,), read-only arrays.
+
+    A name that is not there raises an `UnknownNameError`; if that pose is left out, the message says why.
 
     Attributes:
-        by_name: Name → q (nq,).
-        left_out: Which poses are left out because they break the limits, in one sentence each.
+        left_out: Name → flaw of each pose that is left out because it sets a joint outside its limits. The flaw's
+            element names pose and joint.
     """
 
-    by_name: dict[str, Array] = field(default_factory=dict)
-    left_out: tuple[str, ...] = ()
+    _by_name: dict[str, Array] = field(default_factory=dict)
+    left_out: dict[str, Flaw] = field(default_factory=dict)
+
+    def __getitem__(self, name: str) -> Array:
+        if name not in self._by_name:
+            why = self.left_out.get(name)
+            raise UnknownNameError("pose", name, self._by_name, hint="" if why is None else f"{why}")
+        return self._by_name[name]
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._by_name)
+
+    def __len__(self) -> int:
+        return len(self._by_name)
 
 
 class _BeyondLimitsError(DocumentError):
@@ -51,7 +67,7 @@ def read_poses(srdf: Path, model: pinocchio.Model, joints: Iterable[Joint], name
     States of the same name for several groups are one pose. Followers, and joints that the robot does not have, are
     skipped, as robots with fewer joints share the SRDF. An angle outside the limits is taken at the limit if it is at
     most 1e-3 [rad or m] away, as files round their numbers, or turned by whole turns to inside the limits; a pose with
-    one that is farther off is left out.
+    one that is farther off is left out. A quaternion or (cos, sin) pair that was rounded is scaled to unit length.
 
     Args:
         srdf: The SRDF file.
@@ -61,8 +77,8 @@ def read_poses(srdf: Path, model: pinocchio.Model, joints: Iterable[Joint], name
 
     Raises:
         RobotLoadError: The file cannot be read, or is not XML; or a pose has something else than numbers for a joint,
-            or sets it in two ways, or one that is misspelt; or there are two states of the same name and group. The
-            message names the pose and the joint.
+            or sets it in two ways, or one that is misspelt, or gives it a quaternion that is not of unit length; or
+            there are two states of the same name and group. The message names the pose and the joint.
     """
     try:
         robot = parse(read_within(srdf, MAX_BYTES, "an SRDF file"))
@@ -75,18 +91,24 @@ def read_poses(srdf: Path, model: pinocchio.Model, joints: Iterable[Joint], name
     for state in robot.named("group_state"):
         states.setdefault(state.attributes.get("name", ""), []).append(state)
     poses: dict[str, Array] = {}
-    left_out: list[str] = []
+    left_out: dict[str, Flaw] = {}
     for name, parts in states.items():
         pose = f"pose {shortened(name, QUOTED)!r}"
         try:
             poses[name] = _pose(_settings(parts), model, by_name, names)
+            poses[name].setflags(write=False)
         except _BeyondLimitsError as fault:
-            left_out.append(f"{pose} is left out: {fault.owner}: {fault.message} (line {fault.line} of {srdf.name})")
+            left_out[name] = Flaw(
+                f"{pose}, {fault.owner}",
+                f"{fault.message} (line {fault.line} of {srdf.name}); the pose is left out",
+                code="pose-outside-limits",
+                common="its value is outside its limits; the pose is left out",
+            )
         except DocumentError as fault:
             message = f"{fault.message} (line {fault.line})"
             element = pose + (f", {fault.owner}" if fault.owner else "")
             raise RobotLoadError(message, source=str(srdf), element=element) from None
-    return Poses(poses, tuple(left_out))
+    return Poses(poses, left_out)
 
 
 def _settings(states: Iterable[Element]) -> list[Element]:
@@ -124,12 +146,30 @@ def _pose(
         if not joint.has_one_axis:
             if len(values) == joint.nq:
                 q[joint.idx_q : joint.idx_q + joint.nq] = values
+                _scale(same[0], joint, q)
             elif name in names:  # the root's own joint is none of the file's: a pose may be for another kind of root
                 needed = f"must be {joint.nq} numbers, as many as a {joint.kind} joint has in q"
                 raise _fault(same[0], f"its value {needed}; got {len(values)}")
         elif joint.leader is None:
             joint.set_angle(q, _within_limits(same[0], joint, values[0], model))
-    return np.array(pinocchio.normalize(model, q))
+    return q
+
+
+def _scale(setting: Element, joint: Joint, q: Array) -> None:
+    """Scale a joint's quaternion or (cos, sin) pair in `q` to unit length, as `configurations.checked` does.
+
+    Raises:
+        DocumentError: It is farther from unit length than rounding makes it.
+    """
+    circle = joint.circle(q)
+    if circle is None:
+        return
+    own, words = circle
+    squared = float(own @ own)
+    if not abs(squared - 1.0) <= LARGEST_UNIT_ERROR:
+        raise _fault(setting, f"{words} must be of unit length; got {_shown(own.tolist())}")
+    if abs(squared - 1.0) > UNIT_ROUNDING:
+        own /= math.sqrt(squared)
 
 
 def _check_known(setting: Element, known: Collection[str], given: Collection[str]) -> None:

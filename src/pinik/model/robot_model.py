@@ -16,7 +16,7 @@ from numpy.typing import ArrayLike, NDArray
 from ..checks import as_finite_number
 from ..description import reader as urdf
 from ..description.packages import Surroundings
-from ..errors import InputError, UrdfWarning
+from ..errors import InputError, RobotLoadError, UrdfWarning
 from ..rotations import as_se3
 from .angles import set_angles
 from .build import build_model
@@ -62,6 +62,7 @@ class RobotModel(NamedModel):
         mimic: bool = True,
         srdf: Path | None = None,
         allow_outside: bool = False,
+        strict: bool = False,
     ) -> None:
         model, model_warnings = build_model(description, root=root, mimic=mimic)
         super().__init__(name or description.name, model, description)
@@ -71,6 +72,8 @@ class RobotModel(NamedModel):
         self.warnings = (*description.warnings, *model_warnings)
         self._mimic = mimic
         self._srdf = srdf
+        self._strict = strict
+        self._warns_of_poses = True
         self.lower_q, self.upper_q = configuration_limits(self.model, self.joints)
         first_entries = [self.joint(name).idx_q for name in self.joint_names]
         self.lower, self.upper = self.lower_q[first_entries], self.upper_q[first_entries]
@@ -86,6 +89,7 @@ class RobotModel(NamedModel):
         # The model is built again, because Pinocchio 4.1.0 crashes when it uses a deserialised model with mimic joints.
         build = partial(type(self), name=self.name, root=self.root, package_dirs=self.package_dirs)
         build = partial(build, mimic=self._mimic, srdf=self._srdf, allow_outside=self.allow_outside)
+        build = partial(build, strict=self._strict)
         return build, (self.description,), {"warnings": self.warnings}
 
     def with_root(self, root: str) -> Self:
@@ -95,7 +99,7 @@ class RobotModel(NamedModel):
             InputError: Another root than these.
         """
         settings: dict[str, Any] = {"package_dirs": self.package_dirs, "mimic": self._mimic, "srdf": self._srdf}
-        settings["allow_outside"] = self.allow_outside
+        settings |= {"allow_outside": self.allow_outside, "strict": self._strict}
         return type(self)(self.description, name=self.name, root=root, **settings)
 
     @property
@@ -114,29 +118,34 @@ class RobotModel(NamedModel):
         return self._srdf
 
     @property
-    def poses(self) -> dict[str, Array]:
-        """The named configurations in the SRDF file that belongs to the URDF: name → q (nq,).
+    def poses(self) -> Poses:
+        """The named configurations in the SRDF file that belongs to the URDF: a mapping from names to q (nq,).
 
         The arrays are read-only; copy one to change it. Joints that a pose does not mention are neutral. Without an
-        SRDF file there are no poses. The file is read when the poses are first asked for.
+        SRDF file there are no poses. The file is read when the poses are first asked for. A pose that sets a joint
+        outside its limits is left out; asking for it by name raises an `UnknownNameError` that names the joint.
 
         Raises:
             RobotLoadError: The SRDF file cannot be read; or a pose in it has no number for a joint, sets a joint in two
-                ways, or misspells its name; the message names the pose and the joint.
+                ways, misspells its name, or gives it a quaternion that is not of unit length; the message names the
+                pose and the joint. For a robot that was loaded with `strict`, also if a pose is left out.
 
         Warns:
-            UrdfWarning: A pose is left out, as it sets a joint outside its limits.
+            UrdfWarning: A pose is left out; once for each robot.
         """
-        for words in self.srdf_poses.left_out:
-            warnings.warn(f"{self.name}: {words}", UrdfWarning, stacklevel=2)
-        poses = {name: q.copy() for name, q in self.srdf_poses.by_name.items()}
-        for q in poses.values():
-            q.setflags(write=False)
+        poses = self.srdf_poses
+        left_out = tuple(poses.left_out.values())
+        if self._strict and left_out:
+            raise RobotLoadError(left_out[0].cause, source=str(self._srdf), element=left_out[0].element)
+        if self._warns_of_poses:
+            self._warns_of_poses = False
+            for words in left_out:
+                warnings.warn(f"{self.name}: {words}", UrdfWarning, stacklevel=2)
         return poses
 
     @cached_property
     def srdf_poses(self) -> Poses:
-        """What `poses` reads, and which poses it leaves out; the errors are the same."""
+        """What `poses` gives, without its warnings and without what `strict` makes of them."""
         if self._srdf is None:
             return Poses()
         names = {joint.name for joint in self.description.joints}

@@ -14,7 +14,7 @@ from numpy.typing import ArrayLike, NDArray
 from ..checks import as_finite_number, as_plain, as_point, as_unit_vector
 from ..errors import InputError
 from ..rotations import as_se3
-from .target_json import check_fields, known, plain_fields
+from .target_json import check_fields, known
 from .target_values import Position, as_axis, as_position, as_tool, check_combination, named, rotation_of
 from .tolerance import Tolerance
 
@@ -248,7 +248,21 @@ class Target:
 
     def to_dict(self) -> dict[str, Any]:
         """The JSON form: plain numbers and lists, only what was asked for; `from_dict` reads it back."""
-        return plain_fields(vars(self))
+        fields: dict[str, Any] = {"frame": self.frame}
+        for name in ("position", "rotation", "axis", "direction", "at"):
+            numbers: Array | None = getattr(self, name)
+            if numbers is not None:
+                fields[name] = known(numbers) if numbers.ndim == 1 else numbers.tolist()
+        if self._tool is not None:
+            fields["tool"] = self._tool.homogeneous.tolist()
+        if self.relative_to is not None:
+            fields["relative_to"] = self.relative_to
+        if self.weight != 1.0:
+            fields["weight"] = self.weight
+        if self.tolerance is not None:
+            largest = self.tolerance.position if self.tolerance.box is None else list(self.tolerance.box)
+            fields["tolerance"] = [largest, self.tolerance.orientation]
+        return fields
 
 
 def as_targets(targets: Target | Iterable[Target]) -> tuple[Target, ...]:

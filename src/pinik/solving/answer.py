@@ -128,7 +128,7 @@ def _is_plain(wanted: Wanted) -> bool:
 def _found(kept: Kept, key: Key | None) -> Prepared | None:
     try:
         return None if key is None else kept.found(key)
-    except TypeError:  # an argument is not hashable
+    except (TypeError, ValueError):  # an argument is not hashable, or a memoryview that is released
         return None
 
 

@@ -61,6 +61,7 @@ class Kept:
 
         Raises:
             TypeError: An argument is not hashable.
+            ValueError: An argument is a memoryview that is released.
         """
         entry = self._by_key.get(key)
         if entry is None:

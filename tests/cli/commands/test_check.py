@@ -196,6 +196,26 @@ class TestFollowers:
         assert answer["second_opinion"]["disagreeing"] == ["b", "c"]
 
 
+POSES = '<robot name="r"><group_state name="home" group="g"><joint name="j" value="{}"/></group_state></robot>'
+
+
+@pytest.mark.parametrize(
+    ("value", "code", "words"),
+    [("99", "pose-outside-limits", "the pose is left out"), ("abc", "bad-srdf", "no pose can be read from robot.srdf")],
+)
+def test_a_pose_that_cannot_be_taken_is_a_warning(run, urdf, value, code, words):
+    file = urdf(LINKS + JOINT.format(lower=-1))
+    file.with_suffix(".srdf").write_text(POSES.format("0.5"))
+    before = run("check", file, "--json").json["counts"]
+    file.with_suffix(".srdf").write_text(POSES.format(value))
+    answer = run("check", file, "--json")
+    assert (answer.status, answer.json["counts"]) == (0, before | {code: 1})
+    (flaw,) = [flaw for flaw in answer.json["flaws"] if flaw["code"] == code]
+    assert flaw["element"] == "pose 'home', joint 'j'"
+    assert words in flaw["cause"]
+    assert run("check", file, "--strict").status == 3
+
+
 def test_an_empty_name_is_wrong_usage_and_not_the_working_folder(run):
     result = run("check", "")
     assert result.status == 2

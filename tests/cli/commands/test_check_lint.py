@@ -157,6 +157,25 @@ class TestFix:
         assert (answer.status, answer.out) == (2, "")
         assert "--fix must be the name of a file; an empty text" in answer.err
 
+    @pytest.mark.parametrize("stdout", ["-", "./-", "/dev/stdout", "/dev/fd/1"])
+    def test_stdout_is_refused_in_words_as_the_report_goes_there(self, run, write, tmp_path, monkeypatch, stdout):
+        file = write(AXIS_AS_ATTRIBUTE)
+        monkeypatch.chdir(tmp_path)
+        answer = run("check", file, "--fix", stdout)
+        assert (answer.status, answer.out) == (2, "")
+        assert "--fix must be the name of a file, as stdout is for the report" in answer.err
+        assert sorted(tmp_path.iterdir()) == [file]
+
+    def test_a_file_called_stdin_is_a_file(self, run, tmp_path, monkeypatch):
+        """A robot without a name is named after its file, and the file itself is never overwritten."""
+        monkeypatch.chdir(tmp_path)
+        (tmp_path / "stdin").write_text('<robot><link name="a"/></robot>')
+        assert run("check", "./stdin", "--fix", "out.urdf").status == 0
+        assert pinik.load(tmp_path / "out.urdf", strict=True).name == "stdin"
+        assert run("check", "./stdin", "--fix", "stdin").status == 2
+        assert run("check", "-", "--fix", "stdin", stdin='<robot name="other"><link name="a"/></robot>').status == 0
+        assert pinik.load(tmp_path / "stdin").name == "other"
+
     def test_a_xacro_file_is_written_as_the_urdf_that_it_becomes(self, run, write, tmp_path):
         pytest.importorskip("xacrodoc")
         text = pair('<origin xzy="${two} 0, 0"/>', limit=LIMIT)

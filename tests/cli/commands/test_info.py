@@ -76,7 +76,14 @@ def test_a_robot_comes_from_stdin(run):
     assert run("info", "-", "--json", stdin=text).json["joints"] == run("info", "two_link", "--json").json["joints"]
     refused = run("info", "-", stdin="<sdf/>")
     assert (refused.status, refused.out) == (3, "")
-    assert "this is an SDF file" in refused.err
+    assert "error: stdin: <sdf>: the root element is <sdf>: this is an SDF file" in refused.err
+
+
+def test_it_calls_stdin_as_check_does(run):
+    text = '<robot name="r"><link name="a"/></robot>'
+    info, check = (run(command, "-", "--json", stdin=text).json for command in ("info", "check"))
+    assert info["source"] == check["file"] == "stdin"
+    assert run("info", "-", stdin=text).out.startswith("r  stdin\n")
 
 
 def test_a_bad_pose_is_a_warning_and_all_the_rest_is_shown(run, tmp_path):

@@ -135,3 +135,24 @@ def test_it_can_be_stopped_by_a_beat_and_started_anew():
         return len(count)
 
     assert talk(conversation) == 2
+
+
+def test_a_beat_that_starts_it_anew_leaves_one_timer_that_stop_takes_away():
+    async def conversation():
+        scene = Scene()
+        count = []
+
+        def anew():
+            count.append(1)
+            scene.metronome.stop()
+            scene.metronome.start()
+
+        scene.metronome._beat = anew
+        scene.clock.now += 0.1
+        while not count:
+            await asyncio.sleep(0.0)
+        scene.metronome.stop()
+        await asyncio.sleep(0.3)
+        return len(count)
+
+    assert talk(conversation) == 1

@@ -5,6 +5,7 @@ from __future__ import annotations
 import shutil
 import sys
 import textwrap
+from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
@@ -78,7 +79,7 @@ def _fields(robot: Robot) -> dict[str, Any]:
     }
 
 
-def _poses(robot: Robot) -> dict[str, NDArray[np.float64]]:
+def _poses(robot: Robot) -> Mapping[str, NDArray[np.float64]]:
     """The named configurations; none if the SRDF has a fault, which is a warning here."""
     try:
         return robot.poses

@@ -47,10 +47,7 @@ def configuration(
     """
     q = robot.neutral()
     if pose is not None:
-        poses = robot.poses
-        if pose not in poses:
-            raise UnknownNameError("pose", pose, poses)
-        q = poses[pose].copy()
+        q = robot.poses[pose].copy()
     for name, text in _pairs(assignments, option, "JOINT=ANGLE", split_at_last=True):
         joint = robot.settable_joint(name)
         if not joint.has_one_axis:

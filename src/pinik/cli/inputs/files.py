@@ -9,12 +9,16 @@ from ...files import check_writable, write_whole
 from ..terminal.exits import CommandError
 from ..terminal.output import reason_of
 
-__all__ = ["check_file", "label_of", "read_bytes", "write_file"]
+__all__ = ["STDIN", "check_file", "label_of", "read_bytes", "write_file"]
+
+
+STDIN = "stdin"
+"""What messages and reports call a file that comes through stdin."""
 
 
 def label_of(path: str) -> str:
     """What messages call a file."""
-    return "stdin" if path == "-" else path
+    return STDIN if path == "-" else path
 
 
 def read_bytes(path: str, most: int, what: str) -> bytes:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
+from dataclasses import replace
 from pathlib import Path
 
 from ...description.flaw import summarised
@@ -12,7 +13,7 @@ from ...loading import load_in_silence
 from ...robot import Robot
 from ..terminal import output
 from ..terminal.exits import CommandError, ExitStatus
-from .files import read_bytes
+from .files import STDIN, read_bytes
 
 __all__ = ["check_folders", "load_robot", "xacro_arguments"]
 
@@ -39,8 +40,14 @@ def load_robot(
         robot = load_in_silence(
             given, root=root, package_dirs=package_dirs or (), xacro_args=xacro_given, allow_outside=allow_outside
         )
-    except (RobotLoadError, UnknownNameError, OSError) as error:
+    except RobotLoadError as error:
+        if source == "-":
+            error = RobotLoadError(error.cause, source=STDIN, element=error.element)
         raise CommandError(str(error), ExitStatus.NO_ROBOT) from None
+    except (UnknownNameError, OSError) as error:
+        raise CommandError(str(error), ExitStatus.NO_ROBOT) from None
+    if source == "-":
+        robot.description = replace(robot.description, source=STDIN)
     for words in summarised(robot.warnings):
         output.warn(f"{robot.name}: {words}")
     return robot

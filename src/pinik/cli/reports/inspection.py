@@ -16,18 +16,17 @@ from ...description.packages import Found
 from ...echoes import shortened
 from ...errors import RobotLoadError, UnknownNameError
 from ...extras import needed_by
-from ...loading import Fetched, Located, fetch, locate
+from ...loading import Fetched, Located, fetch, locate, srdf_of
 from ...robot import Robot
 from ...shapes.mesh_checks import UNDRAWN
+from ..inputs.files import STDIN
 from .flaw_json import MOST_LISTED, flaw_fields
 
 if TYPE_CHECKING:
     from ...shapes.second_opinion import SecondOpinion
 
-__all__ = ["STDIN", "Fault", "Inspection", "inspect"]
+__all__ = ["Fault", "Inspection", "inspect"]
 
-STDIN = "stdin"
-"""What reports call a URDF that comes through stdin."""
 _MISSING = ("missing-mesh", "mesh-outside")
 _MESHES = frozenset((*_MISSING, *UNDRAWN))
 
@@ -50,17 +49,19 @@ class Inspection:
     """The result of an inspection; the counts are 0 if the file cannot be loaded.
 
     Attributes:
-        file: The file, or "stdin".
+        file: What reports call the file; "stdin" if the URDF came through stdin.
         robot: The robot's name; None if the file cannot be loaded.
         faults: Why the file cannot be loaded.
         flaws: What pinik repaired or ignored, what looks wrong, and the meshes that cannot be drawn.
         links, joints, meshes, shapes: Their numbers; only joints that move, and each mesh address once.
         second_opinion: What yourdfpy says; None if the file cannot be loaded.
+        path: The file; None if the URDF came through stdin.
         document: The bytes that were read; None if there are none.
         expanded: Whether xacro made these bytes from the file, so that lines are those of its result.
     """
 
     file: str
+    path: Path | None = None
     robot: str | None = None
     faults: tuple[Fault, ...] = ()
     flaws: tuple[Flaw, ...] = ()
@@ -142,22 +143,25 @@ def inspect(
         folders = (*(folder.expanduser() for folder in package_dirs), *located.package_dirs)
         fetched = fetch(located, package_dirs=folders, xacro_args=xacro_args)
         description = fetched.read()
-        robot = Robot(description, package_dirs=folders, allow_outside=allow_outside)
+        srdf = srdf_of(located, description)
+        robot = Robot(description, package_dirs=folders, srdf=srdf, allow_outside=allow_outside)
     except RobotLoadError as error:
-        label = STDIN if isinstance(source, bytes) else error.source
+        label, path = (STDIN, None) if isinstance(source, bytes) else (error.source, Path(error.source))
         faults = (Fault(error.element, error.cause),)
         if fetched is None:
-            return Inspection(label, faults=faults)
+            return Inspection(label, path, faults=faults)
         flaws, expanded = lint(fetched.document), fetched.remarks is not None
-        return Inspection(label, faults=faults, flaws=flaws, document=fetched.document, expanded=expanded)
+        return Inspection(label, path, faults=faults, flaws=flaws, document=fetched.document, expanded=expanded)
     found = lint(description.document, description)
     shapes, about_shapes = _shapes(robot)
     collisions = _missing_collisions(robot, {flaw.mesh for flaw in about_shapes})
     about = [*found, *about_shapes, *collisions]
     if description.expanded:
         about = [flaw.of_expansion() for flaw in about]
+    about += _about_poses(robot)
     return Inspection(
         file=STDIN if isinstance(source, bytes) else str(located.source),
+        path=located.source if isinstance(located.source, Path) else None,
         robot=robot.name,
         flaws=_in_order(robot.warnings, about),
         links=len(description.links),
@@ -207,6 +211,15 @@ def _shapes(robot: Robot) -> tuple[int, list[Flaw]]:
             logging.disable(logging.NOTSET)
     corners = ((shape.link, shape.name, shape.mesh.vertices) for shape in shapes)
     return len(shapes), [*flaws, *size_flaws(robot, corners)]
+
+
+def _about_poses(robot: Robot) -> list[Flaw]:
+    """A flaw for each pose of the SRDF that is left out, or the one for which none of them can be read."""
+    try:
+        return list(robot.srdf_poses.left_out.values())
+    except RobotLoadError as error:
+        cause = f"{error.cause}; no pose can be read from {Path(error.source).name}"
+        return [Flaw(error.element or "<srdf>", cause, code="bad-srdf")]
 
 
 def _missing_collisions(robot: Robot, known: set[str | None]) -> list[Flaw]:

@@ -20,12 +20,13 @@ from ..terminal import output
 from ..terminal.exits import CommandError
 from ..terminal.units import counted
 from .flaw_json import MOST_LISTED
-from .inspection import STDIN, Inspection
+from .inspection import Inspection
 
 __all__ = ["MendedFile", "check_target", "write_mended"]
 
 _MOST_NAMED = 6
 _LONGEST = 200
+_STDOUT = ("-", "/dev/stdout", "/dev/fd/1", "/proc/self/fd/1")
 
 
 @dataclass(frozen=True)
@@ -86,9 +87,11 @@ def check_target(target: Path, source: str) -> None:
     """Check where --fix is to write, before any work.
 
     Raises:
-        CommandError: It is the file itself, or a file cannot be written there.
+        CommandError: It is stdout or the file itself, or a file cannot be written there.
     """
-    _keep(source, target)
+    if str(target) in _STDOUT:
+        raise CommandError(f"--fix must be the name of a file, as stdout is for the report; got {target}")
+    _keep(Path(source), target)
     check_file(target, "--fix")
 
 
@@ -98,26 +101,28 @@ def write_mended(found: Inspection, target: Path) -> MendedFile:
     Raises:
         CommandError: The file cannot be written, or is the one that was inspected, such as the catalogue's own.
     """
-    _keep(found.file, target)
+    if found.path is not None:
+        _keep(found.path, target)
     if found.document is None:
         return MendedFile(target, None, "there is no document to mend")
     try:
-        mending = mended(found.document, None if found.file == STDIN else Path(found.file))
+        mending = mended(found.document, found.path)
         parse(mending.document)
     except DocumentError as error:
         return MendedFile(target, None, str(error))
     if mending.fault:
         return MendedFile(target, mending, f"it cannot be loaded after the mends either: {mending.fault}")
     write_file(target, mending.document, "--fix")
-    moved = target.absolute().parent.resolve() != Path(found.file).absolute().parent.resolve()
+    original = found.path or Path("stdin")  # addresses in a URDF from stdin begin at the working directory
+    moved = target.absolute().parent.resolve() != original.absolute().parent.resolve()
     moved = moved and _has_relative_addresses(mending.document)
     return MendedFile(target, mending, moved=moved, expanded=found.expanded)
 
 
-def _keep(file: str, target: Path) -> None:
+def _keep(file: Path, target: Path) -> None:
     """Refuse to write over the file that is mended."""
     with contextlib.suppress(OSError):
-        if os.path.samefile(target, Path(file).expanduser()):
+        if os.path.samefile(target, file.expanduser()):
             raise CommandError(f"--fix {target}: this is the file itself; name another one, so that it is kept")
 
 

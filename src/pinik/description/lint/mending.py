@@ -63,7 +63,7 @@ def mended(document: bytes, path: Path | None = None) -> Mending:
 
     Args:
         document: The bytes of a robot description, in any encoding.
-        path: The file that it is of, whose name a robot without one takes.
+        path: The file that holds the document; a robot without a name is named after it.
 
     Raises:
         DocumentError: The encoding that the document declares is unknown, or its bytes are not in it.

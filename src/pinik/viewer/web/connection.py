@@ -81,6 +81,6 @@ class Connection(IOStream):
         return count
 
     def close_fd(self) -> None:
-        """Close the socket, and tell so."""
+        """Close the socket, and report it."""
         super().close_fd()
         self._tell_closed(self)

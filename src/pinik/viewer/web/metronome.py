@@ -53,6 +53,8 @@ class Metronome:
             self._next = None
 
     def _wait(self) -> None:
+        """Arm the timer of the next beat, in place of one that is pending, as after a beat that restarts this."""
+        self.stop()
         self._next = IOLoop.current().call_later(max(0.0, self._due - self._clock()), self._beat_all)
 
     def _beat_all(self) -> None:
