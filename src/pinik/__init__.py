@@ -40,8 +40,6 @@ from .solvers.registry import CLOSED_FORMS, SOLVERS
 from .solvers.transpose import JacobianTranspose
 from .solvers.two_bone import TwoBoneSolver
 from .solving.branches import Branches
-from .solving.freedom.arcs import Arc
-from .solving.freedom.stretches import End
 from .solving.front import iterate, prepare, solve
 from .solving.jumps import Excess, Jump
 from .solving.many import Solutions, solve_many
@@ -60,12 +58,10 @@ __all__ = [
     "CCD",
     "CLOSED_FORMS",
     "SOLVERS",
-    "Arc",
     "Branches",
     "Clearance",
     "Collision",
     "DampedLeastSquares",
-    "End",
     "EngineError",
     "Excess",
     "InputError",
