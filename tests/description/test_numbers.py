@@ -73,7 +73,7 @@ REFUSED = [
     ("--1", 1, "'--1' is not a number"),
     ("1.2.3", 1, "'1.2.3' is not a number"),
     ("half", 1, "'half' is not a number"),
-    ("1rad", 1, "'1rad' is not a number"),
+    ("1rad", 1, "the unit of '1rad' does not fit here"),
     ("m 1", 1, "'m' is not a number"),
     ("\u0663", 1, "is not a number"),
     ("nan", 1, "'nan' is not finite"),

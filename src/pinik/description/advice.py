@@ -100,6 +100,7 @@ ADVICE: Mapping[str, Advice] = MappingProxyType({
     "bad-color": Advice("The shape is drawn grey.", "Write rgba as four numbers from 0 to 1."),
     "bright-color": Advice("Programs differ in what they make of such a colour.", "Write numbers from 0 to 1."),
     "loose-number": Advice(_OTHERS, "Write plain numbers with spaces between them, in SI units."),
+    "loose-type": Advice(_OTHERS, "Write the type without white space."),
     "loose-scale": Advice(_OTHERS, "Write three numbers."),
     "empty-origin": Advice(_OTHERS, 'Write "0 0 0".'),
     "second-element": Advice("Programs differ in which of the elements they take.", "Remove all of them but one."),

@@ -10,7 +10,7 @@ from ..echoes import QUOTED, shortened
 from .flaw import Flaw
 from .numbers import FARTHEST
 from .part import Part, Vector
-from .slips import misspelt
+from .slips import meant, misspelt
 from .vocabulary import BOUNDED_KINDS, URDF
 from .xml import DocumentError, Element
 
@@ -93,9 +93,7 @@ def read_joint(element: Element, flaws: list[Flaw], document: bytes) -> JointTag
         DocumentError: Something that decides where links are cannot be read, can be read in two ways, or is missing.
     """
     joint = Part.named(element, flaws, document)
-    kind = joint.text("type")
-    if kind not in JOINT_KINDS:
-        raise joint.fault(f"unknown type {kind!r}; it must be one of {', '.join(JOINT_KINDS)}")
+    kind = _read_kind(joint)
     xyz, rpy = joint.origin()
     # Reduced robots often have fixed joints with a mimic left on them.
     mimic, dynamics, limit = joint.only("mimic"), joint.only("dynamics"), joint.only("limit")
@@ -118,6 +116,21 @@ def read_joint(element: Element, flaws: list[Flaw], document: bytes) -> JointTag
         friction=_strength(dynamics, "friction", "number"),
         line=element.line,
     )
+
+
+def _read_kind(joint: Part) -> str:
+    """The type; one with white space around it is a flaw."""
+    written = joint.text("type")
+    kind = written.strip()
+    if kind not in JOINT_KINDS:
+        near = meant(kind, JOINT_KINDS)
+        advice = f"did you mean {near!r}?" if near else f"it must be one of {', '.join(JOINT_KINDS)}"
+        raise joint.fault(f"unknown type {shortened(written, QUOTED)!r}; {advice}")
+    if kind != written:
+        cause = f"its type {shortened(written, QUOTED)!r} has white space around it; it is read as {kind!r}"
+        common = f"its type has white space around it; it is read as {kind!r}"
+        joint.misread("type", cause, kind, code="loose-type", common=common)
+    return kind
 
 
 def _read_mimic(mimic: Part) -> Mimic:

@@ -23,6 +23,11 @@ _NON_FINITE = re.compile(r"[+-]?(nan|inf|infinity)", re.IGNORECASE)
 _FORTRAN_EXPONENT = re.compile(r"(?<=[\d.])[dD](?=[+-]?\d)", re.ASCII)
 _TIGHT_COMMA = re.compile(r"(?<=\d),(?=\d)", re.ASCII)
 _THOUSANDS = re.compile(r"[+-]?[1-9]\d{0,2}(?:,\d{3})+", re.ASCII)
+# Numbers with both a decimal sign and another one between thousands → the latter.
+_GROUPED = {
+    re.compile(r"[+-]?[1-9]\d{0,2}(?:,\d{3})+\.\d*", re.ASCII): ",",
+    re.compile(r"[+-]?[1-9]\d{0,2}(?:\.\d{3})+,\d*", re.ASCII): ".",
+}
 _MINUS = str.maketrans(dict.fromkeys("\u2010\u2011\u2012\u2013\u2212\ufe63\uff0d", "-"))  # hyphens, dashes, minus signs
 _INVISIBLE = str.maketrans(dict.fromkeys("\u200b\u200c\u200d\u200e\u200f\u2060\ufeff", ""))
 _PAIRS = ("()", "[]", "{}", '""', "''")
@@ -37,6 +42,11 @@ _UNITS = {
     "speed": {"m/s": 1.0, "rad/s": 1.0, "deg/s": _DEGREE},
     "effort": {"N": 1.0, "Nm": 1.0, "N*m": 1.0, "N·m": 1.0},
 }
+# Units that are recognised, so that messages call them so, but are not read.
+_OTHER_UNITS = frozenset(
+    {"in", "inch", "inches", "ft", "feet", "km", "dm", "um", "µm", "degree", "lb", "lbs", "oz", "kgm"}
+)
+_ALL_UNITS = _OTHER_UNITS.union(*_UNITS.values())
 
 
 class NumberError(ValueError):
@@ -112,7 +122,7 @@ def read_numbers(text: str, counts: Collection[int], quantity: str = "number", *
         else:
             readings.setdefault(values, ", ".join(dict.fromkeys([*oddities, *separated, *notation])))
     if not readings:
-        raise faults[0]
+        raise NumberError(f"{faults[0]}{_grouped_hint(bare, counts)}")
     if len(readings) > 1 or _mixes_commas(bare, readings):
         shown = [f'"{Reading(values)}"' for values in readings]
         more = [] if len(shown) > 1 else ["one number more, if every comma separates two numbers"]
@@ -140,6 +150,20 @@ def _bare(text: str) -> tuple[str, list[str]]:
         text = text[1:-1].strip()
         oddities.append(_BRACKETS)
     return text, oddities
+
+
+def _grouped_hint(text: str, counts: Collection[int]) -> str:
+    """What a text may mean whose numbers have commas and points between thousands, as the rest of a sentence.
+
+    Such a text is not read: a comma may as well separate two numbers of which one was forgotten, or is too many.
+    """
+    likely = []
+    for form, thousands in _GROUPED.items():
+        words = text.split()
+        plain = [word.replace(thousands, "").replace(",", ".") if form.fullmatch(word) else word for word in words]
+        if plain != words and len(plain) in counts and all(map(_PLAIN.fullmatch, plain)):
+            likely.append(f'"{" ".join(plain)}"')
+    return f"; if {' or '.join(likely)} is meant, write it so" if likely else ""
 
 
 def _splits(text: str) -> Iterator[tuple[list[str], tuple[str, ...]]]:
@@ -216,9 +240,19 @@ def _value(word: str, units: Collection[str], *, infinite: bool) -> tuple[float,
         if split and (split[2] in units or split[2] in ("f", "F")):
             value, _, _ = _value(split[1], (), infinite=infinite)
             return (value, "", ["the suffix 'f'"]) if split[2] in ("f", "F") else (value, split[2], [])
-    raise NumberError(
-        f"{shortened(word, QUOTED)!r} is not a number" if word else "a number is missing between two commas"
-    )
+    if not word:
+        raise NumberError("a number is missing between two commas")
+    raise NumberError(_misfit(word, units) or f"{shortened(word, QUOTED)!r} is not a number")
+
+
+def _misfit(word: str, units: Collection[str]) -> str:
+    """That the unit of a number, or a unit alone, does not fit; empty if the word has none."""
+    split = _WITH_SUFFIX.fullmatch(word) if len(word) <= LONGEST_NUMBER else None
+    unit = split[2] if split else word
+    if unit not in _ALL_UNITS or unit in units:
+        return ""
+    fitting = f"write the number in {next(iter(units))}" if units else "write the number alone"
+    return f"the unit of {word!r} does not fit here; {fitting}"
 
 
 def _numbers(counts: Collection[int]) -> str:

@@ -7,7 +7,7 @@ shapes, so that Pinocchio reads exactly that.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -20,10 +20,11 @@ from .flaw import Flaw
 from .joints import JointTag, Mimic, read_joint
 from .links import LinkTag, read_link
 from .materials import named_colors
-from .slips import misspelt
+from .slips import meant, misspelt
 from .source import RobotSource, Source
 from .tree import check_unique, resolved_mimics, root_link
 from .unknown import unknown_in_joints
+from .vocabulary import URDF
 from .writer import written
 from .xml import BrokenXMLError, DocumentError, Element
 
@@ -31,6 +32,7 @@ __all__ = ["MAX_LINKS", "Description", "JointTag", "Mimic", "read", "read_conten
 
 # Pinocchio's parser searches all frames for each parent: 10,000 links take a second, 100,000 take minutes.
 MAX_LINKS = 10_000
+_MOST_SHOWN = 4
 
 # What a document is if its root element is not <robot>.
 OTHER_FORMATS = {
@@ -122,7 +124,7 @@ def _described(document: Document, source: Source) -> Description:
     colors = named_colors(robot, flaws, document.content)
     links = [read_link(element, colors, flaws, document.content) for element in robot.named("link")]
     joints = [read_joint(element, flaws, document.content) for element in robot.named("joint")]
-    root = root_link({element.attributes["name"]: element.line for element in robot.named("link")}, joints)
+    root = _root({element.attributes["name"]: element.line for element in robot.named("link")}, joints, robot)
     joints = resolved_mimics(joints, flaws)
     flaws.extend(unknown_in_joints(robot))
     name = robot.attributes.get("name")
@@ -143,6 +145,26 @@ def _described(document: Document, source: Source) -> Description:
         document=document.content,
         expanded=source.expanded,
     )
+
+
+def _root(links: Mapping[str, int], joints: Sequence[JointTag], robot: Element) -> str:
+    """The root link. A fault in the tree may come from a link or joint whose tag is misspelt, which is named then."""
+    try:
+        return root_link(links, joints)
+    except DocumentError as fault:
+        known = URDF["robot"].children
+        lost = [
+            f"<{shortened(child.tag, QUOTED)}> on line {child.line}"
+            for child in robot.children
+            if child.tag not in known and meant(child.tag, known) in ("link", "joint")
+        ]
+        if not lost:
+            raise
+        more = f" and {len(lost) - _MOST_SHOWN} more" if len(lost) > _MOST_SHOWN else ""
+        cause = (
+            f"{fault.message}; URDF does not know {', '.join(lost[:_MOST_SHOWN])}{more}, and writes <link> and <joint>"
+        )
+        raise DocumentError(cause, owner=fault.owner, line=fault.line) from None
 
 
 def _nameless(robot: Element, name: str, document: bytes) -> Flaw:

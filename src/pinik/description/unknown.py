@@ -84,7 +84,7 @@ def _places(element: Element, joint: Element) -> bool:
     """
     if element.tag != "limit":
         return element.tag in _PLACING
-    needs_limits = joint.attributes.get("type") in BOUNDED_KINDS
+    needs_limits = joint.attributes.get("type", "").strip() in BOUNDED_KINDS
     return needs_limits and bool(element.children) and not {"lower", "upper"} <= element.attributes.keys()
 
 

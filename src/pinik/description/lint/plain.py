@@ -47,7 +47,7 @@ def joint_values(robot: Element) -> Iterator[JointValues]:
     for joint in robot.named("joint"):
         origin, limit = _only(joint, "origin"), _only(joint, "limit")
         lower, upper = (_bound(limit, side) for side in ("lower", "upper"))
-        kind = joint.attributes.get("type", "")
+        kind = joint.attributes.get("type", "").strip()
         xyz = plain_vector(origin, "xyz") if origin is not None else None
         yield JointValues(joint, named(joint), kind, origin, xyz, limit, lower, upper)
 
