@@ -30,6 +30,11 @@ _EXPORT = "Export the mesh again, as STL, OBJ, COLLADA or glTF."
 _OTHERS = "Other programs refuse the file, or read it in another way."
 
 ADVICE: Mapping[str, Advice] = MappingProxyType({
+    "pose-outside-limits": Advice(
+        "No configuration inside the limits is this pose, so nothing can start from it.",
+        "Correct the pose in the SRDF, or the limits of the joint.",
+    ),
+    "bad-srdf": Advice("Without the SRDF there are no poses.", "Correct what is named in the SRDF."),
     "unknown-element": Advice(_LOST, "Write the name that URDF has."),
     "unknown-attribute": Advice(_LOST, "Write the name that URDF has."),
     "unknown-name": Advice(_LOST, "Take it out."),

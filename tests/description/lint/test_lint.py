@@ -394,9 +394,9 @@ def test_the_mend_of_an_attribute_that_should_be_an_element_is_that_element():
 
 # The joint's kind, its limits and axis → the mend of the reader's warning, word for word.
 MENDS_OF_THE_READER = [
-    ("revolute", LIMIT.format(-1, "inf"), ""),
+    ("revolute", LIMIT.format(-1, "inf"), "Write the limits that the joint has."),
     ("revolute", LIMIT.format("-inf", "inf"), 'Write type="continuous" if the joint turns without an end.'),
-    ("prismatic", LIMIT.format("-inf", "inf"), ""),
+    ("prismatic", LIMIT.format("-inf", "inf"), "Write the limits that the joint has."),
     ("planar", "", 'Write <axis xyz="0 0 1"/> if it moves in the xy-plane.'),
 ]
 
