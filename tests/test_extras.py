@@ -77,7 +77,6 @@ def test_pinik_alone_loads_a_robot_and_solves():
     [
         ("tornado", "live", "pinik.live('arm', port=0)"),
         ("umsgpack", "live", "pinik.live('arm', port=0)"),
-        ("platformdirs", "live", "pinik.live('arm', port=0)"),
         ("trimesh", "pictures", "pinik.draw(pinik.load('arm'))"),
         ("PIL", "pictures", "pinik.draw(pinik.load('arm'), size=(16, 16)).png()"),
         ("PIL", "pictures", "pinik.draw(pinik.load('arm'), size=(16, 16)).save('no.png')"),

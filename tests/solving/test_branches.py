@@ -2,17 +2,28 @@
 
 from __future__ import annotations
 
+import dataclasses
+import functools
 import itertools
 import math
+import pickle
 
 import numpy as np
 import pytest
 
 import pinik
 from every_answer import hinge_arm, puma
-from pinik.solving.branches import missing
 from robots import load_quietly
 from urdf_texts import joint
+
+
+@functools.cache
+def some_branches() -> pinik.Branches:
+    return pinik.load("two_link").solve_all("tip", [0.5, 0.3, 0.0])
+
+
+def estimate(hits: np.ndarray, **changes: object) -> float:
+    return dataclasses.replace(some_branches(), hits=hits, **changes).estimate_missing
 
 
 @pytest.mark.parametrize(
@@ -27,20 +38,20 @@ from urdf_texts import joint
     ],
 )
 def test_the_estimate_is_the_bound_of_chao(hits, wanted):
-    assert missing(np.array(hits, dtype=np.int64), 0, False) == pytest.approx(wanted)
+    assert estimate(np.array(hits, dtype=np.int64)) == pytest.approx(wanted)
 
 
 def test_nothing_is_missing_of_what_is_complete_and_infinitely_many_of_a_family():
     once = np.ones(5, dtype=np.int64)
-    assert missing(once, 0, True) == 0.0
-    assert math.isinf(missing(once, 1, False))
+    assert estimate(once, is_complete=True) == 0.0
+    assert math.isinf(estimate(once, redundancy=1))
 
 
 def test_the_estimate_is_right_on_average_where_answers_are_found_at_random():
     rng, gaps = np.random.default_rng(0), []
     for _ in range(300):
         drawn = np.bincount(rng.integers(0, 8, 16), minlength=8)
-        gaps.append(missing(drawn[drawn > 0], 0, False) - (drawn == 0).sum())
+        gaps.append(estimate(drawn[drawn > 0]) - (drawn == 0).sum())
     assert abs(np.mean(gaps)) < 0.35  # of 0.94 that are missing on average
 
 
@@ -109,3 +120,35 @@ class TestSequence:
             assert position == pytest.approx(missed, abs=1e-12)
             assert missed <= 1e-9
             assert np.isnan(orientation)
+
+
+def test_too_few_starts_tell_nothing_of_what_is_missing(ur5):
+    place = ur5.placement("tool0", ur5.configuration({"shoulder_lift_joint": -1.0, "elbow_joint": 1.2}))
+    few = ur5.solve_all("tool0", placement=place, restarts=0)
+    assert math.isinf(few.estimate_missing)
+    assert "from 1 start, too few to tell" in few.message
+
+
+def test_the_first_joint_of_two_equal_bones_is_free_where_the_target_is_at_its_base():
+    robot = pinik.load(hinge_arm("zz", [(0, 0, 0), (0.5, 0, 0), (0.5, 0, 0)], (-4.0, 4.0)))
+    branches = robot.solve_all("tip", [0.0, 0.0, 0.0], method="two_bone")
+    assert branches.success
+    assert (branches.is_complete, branches.redundancy) == (False, 1)
+
+
+@pytest.mark.parametrize("engine", ["python", "auto"])
+def test_where_no_joint_is_free_there_is_no_answer_and_the_reason_is_told(ur5, engine):
+    branches = ur5.solve_all("tool0", [0.4, 0.1, 0.4], locked=list(ur5.joint_names), engine=engine)
+    assert not branches
+    assert "no free joint" in branches.message
+
+
+def test_a_pickled_copy_has_the_families_of_the_original(panda):
+    place = panda.placement("panda_hand_tcp", panda.poses["default"])
+    branches = panda.solve_all("panda_hand_tcp", placement=place, restarts=8)
+    assert len(pickle.loads(pickle.dumps(branches)).families) == len(branches.families) > 0
+
+
+def test_a_self_motion_of_two_points_has_the_ends_of_its_arc(panda):
+    motion = panda.self_motion("panda_hand_tcp", panda.poses["default"], points=2)
+    assert len(motion.q) == 2

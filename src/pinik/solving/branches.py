@@ -16,6 +16,7 @@ from ..problem.targets import Target
 from ..problem.tolerance import TargetError
 from .origin import unwound
 from .question import Question
+from .search import LEAST
 from .self_motion import SelfMotion, self_motion
 from .state import Status
 from .verdict import measure_errors
@@ -25,7 +26,7 @@ __all__ = ["Branches"]
 
 Array = NDArray[np.float64]
 
-_FROM_THE_QUESTION = ("robot", "method", "joint_names", "windings", "errors")
+_FROM_THE_QUESTION = ("robot", "method", "joint_names", "windings", "errors", "_conditions")
 
 
 @dataclass(frozen=True, eq=False)
@@ -119,16 +120,21 @@ class Branches:
             begin += f" and {self.colliding} that collide{'s' * (self.colliding == 1)}"
         if self.is_complete:
             return f"{begin}, all that there are"
-        begin += f" by {self.starts} starts{', ended by the time limit' * self.ended_early}"
+        begin += f" from {self.starts} start{'s' * (self.starts != 1)}{', ended by the time limit' * self.ended_early}"
         if self.redundancy:
             return f"{begin}, of infinitely many in {self.redundancy} dimension{'s' * (self.redundancy > 1)}"
         left = self.estimate_missing
+        if math.isinf(left):
+            return f"{begin}, too few to tell how many are missing"
         missing = "none seems to be" if left < 0.5 else f"about {left:.0f} may be"
-        return f"{begin}, the last new one by number {int(self.found_at.max(initial=0)) + 1}; {missing} missing"
+        return f"{begin}, the last new one from number {int(self.found_at.max(initial=0)) + 1}; {missing} missing"
 
     @property
     def estimate_missing(self) -> float:
-        """An estimate of how many branches are missing; 0 if these are all, infinite if there are infinitely many.
+        """An estimate of how many branches are missing; 0 if these are all.
+
+        It is infinite if there are infinitely many, and if there were too few starts to tell: fewer than the search
+        makes by itself, because of `restarts` or the time limit.
 
         It is Chao's lower bound (1984), f₁ (f₁ − 1) / (2 (f₂ + 1)), where f₁ branches were found by one start and f₂ by
         two. As Good and Turing saw (Good 1953), what was seen once tells how much was not seen. The bound knows nothing
@@ -136,7 +142,7 @@ class Branches:
         """
         if self.is_complete:
             return 0.0
-        if self.redundancy:
+        if self.redundancy or self.ended_early or self.starts < LEAST:
             return math.inf
         once, twice = int((self.hits == 1).sum()), int((self.hits == 2).sum())
         return once * (once - 1) / (2 * (twice + 1))
@@ -157,24 +163,24 @@ class Branches:
 
     @cached_property
     def families(self) -> tuple[SelfMotion, ...]:
-        """The curves on which the branches lie, if the answers have one dimension; empty otherwise.
+        """The curves on which the branches lie, if the answers have one dimension; empty otherwise. They may collide.
 
         Each is the self-motion through one of the branches, so that no two are the same. They are traced when they are
         first read, which takes some 20 ms for each.
         """
         if self.redundancy != 1:
             return ()
-        options = self._question.options
         found: list[SelfMotion] = []
         for q in self.q:
             if not any(family.contains(q) for family in found):
-                found.append(
-                    self_motion(
-                        self.robot, self._targets, q, limits=options.limits, locked=options.locked,
-                        tolerance=options.tolerance, seed=options.seed,
-                    )
-                )  # fmt: skip
+                found.append(self_motion(self.robot, self._targets, q, **self._conditions))
         return tuple(found)
+
+    @cached_property
+    def _conditions(self) -> dict[str, Any]:
+        """The options that a self-motion has too."""
+        options = self._question.options
+        return {name: getattr(options, name) for name in ("limits", "locked", "tolerance", "seed")}
 
     def wound(self, index: int) -> Iterator[Array]:
         """Every configuration (nq,) of branch `index` inside the limits, whole turns included; the branch itself first.

@@ -84,8 +84,9 @@ class Prepared:
 
     @cached_property
     def searcher(self) -> Searcher | None:
-        """The compiled engine's search, if that engine is used."""
-        return None if self.native is None else load().Searcher(self.native)
+        """The compiled engine's search, if that engine is used and there is a joint to move."""
+        searches = self.native is not None and self.question.problem.free.any()
+        return load().Searcher(self.native) if searches else None
 
     def __call__(
         self,

@@ -10,6 +10,7 @@ import numpy as np
 import pinocchio
 from numpy.typing import ArrayLike, NDArray
 
+from ..closed_form.planar_arm import ROUNDING
 from ..closed_form.robot_bones import TwoBone
 from ..errors import InputError
 from ..model.robot_model import RobotModel
@@ -94,7 +95,7 @@ def solve_all(
         q0: The first start, as for `pinik.solve`, from which the distance of the answers is measured.
         limits: Whether to enforce the joint limits.
         locked: Names of joints that must not move.
-        restarts: The maximum number of starts after the first; at most 128, which is meant by None.
+        restarts: The maximum number of starts after the first; None means 128, which is also the most.
         seed: The seed of the starts.
         max_iterations: The maximum number of iterations per start.
         tolerance: The errors that count as reached. Answers are exact to 1e-9 rad, and 1e-9 of the chain's length,
@@ -158,6 +159,9 @@ def _in_closed_form(prepared: Prepared, targets: tuple[Target, ...], start: Arra
     assert target.position is not None
     both = bones.solve(target.position, start, limits=question.options.limits)
     findings = Findings.nothing(robot.model.nq)
+    plane, _ = bones.in_plane(target.position[np.newaxis])
+    if np.linalg.norm(plane) <= ROUNDING * (bones.l1 + bones.l2):  # the first joint may have any angle
+        findings.redundancy = 1
     for q, inside in zip(both.q, both.inside, strict=True):
         errors = measure_errors(robot, targets, q, question.options.tolerance)
         is_new = all(largest_change(robot.model, other, q) > SAME_ANSWER for other in findings.q)
@@ -182,7 +186,7 @@ def _branches(
     """The branches that a search found, or what a solve found instead."""
     words = None
     if instead is not None:
-        words = _words_of_one(findings.colliding) if instead.success else instead.message
+        words = _words_of_one(findings) if instead.success else instead.message
     return Branches(
         findings.q,
         findings.distance,
@@ -193,7 +197,7 @@ def _branches(
         findings.starts,
         findings.redundancy,
         findings.colliding,
-        prepared.options.method.exact,
+        prepared.options.method.exact and not findings.redundancy,
         findings.ended_early,
         Status.CONVERGED if instead is None else instead.status,
         findings.time,
@@ -206,8 +210,10 @@ def _branches(
     )
 
 
-def _words_of_one(colliding: int) -> str:
+def _words_of_one(findings: Findings) -> str:
     """What to say of the one answer that a solve found where the search found none."""
-    if colliding:
-        return f"1 answer that collides with nothing; the {colliding} that the search found do"
+    if findings.colliding:
+        return f"1 answer that collides with nothing; the {findings.colliding} that the search found do"
+    if findings.ended_early:
+        return "1 answer; the time limit ended the search for others"
     return "1 answer inside the tolerance; none that is exact was found"

@@ -361,5 +361,5 @@ def test_a_jump_of_a_free_root_is_measured_in_its_tangent():
 
 
 def test_every_status_a_solve_can_have_is_listed():
-    solved = ("CONVERGED", "STALLED", "MAX_ITERATIONS", "TIME_LIMIT", "UNREACHABLE")
+    solved = ("CONVERGED", "STALLED", "MAX_ITERATIONS", "TIME_LIMIT", "UNREACHABLE", "COLLIDING")
     assert ("IDLE", *solved, "FAILED", "REFUSED") == STATUSES

@@ -133,6 +133,7 @@ class Curve:
         k, u, periods = self._found(s)
         motions, slopes = self._motions(k, u)
         q = np.array([self.solutions.step(self.q[i], motion) for i, motion in zip(k, motions, strict=True)])
+        q = q.reshape(len(s), self.q.shape[1])
         return q + periods[:, np.newaxis] * self.turns, slopes / np.linalg.norm(slopes, axis=1)[:, np.newaxis]
 
     def levels(self, entry: int, column: int, level: float) -> list[float]:
