@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 import numpy as np
-import pinocchio
 from numpy.typing import NDArray
 
-from .metric import joint_scales
+from .metric import joint_scales, largest_difference
 from .question import Question
 
 __all__ = ["NOTHING_NEW_SHARE", "SAME_ANSWER", "Choice"]
@@ -45,14 +44,11 @@ class Choice:
         if q is None:
             return
         q = self._limits.wrap(q, self._start)
-        if all([self._change(other, q, self._scales) > SAME_ANSWER for other in self.found]):
+        if all([largest_difference(self._model, other, q, self._scales) > SAME_ANSWER for other in self.found]):
             self.found.append(q)
             self.since = 0
 
     @property
     def nearest(self) -> Array:
         """The answer (nq,) with the smallest largest weighted joint change from the start."""
-        return min(self.found, key=lambda q: self._change(self._start, q, self._weights))
-
-    def _change(self, a: Array, b: Array, factors: Array) -> float:
-        return float(np.abs(factors * pinocchio.difference(self._model, a, b)).max(initial=0.0))
+        return min(self.found, key=lambda q: largest_difference(self._model, self._start, q, self._weights))

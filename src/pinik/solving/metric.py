@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from ..model.limits import Limits
 from ..problem.problem import Problem
 
-__all__ = ["Metric", "joint_scales"]
+__all__ = ["Metric", "joint_scales", "largest_difference"]
 
 Array = NDArray[np.float64]
 
@@ -25,6 +25,11 @@ def joint_scales(problem: Problem) -> Array:
         if coordinate.joint.slides(coordinate.index):
             scales[coordinate.joint.idx_v + coordinate.index] = 1.0 / problem.size_of_chain
     return scales
+
+
+def largest_difference(model: pinocchio.Model, a: Array, b: Array, factors: Array | float = 1.0) -> float:
+    """The largest tangent coordinate of the way from configuration a (nq,) to b, each times its factor (nv,)."""
+    return float(np.abs(factors * pinocchio.difference(model, a, b)).max(initial=0.0))
 
 
 class Metric:

@@ -10,7 +10,6 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-import pinocchio
 from numpy.typing import NDArray
 
 from ..problem.kinematics import Kinematics
@@ -18,14 +17,14 @@ from ..problem.targets import Target
 from ..problem.tolerance import TargetError, Tolerance, largest_of
 from ..solvers.base import Patience
 from .choice import SAME_ANSWER
-from .metric import Metric
+from .metric import Metric, largest_difference
 from .question import Question
 from .run import Pace, run
 from .spread import Spread
 from .state import Status
 from .verdict import all_within, measure_errors
 
-__all__ = ["Findings", "Search", "largest_change"]
+__all__ = ["Findings", "Search"]
 
 Array = NDArray[np.float64]
 
@@ -264,7 +263,7 @@ class Search:
             ended_early=self._is_late,
         )
         model = question.robot.model
-        inside = [(largest_change(model, start, answer.q), answer) for answer in self._answers if answer.is_inside]
+        inside = [(largest_difference(model, start, answer.q), answer) for answer in self._answers if answer.is_inside]
         for distance, answer in sorted(inside, key=lambda pair: pair[0]):
             errors = measure_errors(question.robot, targets, answer.q, question.options.tolerance)
             if not all_within(errors, question):
@@ -275,11 +274,6 @@ class Search:
                 findings = findings.with_answer(answer.q, distance, errors, start=answer.start, hits=answer.hits)
         findings.time = time.perf_counter() - self._began
         return findings
-
-
-def largest_change(model: pinocchio.Model, a: Array, b: Array) -> float:
-    """The largest change of a joint from configuration a (nq,) to b [rad or m]."""
-    return float(np.abs(pinocchio.difference(model, a, b)).max(initial=0.0))
 
 
 def _sharpened(question: Question) -> Question:

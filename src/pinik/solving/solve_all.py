@@ -23,11 +23,12 @@ from ..solvers.registry import Method
 from .answer import plainly_asked, prepared_for
 from .branches import Branches
 from .choice import SAME_ANSWER
+from .metric import largest_difference
 from .native.codec import goals_of, targets_of
 from .options import OPTION_NAMES
 from .origin import Origin
 from .prepared import Prepared
-from .search import Findings, largest_change
+from .search import Findings
 from .solution import Solution
 from .spread import NEAREST
 from .state import Status
@@ -138,7 +139,7 @@ def solve_all(
         return _branches(prepared, asked, start, origin.turned, findings)
     one = prepared.answer(asked, origin)
     if one.success:
-        findings = findings.with_answer(one.q, largest_change(robot.model, start, one.q), one.errors)
+        findings = findings.with_answer(one.q, largest_difference(robot.model, start, one.q), one.errors)
     return _branches(prepared, asked, start, origin.turned, findings, one)
 
 
@@ -164,13 +165,13 @@ def _in_closed_form(prepared: Prepared, targets: tuple[Target, ...], start: Arra
         findings.redundancy = 1
     for q, inside in zip(both.q, both.inside, strict=True):
         errors = measure_errors(robot, targets, q, question.options.tolerance)
-        is_new = all(largest_change(robot.model, other, q) > SAME_ANSWER for other in findings.q)
+        is_new = all(largest_difference(robot.model, other, q) > SAME_ANSWER for other in findings.q)
         if not (inside and is_new and all_within(errors, question)):
             continue
         if question.touches(q):
             findings.colliding += 1
         else:
-            findings = findings.with_answer(q, largest_change(robot.model, start, q), errors)
+            findings = findings.with_answer(q, largest_difference(robot.model, start, q), errors)
     findings.time = time.perf_counter() - began
     return findings
 
