@@ -124,23 +124,24 @@ def solve_all(
     )  # fmt: skip
     origin = Origin.of(robot, q0, searches=False)
     plain = plainly_asked(robot, targets, method, wanted, given, solver_parameters)
-    if plain.prepared is not None and plain.prepared.searcher is not None:
-        quick = plain.prepared.searcher.search_at(origin.q, plain.place)
-        if quick is not None and len(quick[0][0]):
-            found, start, goals = quick
-            moved = targets_of(plain.prepared.targets, goals)
-            return _branches(plain.prepared, moved, start, origin.turned, Findings(*found))
-    asked = asked_targets(targets, wanted, method, solver_parameters, ("q0", *_OPTIONS))
-    prepared = prepared_for(robot, asked, method, given, solver_parameters, plain.key)
-    start = prepared.question.limits.wrap(origin.q)
-    search = _in_closed_form if prepared.options.method.exact else _search
-    findings = search(prepared, asked, start)
-    if len(findings.q):
-        return _branches(prepared, asked, start, origin.turned, findings)
-    one = prepared.answer(asked, origin)
-    if one.success:
-        findings = findings.with_answer(one.q, largest_difference(robot.model, start, one.q), one.errors)
-    return _branches(prepared, asked, start, origin.turned, findings, one)
+    prepared, quick = plain.prepared, None
+    if prepared is not None and prepared.searcher is not None:
+        quick = prepared.searcher.search_at(origin.q, plain.place)
+    if prepared is not None and quick is not None:
+        found, start, goals = quick
+        asked, findings = targets_of(prepared.targets, goals), Findings(*found)
+    else:
+        asked = asked_targets(targets, wanted, method, solver_parameters, ("q0", *_OPTIONS))
+        prepared = prepared_for(robot, asked, method, given, solver_parameters, plain.key)
+        start = prepared.question.limits.wrap(origin.q)
+        findings = (_in_closed_form if prepared.options.method.exact else _search)(prepared, asked, start)
+    instead = None
+    if not len(findings.q):
+        instead = prepared.answer(asked, origin)
+        if instead.success:
+            distance = largest_difference(robot.model, start, instead.q)
+            findings = findings.with_answer(instead.q, distance, instead.errors)
+    return _branches(prepared, asked, start, origin.turned, findings, instead)
 
 
 def _search(prepared: Prepared, targets: tuple[Target, ...], start: Array) -> Findings:
