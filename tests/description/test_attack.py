@@ -52,6 +52,7 @@ def case(written: str, meant: str | None = None, harmless: bool = False) -> Case
         (case(pair('<axis xyz="0 0 1"/>'), meant=pair('<axis xyz="0 0 -1"/>')), "disagreed"),
         (case(pair(), meant=robot(link("a"))), "disagreed"),
         (case(pair(), meant="<robot"), "unread"),
+        (case(pair().replace('joint name="', 'joint name="x'), meant=pair('<axis xyz="0 0 -1"/>')), "renamed"),
         (case(pair().replace("revolute", "hinge"), harmless=True), "stopped"),
         (case(chain(3_000, "fixed")), "agreed"),
     ],

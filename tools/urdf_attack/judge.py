@@ -133,6 +133,8 @@ class Judge:
         again = ask_yourdfpy(robot, self._sandbox.plain)
         if not _agrees(again, robot):
             return Outcome("disagreed", f"on the text for Pinocchio: {again}", "disagreed on the text for Pinocchio")
+        if (name := _renamed(robot, case)) is not None:
+            return Outcome("renamed", f"the spoiled bytes name a joint {name!r}", "renamed")
         if opinion.unread is not None:
             return Outcome("unread", opinion.unread, f"unread {_shape(opinion.unread)}")
         assumed = sorted({str(getattr(flaw, "code", flaw))[:40] for flaw in robot.warnings})
@@ -187,6 +189,17 @@ class Judge:
 def _shapes_of(link: LinkTag) -> int:
     """A number for the visual shapes of a link, wherever they stand in the file."""
     return hash(tuple(replace(shape, line=0) for shape in link.visuals))
+
+
+def _renamed(robot: Robot, case: Case) -> str | None:
+    """A joint with a name that the file has and its plain form does not, since the bytes of the name were changed."""
+    if case.written.count(b"<joint ") != case.meant.count(b"<joint "):
+        return None
+    for name in robot.joint_names:
+        quoted = f'name="{name}"'.encode("utf-8", "surrogatepass")
+        if quoted in case.written and quoted not in case.meant:
+            return name
+    return None
 
 
 def _agrees(opinion: SecondOpinion, robot: Robot) -> bool:
