@@ -22,6 +22,7 @@ NB_MODULE(_native, m) {
   pinik::register_places(m);
   pinik::register_kinematics(m);
   pinik::register_track(m);
+  pinik::register_pursuit(m);
   pinik::register_search(m);
   pinik::register_collisions(m);
 }

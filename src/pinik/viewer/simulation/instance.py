@@ -14,15 +14,14 @@ from numpy.typing import NDArray
 
 from ...errors import InputError
 from ...model.limits import Limits
-from ...problem.kinematics import Kinematics
 from ...problem.targets import Target
 from ...problem.tolerance import Tolerance, largest_of
 from ...robot import Robot
 from ...solvers.base import Solver
 from ...solving.message import explain
 from ...solving.options import Options
+from ...solving.pursuit import Pursuit, pursue
 from ...solving.question import Question
-from ...solving.run import Pace, States, run
 from ...solving.state import State, Status
 from ...solving.verdict import judge
 from .statistics import Statistics, StepFigures
@@ -139,7 +138,7 @@ class Instance:
         self.status = "IDLE"
         self.counted = False
         self._idle = why
-        self._states: States | None = None
+        self._pursuit: Pursuit | None = None
         self._state: State | None = None
         self._question: Question | None = None
         self._targets: tuple[Target, ...] = ()
@@ -189,25 +188,24 @@ class Instance:
         self.statistics.add(self.last)
 
     def _run(self, targets: tuple[Target, ...], deadline: float) -> State:
-        if self._states is None:
-            self._states = self._begin(targets)
-            state = next(self._states)
+        if self._pursuit is None:
+            self._pursuit = self._begin(targets)
+            state = self._pursuit.state
         else:
-            state = self._states.send(targets)
+            state = self._pursuit.aim_at(targets)
         while state.status is None and self._clock() < deadline:
-            state = next(self._states)
+            state = self._pursuit.advance(self._pursuit.at_once)
         return state
 
-    def _begin(self, targets: tuple[Target, ...]) -> States:
+    def _begin(self, targets: tuple[Target, ...]) -> Pursuit:
         solver, settings = self._solver, self._settings
         options = Options(solver, limits=settings.limits, tolerance=settings.tolerance, polish=settings.polish)
         try:
             self._question = Question.of(self.robot, targets, options)
         except InputError as error:
             raise _RefusedError(str(error)) from None
-        limits, kinematics = self._question.limits, Kinematics.of(self._question.problem)
         most = solver.max_iterations if settings.until_reached else settings.at_most
-        return run(self._question, kinematics, limits.wrap(self.q), Pace(most))
+        return pursue(self._question, self._question.limits.wrap(self.q), most)
 
     def _fail(self, error: Exception, spent: float) -> None:
         """Count a step in which the solver raised an exception as a miss."""
