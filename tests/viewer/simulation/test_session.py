@@ -261,7 +261,7 @@ def test_a_value_that_is_there_already_changes_nothing(arm):
     shown.set_motion("curve")
     steps(shown, 5)
     before = snapshot(shown)
-    states = [one._states for one in shown.instances]
+    pursuits = [one._pursuit for one in shown.instances]
     for index, one in enumerate(shown.instances):
         shown.set_method(index, one.solver.name)
         for name, value in one.solver.parameters.items():
@@ -271,7 +271,7 @@ def test_a_value_that_is_there_already_changes_nothing(arm):
     shown.set_motion("curve")
     shown.set_view(4)
     assert snapshot(shown) == before
-    assert [one._states for one in shown.instances] == states  # no run was started anew
+    assert [one._pursuit for one in shown.instances] == pursuits  # no run was started anew
 
 
 @pytest.mark.parametrize(
@@ -527,7 +527,11 @@ def test_a_solver_that_raises_leaves_the_others_alone(arm):
 
 def test_solvers_get_seven_tenths_of_a_step_between_them(arm):
     """Each reading of the clock takes 1 ms. Four solvers share 11.7 ms, so each has time for two iterations."""
-    shown = session(arm, ["jt"] * 4, Clock(each=0.001))
+
+    class Own(pinik.JacobianTranspose):
+        name = "own"
+
+    shown = session(arm, [Own] * 4, Clock(each=0.001))
     shown.move_ball(0, [0.5, 0.4, 0.4])
     shown.step()
     assert [one.status for one in shown.seen] == ["TIME_LIMIT"] * 4
