@@ -11,7 +11,7 @@ pinocchio_version: str = "4.1.0"
 
 coal_version: str = "3.0.3"
 
-abi: str = "02e4b751847afb40"
+abi: str = "4f9709e3b5ee8de4"
 
 class JointKind(enum.Enum):
     revolute = 0
@@ -193,6 +193,34 @@ class Constants:
     def search_outside(self) -> float: ...
     @search_outside.setter
     def search_outside(self, arg: float, /) -> None: ...
+    @property
+    def search_spacing(self) -> float: ...
+    @search_spacing.setter
+    def search_spacing(self, arg: float, /) -> None: ...
+    @property
+    def search_nearly_singular(self) -> float: ...
+    @search_nearly_singular.setter
+    def search_nearly_singular(self, arg: float, /) -> None: ...
+    @property
+    def search_alike(self) -> float: ...
+    @search_alike.setter
+    def search_alike(self, arg: float, /) -> None: ...
+    @property
+    def continuum_singular(self) -> float: ...
+    @continuum_singular.setter
+    def continuum_singular(self, arg: float, /) -> None: ...
+    @property
+    def continuum_aside(self) -> float: ...
+    @continuum_aside.setter
+    def continuum_aside(self, arg: float, /) -> None: ...
+    @property
+    def continuum_iterations(self) -> int: ...
+    @continuum_iterations.setter
+    def continuum_iterations(self, arg: int, /) -> None: ...
+    @property
+    def continuum_parts(self) -> int: ...
+    @continuum_parts.setter
+    def continuum_parts(self, arg: int, /) -> None: ...
     @property
     def jump_floor(self) -> float: ...
     @jump_floor.setter
@@ -536,6 +564,7 @@ class Engine:
         start: Annotated[NDArray[numpy.float64], dict(shape=(None,), order="C")],
         goals: Annotated[NDArray[numpy.float64], dict(shape=(None, 18), order="C", writable=False)],
         nearest: bool,
+        spent: float = 0.0,
     ) -> Answer: ...
     def solve_many(
         self, starts: NDArray[numpy.float64], goals: NDArray[numpy.float64], nearest: bool, threads: int
@@ -625,6 +654,7 @@ class Searcher:
             NDArray[numpy.float64],
             NDArray[numpy.int64],
             NDArray[numpy.int64],
+            NDArray[numpy.int64],
             int,
             int,
             int,
@@ -644,6 +674,7 @@ class Searcher:
                 NDArray[numpy.float64],
                 NDArray[numpy.float64],
                 NDArray[numpy.float64],
+                NDArray[numpy.int64],
                 NDArray[numpy.int64],
                 NDArray[numpy.int64],
                 int,

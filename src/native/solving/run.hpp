@@ -42,10 +42,10 @@ class Run {
       since = 0;
     };
     for (;;) {
-      bool reached = all_within();
+      bool reached = all_within(problem, at_.errors);
       if (reached && !limits.contains(at_.q)) {  // only a bold run gets there
         move_inside();
-        reached = all_within();
+        reached = all_within(problem, at_.errors);
       }
       if (settings.polish && !kinematics_.loose && (reached || before < infinity)) {
         const bool gains = reached && at_.residual <= problem.constants.polishing_gain * before;
@@ -97,12 +97,6 @@ class Run {
   Kinematics<Rows>& kinematics_;
   Stepping<Rows> stepping_;
   Linearization<Rows> at_, next_;
-
-  bool all_within() const {
-    for (std::size_t t = 0; t < at_.errors.size(); ++t)
-      if (!at_.errors[t].within(kinematics_.problem.terms[t].tolerance)) return false;
-    return true;
-  }
 };
 
 }  // namespace pinik
