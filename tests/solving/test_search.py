@@ -274,3 +274,14 @@ class TestSamples:
         assert all(not panda.collisions(q, world=world) for q in branches)
         few = panda.solve_all("panda_hand_tcp", avoid=["self", world], restarts=31, **words)
         assert len(few) < len(branches)
+
+
+@needs_native
+def test_a_placement_of_a_question_that_is_known_goes_straight_to_the_compiled_engine(ur5, monkeypatch):
+    place = ur5.placement("tool0", Q)
+    before = ur5.solve_all("tool0", placement=place)
+    monkeypatch.setattr(sys.modules["pinik.solving.solve_all"], "asked_targets", None)  # reads targets anew
+    for same in (place, place.homogeneous):
+        again = ur5.solve_all("tool0", placement=same)
+        assert np.array_equal(again.q, before.q)
+        assert again.targets[0].rotation == pytest.approx(place.rotation, abs=1e-15)

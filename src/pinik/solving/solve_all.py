@@ -130,7 +130,8 @@ def solve_all(
     plain = plainly_asked(robot, targets, method, wanted, given, solver_parameters)
     prepared, quick = plain.prepared, None
     if prepared is not None and prepared.searcher is not None:
-        quick = prepared.searcher.search_at(origin.q, plain.place)
+        place = plain.place.homogeneous if isinstance(plain.place, pinocchio.SE3) else plain.place
+        quick = prepared.searcher.search_at(origin.q, place)
     if prepared is not None and quick is not None:
         found, start, goals = quick
         asked, findings = targets_of(prepared.targets, goals), Findings(*found)
