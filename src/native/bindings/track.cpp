@@ -60,11 +60,7 @@ nb::tuple ticked(Track& track, const Numbers& start, const Numbers& most, const 
                                 std::to_string(most.shape(0)));
   const auto [answer, approaches] = track.tick(Eigen::Map<const Vector>(start.data(), problem.mechanism->nq),
                                            Eigen::Map<const Vector>(most.data(), nv), goals);
-  TargetError largest;
-  for (const TargetError& error : answer.errors) {
-    largest.position = std::fmax(largest.position, error.position);
-    largest.orientation = std::fmax(largest.orientation, error.orientation);
-  }
+  const TargetError largest = largest_of(answer.errors);
   return nb::make_tuple(as_array(answer.q), answer.status == Status::converged, approaches, largest.position,
                         largest.orientation);
 }

@@ -61,6 +61,13 @@ struct Constants {
   double search_approach = not_given;
   double search_basin = not_given;
   double search_outside = not_given;
+  double search_spacing = not_given;
+  double search_nearly_singular = not_given;
+  double search_alike = not_given;
+  double continuum_singular = not_given;
+  double continuum_aside = not_given;
+  int continuum_iterations = 0;
+  int continuum_parts = 0;
   double jump_floor = not_given;
   double jump_factor = not_given;
   double jump_damping = not_given;

@@ -129,14 +129,8 @@ class WayOut {
 
   // Write the configuration after a step of the free coordinates into `there`.
   void move(const Vector& q, const Vector& dq, Vector& there) const {
-    const Problem& problem = kinematics_.problem;
     there = q;
-    for (const MovingJoint& moving : problem.moving) {
-      const Joint& joint = problem.mechanism->joints[static_cast<std::size_t>(moving.joint)];
-      double own[6];
-      for (int i = 0; i < joint.nv; ++i) own[i] = moving.coordinates[i] < 0 ? 0.0 : dq[moving.coordinates[i]];
-      problem.mechanism->integrate(joint, there.data(), own);
-    }
+    integrate(kinematics_.problem, dq, there);
   }
 
   // Write the configuration near aside_ that reaches the targets again into there_. Returns false if there is none.

@@ -38,20 +38,22 @@ class Branches:
     one nearest to the start, and `windings` tells how far the joints can turn from there.
 
     Attributes:
-        q: The configurations (n, nq), ordered by `distance`.
+        q: The configurations (n, nq), ordered by `distance`; at distances equal to 1e-6, by their entries.
         distance: The largest change of a joint from the start to each (n,) [rad, or m for prismatic joints].
         position_error: The largest position error of each (n,) [m], by plain Pinocchio; NaN without positions.
         orientation_error: The largest orientation error, likewise (n,) [rad].
         found_at: The number of the start from which each was found (n,); 0 is the given start.
-        hits: How many starts led to each (n,).
+        hits: How many starts led to each (n,). Where answers are usually isolated, one of a continuum stands for all
+            within 0.5 rad, so that a start that led to one of these counts for it.
+        dimension: The dimension of the set of answers around each (n,): 0 for an isolated one, 1 for one of a curve.
         starts: The number of starts tried.
-        redundancy: The dimension of the set of answers at a general configuration. If it is 0, answers are isolated; if
-            not, there are infinitely many, and `q` has a sample of them.
+        redundancy: The largest dimension of the set of answers. If it is 0, all that were found are isolated; if not,
+            there are infinitely many, and `q` has a sample of them, with all isolated ones that were found.
         colliding: The number of answers that were left out because something touches that is to be avoided.
         is_complete: Whether these are proved to be all; only a closed form proves it.
         ended_early: Whether the time limit ended the search.
         status: `Status.CONVERGED` if there is an answer; else why there is none.
-        time: The duration of the search [s].
+        time: The duration of the search [s], with that of the solve after a search that found nothing.
     """
 
     q: Array
@@ -60,6 +62,7 @@ class Branches:
     orientation_error: Array
     found_at: NDArray[np.int64]
     hits: NDArray[np.int64]
+    dimension: NDArray[np.int64]
     starts: int
     redundancy: int
     colliding: int
@@ -122,7 +125,9 @@ class Branches:
             return f"{begin}, all that there are"
         begin += f" from {self.starts} start{'s' * (self.starts != 1)}{', ended by the time limit' * self.ended_early}"
         if self.redundancy:
-            return f"{begin}, of infinitely many in {self.redundancy} dimension{'s' * (self.redundancy > 1)}"
+            isolated = int((self.dimension == 0).sum())
+            begin += f": {isolated} isolated, and {len(self) - isolated}" if isolated else ","
+            return f"{begin} of infinitely many in {self.redundancy} dimension{'s' * (self.redundancy > 1)}"
         left = self.estimate_missing
         if math.isinf(left):
             return f"{begin}, too few to tell how many are missing"
@@ -163,7 +168,7 @@ class Branches:
 
     @cached_property
     def families(self) -> tuple[SelfMotion, ...]:
-        """The curves on which the branches lie, if the answers have one dimension; empty otherwise. They may collide.
+        """The curves on which branches lie, if the answers have at most one dimension. They may collide.
 
         Each is the self-motion through one of the branches, so that no two are the same. They are traced when they are
         first read, which takes some 20 ms for each.
@@ -171,7 +176,7 @@ class Branches:
         if self.redundancy != 1:
             return ()
         found: list[SelfMotion] = []
-        for q in self.q:
+        for q in self.q[self.dimension == 1]:
             if not any(family.contains(q) for family in found):
                 found.append(self_motion(self.robot, self._targets, q, **self._conditions))
         return tuple(found)
@@ -228,15 +233,16 @@ class Branches:
                     "orientation_error_rad": _number(orientation),
                     "found_at": int(found_at),
                     "hits": int(hits),
+                    "dimension": int(dimension),
                     "windings": {
                         name: turns.tolist()
                         for name, turns in zip(self.robot.joint_names, windings, strict=True)
                         if turns.any()
                     },
                 }
-                for angles, q, distance, position, orientation, found_at, hits, windings in zip(
+                for angles, q, distance, position, orientation, found_at, hits, dimension, windings in zip(
                     self.angles, self.q, self.distance, self.position_error, self.orientation_error, self.found_at,
-                    self.hits, self.windings, strict=True,
+                    self.hits, self.dimension, self.windings, strict=True,
                 )
             ],
             "complete": self.is_complete,

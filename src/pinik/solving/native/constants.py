@@ -9,7 +9,7 @@ from ...engine import load
 from ...model import configurations, joint, limits
 from ...problem import problem, reach, slack, targets, tolerance
 from ...solvers import ccd, chaser, damped_least_squares, pseudo_inverse
-from .. import aims, attempts, changes, choice, run, search, spread, starts, walk, way_out
+from .. import aims, attempts, changes, choice, continuum, run, search, spread, starts, walk, way_out
 
 __all__ = ["CONSTANTS", "make_constants", "make_way_out"]
 
@@ -53,6 +53,13 @@ CONSTANTS = {
     "search_approach": search.APPROACH,
     "search_basin": search.BASIN,
     "search_outside": search.OUTSIDE,
+    "search_spacing": search.SPACING,
+    "search_nearly_singular": search.NEARLY_SINGULAR,
+    "search_alike": search.ALIKE,
+    "continuum_singular": continuum.SINGULAR,
+    "continuum_aside": continuum.ASIDE,
+    "continuum_iterations": continuum.ITERATIONS,
+    "continuum_parts": continuum.PARTS,
     "jump_floor": changes.JUMP_FLOOR,
     "jump_factor": changes.JUMP_FACTOR,
     "jump_damping": changes.JUMP_DAMPING,
