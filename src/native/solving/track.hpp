@@ -2,7 +2,7 @@
 #pragma once
 
 #include <memory>
-#include <utility>
+#include <optional>
 #include <variant>
 
 #include "engine.hpp"
@@ -62,21 +62,28 @@ class Track {
     return count;
   }
 
-  // One tick from `q` towards the goals, in which the joints change by at most `most`. Returns the answer, and whether
-  // further ticks will bring the targets nearer.
-  std::pair<Answer, bool> tick(Vector q, const Vector& most, const std::vector<Goal>& goals) {
+  // What a tick came to: the answer, whether further ticks will bring the targets nearer, and where something touches that
+  // kept the tick from going on.
+  struct Tick {
+    Answer answer;
+    bool approaches = false;
+    std::optional<Vector> touching;
+  };
+
+  // One tick from `q` towards the goals, in which the joints change by at most `most`.
+  Tick tick(Vector q, const Vector& most, const std::vector<Goal>& goals) {
     interrupts_.pause = nullptr;
     place(q);
     problem_.goals = goals;
-    Answer answer;
-    bool approaches = false;
+    Tick tick;
     with_walk([&](auto& walk) {
       const Stride& stride = walk.tick(q, most);
-      approaches = stride.approaches;
-      keep(stride, answer);
+      tick.approaches = stride.approaches;
+      tick.touching = stride.touching;
+      keep(stride, tick.answer);
     });
-    certify(answer);
-    return {std::move(answer), approaches};
+    certify(tick.answer);
+    return tick;
   }
 
  private:
