@@ -116,6 +116,8 @@ void register_constants(nb::module_& m) {
       .def_rw("restarts_when_unreachable", &Constants::restarts_when_unreachable)
       .def_rw("exact_attempts", &Constants::exact_attempts)
       .def_rw("same_answer", &Constants::same_answer)
+      .def_rw("colliding_least", &Constants::colliding_least)
+      .def_rw("colliding_since", &Constants::colliding_since)
       .def_rw("nothing_new_share", &Constants::nothing_new_share)
       .def_rw("table_size", &Constants::table_size)
       .def_rw("table_nearest", &Constants::table_nearest)

@@ -45,6 +45,8 @@ struct Constants {
   int restarts_when_unreachable = 0;
   int exact_attempts = 0;
   double same_answer = not_given;
+  int colliding_least = 0;
+  int colliding_since = 0;
   double nothing_new_share = not_given;
   int table_size = 0;
   int table_nearest = 0;

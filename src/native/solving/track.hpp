@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <utility>
 
 #include "engine.hpp"
@@ -56,21 +57,28 @@ class Track {
     return count;
   }
 
-  // One tick from `q` towards the goals, in which the joints change by at most `most`. Returns the answer, and whether
-  // further ticks will bring the targets nearer.
-  std::pair<Answer, bool> tick(Vector q, const Vector& most, const std::vector<Goal>& goals) {
+  // What a tick came to: the answer, whether further ticks will bring the targets nearer, and where something touches that
+  // kept the tick from going on.
+  struct Tick {
+    Answer answer;
+    bool approaches = false;
+    std::optional<Vector> touching;
+  };
+
+  // One tick from `q` towards the goals, in which the joints change by at most `most`.
+  Tick tick(Vector q, const Vector& most, const std::vector<Goal>& goals) {
     interrupts_.pause = nullptr;
     place(q);
     problem_.goals = goals;
-    Answer answer;
-    bool approaches = false;
+    Tick tick;
     walk_.with([&](auto& walk) {
       const Stride& stride = walk.tick(q, most);
-      approaches = stride.approaches;
-      keep(stride, answer);
+      tick.approaches = stride.approaches;
+      tick.touching = stride.touching;
+      keep(stride, tick.answer);
     });
-    certify(answer);
-    return {std::move(answer), approaches};
+    certify(tick.answer);
+    return tick;
   }
 
  private:

@@ -30,6 +30,16 @@ class WayOut {
   // The depth of the deepest touch at q [m]; −1 if nothing touches.
   double depth(const Vector& q) { return deepest(collisions_->report(q.data())); }
 
+  // Whether the targets leave no motion at the answer q: whether their Jacobian has no kernel.
+  bool is_isolated(const Vector& q) {
+    at_.q = q;
+    kinematics_.loose = false;
+    kinematics_.linearize(at_);
+    Eigen::JacobiSVD<Eigen::MatrixXd> svd{Eigen::MatrixXd(at_.J)};
+    svd.setThreshold(own_.same_rank);
+    return svd.rank() == at_.J.cols();
+  }
+
   // Go on from an answer `q` at which something touches, as long as the touches become less deep. `near` is the
   // configuration to which hinges are turned. Writes the last answer into `q` and returns its depth.
   double operator()(Vector& q, const Vector& near) {

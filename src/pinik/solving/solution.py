@@ -125,7 +125,11 @@ class Solution:
 
     @cached_property
     def chosen_from(self) -> int:
-        """The number of distinct answers that this one was chosen from; always 1 with `choose="first"`."""
+        """The number of distinct answers that this one was chosen from.
+
+        With `choose="first"` it is 1, unless the status is COLLIDING: then so many answers were found, up to whole
+        turns, and all of them collide.
+        """
         return self._outcome.chosen_from
 
     @cached_property
