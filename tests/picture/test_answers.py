@@ -289,6 +289,26 @@ def test_what_stands_around_is_drawn_and_what_touches_it_is_red(bars):
     assert not red(only.pixels).any()
 
 
+def test_an_object_with_the_name_of_a_link_makes_no_link_of_its_name_red(bars):
+    """The box "hand" goes into the bar "lower"; the hand itself is free of everything."""
+    world = pinik.World()
+    post = middle(bars, "lower", FREE)
+    world.add_box("hand", [0.03, 0.03, 0.6], post)
+    (touch,) = bars.collisions(FREE, world)
+    assert (touch.pair, touch.with_world, touch.links) == (("lower", "hand"), True, ("lower",))
+    (own,) = bars.collisions(np.array([0.2, 2.55, 1.6]))
+    assert (set(own.links), own.with_world) == ({"upper", "hand"}, False)
+    picture = pinik.draw(bars, FREE, world=world, collisions=True, view="top", **BARE)
+    assert red(at(picture, post + 0.4 * (bars.placement("hand", FREE).translation - post)))
+    assert not red(at(picture, middle(bars, "hand", FREE)))
+    assert not red(at(picture, post + np.array([0.0, 0.0, 0.3])))
+    tip = bars.placement("tip", FREE).translation
+    solution = bars.solve("tip", tip, q0=FREE, avoid=world, restarts=0)
+    assert solution.status is pinik.Status.COLLIDING
+    drawn = pinik.draw(bars, solution, view="top", **BARE)
+    assert not red(at(drawn, middle(bars, "hand", solution.q)))
+
+
 def test_a_ghost_is_seen_in_front_of_what_stands_around_and_not_behind(bars):
     branches = elbows(bars, [2.0, -2.0, 0.5])
     point = 0.5 * bars.placement("lower", branches[1]).translation

@@ -18,7 +18,7 @@ from ..solving.self_motion import SelfMotion
 from ..solving.solution import Solution
 from .arguments import as_color, as_configurations
 
-__all__ = ["GHOSTS", "TINTS", "Drawable", "Pose", "names_of", "poses_of"]
+__all__ = ["GHOSTS", "TINTS", "Drawable", "Pose", "links_of", "poses_of"]
 
 Array = NDArray[np.float64]
 
@@ -53,9 +53,9 @@ class Pose:
     touching: frozenset[str] = frozenset()
 
 
-def names_of(collisions: Iterable[Collision]) -> frozenset[str]:
-    """The names of all that touch."""
-    return frozenset(name for collision in collisions for name in collision.pair)
+def links_of(collisions: Iterable[Collision]) -> frozenset[str]:
+    """The names of the links that touch something."""
+    return frozenset(name for collision in collisions for name in collision.links)
 
 
 def poses_of(robot: Robot, shown: Drawable | None) -> list[Pose]:
@@ -71,7 +71,7 @@ def poses_of(robot: Robot, shown: Drawable | None) -> list[Pose]:
     if isinstance(shown, SelfMotion):
         return _of(robot, _fans([shown]))
     if isinstance(shown, Solution):
-        return _of(robot, iter([Pose(shown.q, touching=names_of(shown.collisions))]))
+        return _of(robot, iter([Pose(shown.q, touching=links_of(shown.collisions))]))
     if _are_motions(shown):
         return _of(robot, _fans(shown))
     return [Pose(q) for q in as_configurations(robot, shown)]  # type: ignore[arg-type]

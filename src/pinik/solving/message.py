@@ -65,7 +65,8 @@ def explain(
 def _colliding(targets: Sequence[Target], collisions: Sequence[Collision]) -> str:
     """Which of the links and obstacles overlap, and by how much."""
     first, *others = collisions
-    words = f"reaches the target{'s' * (len(targets) > 1)}, but {first.pair[0]} and {first.pair[1]} "
+    link, other = first.pair
+    words = f"reaches the target{'s' * (len(targets) > 1)}, but {link} and {'the object ' * first.with_world}{other} "
     words += f"overlap by {_length(first.depth)}" if first.depth > 0.0 else "touch"
     more = f"; {len(others)} more pair{'s touch' if len(others) > 1 else ' touches'}"
     return words + more * bool(others)
