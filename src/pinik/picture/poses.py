@@ -24,8 +24,14 @@ Array = NDArray[np.float64]
 
 Drawable: TypeAlias = ArrayLike | Solution | Branches | SelfMotion | Sequence[SelfMotion]
 
-TINTS = ("#1f6fc4", "#d97a00", "#0c9a72", "#b9559a", "#7a5fd0", "#94a81e", "#2a9db0")
-"""The colours of ghosts, one after the other; none is red, as balls are."""
+TINTS = (
+    "#1f6fc4", "#d97a00", "#0c9a72", "#b9559a", "#7a5fd0", "#94a81e", "#2a9db0",
+    "#6e3f18", "#ecd800", "#cc22dd", "#86f2c8", "#3322dd", "#e8bfae", "#3cc81e", "#6a1080",
+)  # fmt: skip
+"""The colours of ghosts, one after the other, from the first again after the last; none is red, as balls are.
+
+On a grey arm, any two ghosts differ by more than 5 in CIELAB (ΔE of 1976), on white and on nearly black.
+"""
 
 GHOSTS = 12
 """How many ghosts stand for infinitely many answers."""
