@@ -90,13 +90,15 @@ def test_where_both_elbows_touch_the_shallower_is_told_with_names_and_depth(engi
     (touch,) = found.collisions
     assert set(touch.pair) == {"b0", "ball1"}
     assert touch.depth == pytest.approx(0.012, abs=1e-6)
-    assert found.message == "reaches the target, but b0 and ball1 overlap by 1.2 cm; both answers found collide"
+    assert (
+        found.message == "reaches the target, but b0 and the object ball1 overlap by 1.2 cm; both answers found collide"
+    )
     assert found.chosen_from == 2
-    with pytest.raises(pinik.SolveError, match=r"b0 and ball1 overlap by 1\.2 cm"):
+    with pytest.raises(pinik.SolveError, match=r"b0 and the object ball1 overlap by 1\.2 cm"):
         found.raise_for_status()
     document = found.to_dict()
     assert document["status"] == "COLLIDING"
-    assert document["collisions"] == [{"pair": ["b0", "ball1"], "depth_m": touch.depth}]
+    assert document["collisions"] == [{"pair": ["b0", "ball1"], "with_world": True, "depth_m": touch.depth}]
     again = pickle.loads(pickle.dumps(found))
     assert [one.pair for one in again.collisions] == [("b0", "ball1")]
     assert again.message == found.message

@@ -12,8 +12,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..model.robot_model import RobotModel
+from ..problem.coordinates import Coordinate
 from ..problem.targets import Target
 from ..problem.tolerance import TargetError
+from .changes import farthest_coordinate
 from .origin import unwound
 from .question import Question
 from .search import LEAST
@@ -26,7 +28,7 @@ __all__ = ["Branches"]
 
 Array = NDArray[np.float64]
 
-_FROM_THE_QUESTION = ("robot", "method", "joint_names", "windings", "errors", "_conditions")
+_FROM_THE_QUESTION = ("robot", "method", "joint_names", "windings", "errors", "_farthest", "_conditions")
 
 
 @dataclass(frozen=True, eq=False)
@@ -39,7 +41,8 @@ class Branches:
 
     Attributes:
         q: The configurations (n, nq), ordered by `distance`; at distances equal to 1e-6, by their entries.
-        distance: The largest change of a joint from the start to each (n,) [rad, or m for prismatic joints].
+        distance: The largest change of a joint from the start to each (n,), in `distance_unit`. Here a metre is as much
+            as a radian.
         position_error: The largest position error of each (n,) [m], by plain Pinocchio; NaN without positions.
         orientation_error: The largest orientation error, likewise (n,) [rad].
         found_at: The number of the start from which each was found (n,); 0 is the given start.
@@ -97,6 +100,21 @@ class Branches:
         """The joints that the search moves, in the order of `robot.joint_names`."""
         moving = {coordinate.joint.name for coordinate in self._question.problem.coordinates}
         return [name for name in self.robot.joint_names if name in moving]
+
+    @property
+    def farthest_joint(self) -> list[str | None]:
+        """The joint that changes most from the start to each branch, by its `distance`; None if no joint can move."""
+        return [name for name, _ in self._farthest]
+
+    @property
+    def distance_unit(self) -> list[str]:
+        """The unit of each `distance`: "m" where the joint that changes most slides, else "rad"."""
+        return [unit for _, unit in self._farthest]
+
+    @cached_property
+    def _farthest(self) -> list[tuple[str | None, str]]:
+        ones = [farthest_coordinate(self._question.problem, self._start, q) for q in self.q]
+        return [(None, "rad") if one is None else (one.joint.name, _unit(one)) for one in ones]
 
     @property
     def targets(self) -> tuple[Target, ...]:
@@ -215,36 +233,22 @@ class Branches:
     def __str__(self) -> str:
         return self.message
 
-    def to_dict(self) -> dict[str, Any]:
-        """A dictionary for JSON, as `pinik solve-all --json` prints it."""
+    def to_dict(self, families: bool = False) -> dict[str, Any]:
+        """A dictionary for JSON, as `pinik solve-all --json` prints it.
+
+        Args:
+            families: Whether to trace the families as well, as with `--families`.
+        """
         missing = self.estimate_missing
+        traced = {"families": [family.to_dict() for family in self.families]} if families else {}
         return {
             "schema": 1,
             "robot": self.robot.name,
             "success": self.success,
             "status": self.status.name,
             "message": self.message,
-            "branches": [
-                {
-                    "angles": angles,
-                    "q": q.tolist(),
-                    "distance": float(distance),
-                    "position_error_m": _number(position),
-                    "orientation_error_rad": _number(orientation),
-                    "found_at": int(found_at),
-                    "hits": int(hits),
-                    "dimension": int(dimension),
-                    "windings": {
-                        name: turns.tolist()
-                        for name, turns in zip(self.robot.joint_names, windings, strict=True)
-                        if turns.any()
-                    },
-                }
-                for angles, q, distance, position, orientation, found_at, hits, dimension, windings in zip(
-                    self.angles, self.q, self.distance, self.position_error, self.orientation_error, self.found_at,
-                    self.hits, self.dimension, self.windings, strict=True,
-                )
-            ],
+            "branches": [self._branch(index) for index in range(len(self))],
+            **traced,
             "complete": self.is_complete,
             "estimate_missing": None if math.isinf(missing) else missing,
             "redundancy": self.redundancy,
@@ -253,7 +257,28 @@ class Branches:
             "time_s": self.time,
             "method": self.method,
             "engine": self._engine,
-        }  # fmt: skip
+        }
+
+    def _branch(self, index: int) -> dict[str, Any]:
+        """One branch for JSON."""
+        turns = zip(self.robot.joint_names, self.windings[index], strict=True)
+        return {
+            "angles": self.angles[index],
+            "q": self.q[index].tolist(),
+            "distance": float(self.distance[index]),
+            "farthest_joint": self.farthest_joint[index],
+            "distance_unit": self.distance_unit[index],
+            "position_error_m": _number(self.position_error[index]),
+            "orientation_error_rad": _number(self.orientation_error[index]),
+            "found_at": int(self.found_at[index]),
+            "hits": int(self.hits[index]),
+            "dimension": int(self.dimension[index]),
+            "windings": {name: own.tolist() for name, own in turns if own.any()},
+        }
+
+
+def _unit(coordinate: Coordinate) -> str:
+    return "m" if coordinate.joint.slides(coordinate.index) else "rad"
 
 
 def _number(value: float) -> float | None:

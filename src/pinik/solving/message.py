@@ -71,7 +71,8 @@ def _colliding(targets: Sequence[Target], collisions: Sequence[Collision], answe
 def overlap(collisions: Sequence[Collision]) -> str:
     """Which two overlap the deepest, and by how much, and how many others touch."""
     first, *others = collisions
-    words = f"{first.pair[0]} and {first.pair[1]} "
+    link, other = first.pair
+    words = f"{link} and {'the object ' * first.with_world}{other} "
     words += f"overlap by {_length(first.depth)}" if first.depth > 0.0 else "touch"
     more = f"; {len(others)} more pair{'s touch' if len(others) > 1 else ' touches'}"
     return words + more * bool(others)

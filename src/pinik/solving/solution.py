@@ -260,7 +260,10 @@ class Solution:
             "chosen_from": self.chosen_from,
             "time_s": self.time,
             "active_limits": list(self.active_limits),
-            "collisions": [{"pair": list(touch.pair), "depth_m": touch.depth} for touch in self.collisions],
+            "collisions": [
+                {"pair": list(touch.pair), "with_world": touch.with_world, "depth_m": touch.depth}
+                for touch in self.collisions
+            ],
             "method": self.method,
             "parameters": {name: _jsonable(value) for name, value in self.parameters.items()},
             "engine": self.engine,
