@@ -51,7 +51,7 @@ def test_an_arm_without_a_joint_to_spare_stops_before_a_ball(engine, method):
         q = tracker(wanted)
     assert tracker.status is TrackerStatus.BLOCKED
     assert {touch.pair for touch in tracker.collisions} == {("b1", "ball0")}
-    assert tracker.message.startswith("what must not touch is in the way: b1 and ball0 overlap by ")
+    assert tracker.message.startswith("what must not touch is in the way: b1 and the object ball0 overlap by ")
     assert tracker.position_error == pytest.approx(np.linalg.norm(machine.placement("tip", q).translation - wanted))
     assert 0.0 < gap(machine, TWO, q, centre) < 1e-3
     assert np.abs(tracker(wanted) - q).max() < 1e-4
