@@ -242,6 +242,21 @@ def test_load_gives_the_reason_of_every_mesh_that_is_not_found(tmp_path: Path) -
         assert [line for line in lines if repr(address) in line and why in line], address
 
 
+def test_packages_that_are_spelled_otherwise_are_one_line(tmp_path: Path) -> None:
+    made(tmp_path / "arm" / "M.stl")
+    package(tmp_path / "the_hand", "hand")
+    shapes = (
+        f'<visual><geometry><mesh filename="package://{name}/M.stl"/></geometry></visual>' for name in ("ARM", "Hand")
+    )
+    urdf = made(tmp_path / "arm" / "arm.urdf", robot(link("a", "".join(shapes))))
+    with pytest.warns(pinik.UrdfWarning) as caught:
+        pinik.load(urdf)
+    (line,) = [str(warning.message) for warning in caught]
+    assert "'package://ARM/M.stl'" in line
+    assert "'package://Hand/M.stl'" in line
+    assert "there is a package whose name differs only in upper and lower case" in line
+
+
 def test_thousands_of_packages_that_are_not_found_are_one_line(tmp_path: Path) -> None:
     shapes = (f'<visual><geometry><mesh filename="package://p{i}/m.stl"/></geometry></visual>' for i in range(500))
     urdf = made(tmp_path / "arm" / "arm.urdf", robot(link("a", "".join(shapes))))

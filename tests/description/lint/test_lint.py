@@ -321,6 +321,15 @@ def test_names_that_differ_only_in_case():
     assert (flaw.code, flaw.element) == ("similar-names", "link 'arm'")
 
 
+def test_a_long_name_is_quoted_by_its_beginning_and_its_end():
+    name = "a" * 100 + "b" * 100
+    flaw = only(robot(link(name), link(name.upper()), joint("j", name, name.upper())))
+    assert flaw.element.startswith("link 'AAAA")
+    assert flaw.element.endswith("BBBB'")
+    assert len(flaw.element) <= len("link ''") + 60
+    assert f"link {name!r}" not in flaw.cause
+
+
 def colored(name: str, rgba: str = "") -> str:
     return f'<material name="{name}"><color rgba="{rgba}"/></material>' if rgba else f'<material name="{name}"/>'
 
