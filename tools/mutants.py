@@ -11,6 +11,7 @@ of parameters) always survives.
 from __future__ import annotations
 
 import argparse
+import filecmp
 import os
 import random
 import shutil
@@ -82,13 +83,20 @@ def _copy(room: str) -> Path:
     for name in COPIED:
         source, target = ROOT / name, folder / name
         if source.is_dir():
-            shutil.copytree(source, target, dirs_exist_ok=True, ignore=shutil.ignore_patterns("__pycache__"))
+            ignored = shutil.ignore_patterns("__pycache__")
+            shutil.copytree(source, target, dirs_exist_ok=True, ignore=ignored, copy_function=_copy_if_changed)
         else:
             folder.mkdir(parents=True, exist_ok=True)
             shutil.copy(source, target)
     with (folder / "pyproject.toml").open("a") as file:
         file.write(_settings(room))
     return folder
+
+
+def _copy_if_changed(source: str, target: str) -> None:
+    """Copy a file as a new one: mutmut keeps its mutants of a file that is older than they are."""
+    if not (os.path.exists(target) and filecmp.cmp(source, target, shallow=False)):
+        shutil.copyfile(source, target)
 
 
 def _settings(room: str) -> str:

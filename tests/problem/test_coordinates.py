@@ -120,3 +120,21 @@ def test_a_joint_of_several_coordinates_has_room_without_end():
     assert len(several) == 6 + 6 + 3
     for coordinate in several:
         assert coordinate.room(robot.neutral(), limits) == (-math.inf, math.inf)
+
+
+@pytest.mark.parametrize("held", [(), ("first",), ("spin",), ("last",), ("first", "spin")])
+def test_the_held_entries_of_q_are_those_of_joints_that_do_not_move_the_frame_or_are_locked(held):
+    """A continuous joint has two entries of q, so that entries and tangent coordinates are counted differently."""
+    arm = pinik.load(
+        robot(
+            *(link(name) for name in "abcde"),
+            joint("first", "a", "b"),
+            joint("spin", "b", "c", kind="continuous", limit=""),
+            joint("last", "c", "d", origin((0.5, 0, 0))),
+            joint("beyond", "d", "e", origin((0.5, 0, 0))),
+        )
+    )
+    ids = {name: arm.model.joints[arm.model.getJointId(name)] for name in ("first", "spin", "last", "beyond")}
+    still = [j for name, j in ids.items() if name in held or name == "beyond"]
+    entries = sorted(entry for j in still for entry in range(j.idx_q, j.idx_q + j.nq))
+    assert Problem(arm, Target("d", (1, 2, 3)), locked=held).held_entries.tolist() == entries
