@@ -83,6 +83,17 @@ def test_advancing_a_joint_of_several_coordinates_moves_that_joint_alone_as_inte
         np.testing.assert_array_equal(moved[others], q[others])
 
 
+def test_advancing_leaves_other_joints_to_the_last_bit_also_where_integrating_would_round_them():
+    robot = zoo()
+    free, q = Limits.of(robot, False), robot.random(3)
+    q[3:7] *= 1.0 + 1e-9  # the root's quaternion, which integrating a step of zero makes a unit one
+    for coordinate in coordinates(robot, "d"):
+        joint, moved = coordinate.joint, q.copy()
+        coordinate.advance(moved, 0.3, robot.model, free)
+        others = np.delete(np.arange(robot.model.nq), np.arange(joint.idx_q, joint.idx_q + joint.nq))
+        np.testing.assert_array_equal(moved[others], q[others])
+
+
 @pytest.mark.parametrize(("change", "reached"), [(5.0, [2.0, 0.5]), (-5.0, [-1.0, -0.25])])
 def test_advancing_past_a_limit_ends_on_it(change, reached):
     robot = load_quietly(HINGE_AND_SLIDE)
