@@ -266,6 +266,19 @@ def test_packages_that_are_spelled_otherwise_are_one_line(tmp_path: Path) -> Non
     assert "there is a package whose name differs only in upper and lower case" in line
 
 
+def test_meshes_that_are_spelled_otherwise_are_one_line(tmp_path: Path) -> None:
+    made(tmp_path / "arm" / "M.stl")
+    made(tmp_path / "arm" / "N.stl")
+    shapes = (f'<visual><geometry><mesh filename="{name}"/></geometry></visual>' for name in ("m.stl", "n.stl"))
+    urdf = made(tmp_path / "arm" / "arm.urdf", robot(link("a", "".join(shapes))))
+    with pytest.warns(pinik.UrdfWarning) as caught:
+        pinik.load(urdf)
+    (line,) = [str(warning.message) for warning in caught]
+    assert (
+        "'m.stl' (line 1), mesh 'n.stl' (line 1): not found: there is a file whose name differs only in upper" in line
+    )
+
+
 def test_thousands_of_packages_that_are_not_found_are_one_line(tmp_path: Path) -> None:
     shapes = (f'<visual><geometry><mesh filename="package://p{i}/m.stl"/></geometry></visual>' for i in range(500))
     urdf = made(tmp_path / "arm" / "arm.urdf", robot(link("a", "".join(shapes))))

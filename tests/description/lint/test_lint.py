@@ -259,6 +259,13 @@ def test_inertias_that_no_body_has(numbers, code):
     assert only(inertial(*numbers)).code == code
 
 
+@pytest.mark.parametrize("numbers", [(1, 0.1, 0.1, 0.3), (1, -0.1, 0.1, 0.1), (1, 1e-9, 1e-9, 1e-9)])
+def test_inertias_of_one_sort_are_reported_together_whatever_their_numbers(numbers):
+    one, two = only(inertial(*numbers)), only(inertial(numbers[0], *(1.1 * moment for moment in numbers[1:])))
+    assert one.cause != two.cause
+    assert one.common == two.common
+
+
 @pytest.mark.parametrize("numbers", [(1e-300, 1e300, 1e300, 1e300), (1e300, 1e-300, 1e-300, 1e-300), (5e-324, 1, 1, 1)])
 def test_masses_and_inertias_may_be_as_large_or_small_as_numbers_can_be(numbers):
     flaws(inertial(*numbers))
@@ -364,6 +371,7 @@ def test_a_document_that_is_no_urdf_has_no_flaws():
 def test_a_root_in_capital_letters_has_an_edit():
     (flaw,) = lint(b'<Robot name="r"><link name="a"/></Robot>')
     assert [(edit.start, edit.text) for edit in flaw.edits] == [(1, "robot"), (34, "robot")]
+    assert flaw.mend == "Write <robot>."
 
 
 # What is doubted in the robots of the catalogue, all of it rightly: each sort was looked at, robot by robot.
