@@ -428,3 +428,15 @@ def test_the_mend_of_a_readers_warning_says_what_to_write(kind, limit, mend):
 def test_second_elements_are_reported_together_whatever_joint_has_them(second):
     (flaw,) = reader.read(pair('<origin xyz="0 0 1"/>', second)).warnings
     assert flaw.common == "has several <origin> elements; the first is taken"
+
+
+def test_a_place_as_attribute_and_a_misspelt_joint_have_their_code_and_their_owner():
+    place = only(pair().replace('<joint name="j"', '<joint name="j" position="0 0 1"'))
+    assert (place.code, place.element) == ("unknown-attribute", "joint 'j'")
+    lost = only(robot(link("a"), '<jiont name="k"/>'))
+    assert (lost.code, lost.element) == ("unknown-element", "<jiont> 'k'")
+
+
+def test_a_planar_joint_without_an_axis_has_its_code():
+    description = reader.read(robot(link("a"), link("b"), joint("j", "a", "b", kind="planar", limit="")))
+    assert [flaw.code for flaw in description.warnings] == ["planar-axis"]
