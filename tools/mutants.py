@@ -11,6 +11,7 @@ of parameters) always survives.
 from __future__ import annotations
 
 import argparse
+import filecmp
 import os
 import random
 import shutil
@@ -22,7 +23,7 @@ from pathlib import Path
 
 ROOT = Path(__file__).parents[1]
 COPY = ROOT / "build" / "mutants"
-COPIED = ("src", "tests", "tools", "benchmarks", "urdf", "pyproject.toml")
+COPIED = ("src", "tests", "tools", "benchmarks", "urdf", "docs", "pyproject.toml")
 # Tests that take seconds, measure time, start threads, or start processes, which mutmut cannot follow.
 SLOW = {
     "solving": (
@@ -35,6 +36,8 @@ SLOW = {
         *("thousands", "too_long"),
     ),
 }
+# [s] for one test, by the clock on the wall: a busy machine takes many times as long. mutmut itself bounds mutants.
+LONGEST = 600
 # What runs in a process of its own, where mutmut cannot follow.
 NOT_MUTATED = ("src/pinik/description/xacro_process.py",)
 # The quickest tests that cover each room; a mutant that outlives them may still die in the whole suite.
@@ -55,7 +58,8 @@ TESTS = {
 }
 
 
-def main() -> None:
+def main() -> int:
+    """The exit status is 1 if the tests fail without any change, or mutmut was stopped before it tried all mutants."""
     asked = argparse.ArgumentParser(description="Tell which changes of the code of rooms no test notices.")
     asked.add_argument("rooms", nargs="+", choices=TESTS, metavar="ROOM", help=f"one of {', '.join(TESTS)}")
     asked.add_argument("--sample", type=int, metavar="N", help="try N changes of each room instead of all")
@@ -63,12 +67,14 @@ def main() -> None:
     asked.add_argument("--processes", type=int, metavar="N", help="at once (default: one for each core)")
     options = asked.parse_args()
     processes = [] if options.processes is None else ["--max-children", str(options.processes)]
+    is_whole = True
     for room in options.rooms:
         folder = _copy(room)
         _check_names_of_tests(folder, room)
         names = [] if options.sample is None else _sample(folder, room, options.sample, options.seed)
         subprocess.run([sys.executable, "-m", "mutmut", "run", *processes, *names], cwd=folder, check=False)
-        _report(folder, room, names)
+        is_whole = _report(folder, room, names) and is_whole
+    return 0 if is_whole else 1
 
 
 def _copy(room: str) -> Path:
@@ -77,13 +83,20 @@ def _copy(room: str) -> Path:
     for name in COPIED:
         source, target = ROOT / name, folder / name
         if source.is_dir():
-            shutil.copytree(source, target, dirs_exist_ok=True, ignore=shutil.ignore_patterns("__pycache__"))
+            ignored = shutil.ignore_patterns("__pycache__")
+            shutil.copytree(source, target, dirs_exist_ok=True, ignore=ignored, copy_function=_copy_if_changed)
         else:
             folder.mkdir(parents=True, exist_ok=True)
             shutil.copy(source, target)
     with (folder / "pyproject.toml").open("a") as file:
         file.write(_settings(room))
     return folder
+
+
+def _copy_if_changed(source: str, target: str) -> None:
+    """Copy a file as a new one: mutmut keeps its mutants of a file that is older than they are."""
+    if not (os.path.exists(target) and filecmp.cmp(source, target, shallow=False)):
+        shutil.copyfile(source, target)
 
 
 def _settings(room: str) -> str:
@@ -93,8 +106,8 @@ source_paths = ["src/"]
 only_mutate = ["src/pinik/{room}/*"]
 do_not_mutate = {[*NOT_MUTATED]!r}
 pytest_add_cli_args_test_selection = {TESTS[room]!r}
-pytest_add_cli_args = ["-p", "no:cacheprovider", "-x", "--timeout=60"]
-also_copy = ["urdf", "tools", "benchmarks", "tests", "pyproject.toml"]
+pytest_add_cli_args = ["-p", "no:cacheprovider", "-x", "--timeout={LONGEST}"]
+also_copy = {[name for name in COPIED if name != "src"]!r}
 timeout_multiplier = 4.0
 timeout_constant = 5.0
 """
@@ -131,8 +144,12 @@ def _sample(folder: Path, room: str, size: int, seed: int) -> list[str]:
     return random.Random(seed).sample(names, min(size, len(names)))
 
 
-def _report(folder: Path, room: str, names: list[str]) -> None:
-    """Print what became of the mutants, of all or of those with these names, and list those that no test noticed."""
+def _report(folder: Path, room: str, names: list[str]) -> bool:
+    """Print what became of the mutants, of all or of those with these names, and list those that no test noticed.
+
+    Returns:
+        Whether all of them were tried.
+    """
     listed = subprocess.run(
         [sys.executable, "-m", "mutmut", "results", "--all", "true"],
         cwd=folder, check=False, capture_output=True, text=True,
@@ -144,7 +161,8 @@ def _report(folder: Path, room: str, names: list[str]) -> None:
             print(f"    {name}: {fate}")
     print(f"{room}: {', '.join(f'{count} {fate}' for fate, count in Counter(fates.values()).most_common())}")
     print(f"To see one: cd {folder.relative_to(ROOT)} && {sys.executable} -m mutmut show NAME")
+    return bool(fates) and "not checked" not in fates.values()
 
 
 if __name__ == "__main__":
-    main()
+    sys.exit(main())

@@ -236,8 +236,10 @@ def _home_expanded(path: Path) -> Path:
 
 def _unfound(robot: Robot) -> Iterator[Flaw]:
     """A flaw for each mesh that is not there, or that the URDF may not open."""
-    surroundings = robot.surroundings
-    for address in robot.description.meshes:
+    description, surroundings = robot.description, robot.surroundings
+    shapes = [shape for link in description.link_tags for shape in link.shapes]
+    lines = {shape.filename: shape.line for shape in reversed(shapes)}  # of the first shape that has the mesh
+    for address in description.meshes:
         found = surroundings.find(address)
         if found.path is None:
             what = "not opened" if found.refused else "not found"
@@ -245,6 +247,8 @@ def _unfound(robot: Robot) -> Iterator[Flaw]:
                 f"mesh {address!r}",
                 f"{what}: {found.why}; kinematics works without it",
                 code=found.code,
+                line=lines[address],
+                expanded=description.expanded,
                 common=f"{what}: {found.common}; kinematics works without it",
                 mend=found.mend,
                 mesh=address,

@@ -55,8 +55,9 @@ class TestRecognition:
         found = TwoBone.of(floating, "tip", relative_to="base").solve(wanted, q)
         assert found.errors.max() < 1e-12
         assert np.abs(found.q[:, :7] - q[:7]).max() < 1e-15
-        s = floating.solve("tip", wanted, relative_to="base", method="two_bone", q0=q)
-        assert s.position_error < 1e-12
+        for engine in ("auto", "python"):
+            s = floating.solve("tip", wanted, relative_to="base", method="two_bone", q0=q, engine=engine)
+            assert s.position_error < 1e-12
 
     @pytest.mark.parametrize(
         ("name", "frame", "relative_to", "words"),

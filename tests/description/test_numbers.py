@@ -116,6 +116,12 @@ def test_separators_change_no_number(values, separator):
     assert read_numbers(separator.join(map(repr, values)), (3,), "length").values == tuple(values)
 
 
+def test_a_long_number_is_quoted_by_its_beginning_and_its_end():
+    with pytest.raises(NumberError, match=r"'9{40,}…9+' is not finite") as caught:
+        read_numbers("9" * 310, (1,), "angle")
+    assert len(str(caught.value)) < 100
+
+
 def test_only_limits_may_be_infinite():
     assert read_numbers("-inf", (1,), "angle", infinite=True).values == (-math.inf,)
     assert read_numbers("1e400", (1,), "angle", infinite=True).values == (math.inf,)

@@ -149,7 +149,7 @@ def closed():
         (NotAFile(np.zeros(3)), "the file must give text or bytes; it gave array"),
         (NotAFile("<robot/>", b"<robot/>"), "the file must give either text or bytes; it gave both"),
         (WithoutSize(), r"the file's read\(\) must take a size: .*positional argument"),
-        (io.StringIO("\ud800<robot/>"), "cannot be encoded"),
+        (NotAFile("\ud800<robot/>", ""), "cannot be encoded"),
         (b"", "empty"),
         (b"\x7fELF\x02\x01", "not XML"),
     ],

@@ -14,7 +14,7 @@ import pinik
 from addresses import resolve
 from permissions import open_folder, without_root
 from pinik.description.packages import Surroundings
-from urdf_texts import link, robot
+from urdf_texts import joint, link, robot
 
 
 @pytest.fixture(autouse=True)
@@ -240,6 +240,43 @@ def test_load_gives_the_reason_of_every_mesh_that_is_not_found(tmp_path: Path) -
     lines = [str(warning.message) for warning in caught]
     for address, why in addresses.items():
         assert [line for line in lines if repr(address) in line and why in line], address
+
+
+def test_a_mesh_that_is_not_found_has_the_line_of_its_first_shape(tmp_path: Path) -> None:
+    shape = '<visual><geometry>\n<mesh filename="{}"/></geometry></visual>\n'
+    text = robot("\n", link("a", *map(shape.format, ("m.stl", "n.stl", "m.stl"))), link("b"))
+    urdf = made(tmp_path / "arm" / "arm.urdf", f"{text[: -len('</robot>')]}{joint('j', 'a', 'b')}</robot>")
+    with pytest.warns(pinik.UrdfWarning, match=r"mesh 'm.stl' \(line 2\), mesh 'n.stl' \(line 4\): not found"):
+        found = pinik.load(urdf)
+    assert [(flaw.element, flaw.line) for flaw in found.warnings] == [("mesh 'm.stl'", 2), ("mesh 'n.stl'", 4)]
+
+
+def test_packages_that_are_spelled_otherwise_are_one_line(tmp_path: Path) -> None:
+    made(tmp_path / "arm" / "M.stl")
+    package(tmp_path / "the_hand", "hand")
+    shapes = (
+        f'<visual><geometry><mesh filename="package://{name}/M.stl"/></geometry></visual>' for name in ("ARM", "Hand")
+    )
+    urdf = made(tmp_path / "arm" / "arm.urdf", robot(link("a", "".join(shapes))))
+    with pytest.warns(pinik.UrdfWarning) as caught:
+        pinik.load(urdf)
+    (line,) = [str(warning.message) for warning in caught]
+    assert "'package://ARM/M.stl'" in line
+    assert "'package://Hand/M.stl'" in line
+    assert "there is a package whose name differs only in upper and lower case" in line
+
+
+def test_meshes_that_are_spelled_otherwise_are_one_line(tmp_path: Path) -> None:
+    made(tmp_path / "arm" / "M.stl")
+    made(tmp_path / "arm" / "N.stl")
+    shapes = (f'<visual><geometry><mesh filename="{name}"/></geometry></visual>' for name in ("m.stl", "n.stl"))
+    urdf = made(tmp_path / "arm" / "arm.urdf", robot(link("a", "".join(shapes))))
+    with pytest.warns(pinik.UrdfWarning) as caught:
+        pinik.load(urdf)
+    (line,) = [str(warning.message) for warning in caught]
+    assert (
+        "'m.stl' (line 1), mesh 'n.stl' (line 1): not found: there is a file whose name differs only in upper" in line
+    )
 
 
 def test_thousands_of_packages_that_are_not_found_are_one_line(tmp_path: Path) -> None:

@@ -204,6 +204,23 @@ def test_what_takes_too_long_is_stopped(
         pinik.load(write(body))
 
 
+@pytest.mark.parametrize("place", ["zero.xacro", "$(find hand)/zero.xacro"])
+def test_an_included_file_without_an_end_is_named(
+    write: Write, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, place: str
+) -> None:
+    (tmp_path / "fine.xacro").write_text("<robot/>")
+    (tmp_path / "hand").mkdir()
+    endless = tmp_path / place.replace("$(find hand)", "hand")
+    endless.symlink_to("/dev/zero")
+    monkeypatch.setattr(xacro, "_MOST_MEMORY", 500 * 1024**2)
+    includes = '<xacro:include filename="fine.xacro"/>', f'<xacro:include filename="{place}"/>'
+    with pytest.raises(
+        pinik.RobotLoadError, match=r"takes more than 500 MB of memory .*; the last file that"
+    ) as caught:
+        pinik.load(write("".join(includes)))
+    assert str(caught.value).endswith(f"included is {endless}")
+
+
 def test_a_warning_of_xacro_is_kept_and_nothing_is_printed(write: Write, capfd: pytest.CaptureFixture[str]) -> None:
     path = write(TWO_LINKS + '<xacro:property name="pi" value="3"/>')
     with pytest.warns(pinik.UrdfWarning, match="redefining global symbol: pi"):

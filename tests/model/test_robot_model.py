@@ -711,7 +711,8 @@ class TestLoad:
             loaded = pinik.load(robot(link("a", mesh.format("a")), link("b"), *parts))
         assert loaded.placement("b", [0.0]).translation == pytest.approx([1, 0, 0])
         with pytest.warns(
-            UrdfWarning, match="mesh 'package://nowhere/a.stl', mesh 'package://nowhere/b.stl': not found"
+            UrdfWarning,
+            match=r"mesh 'package://nowhere/a.stl' \(line 1\), mesh 'package://nowhere/b.stl' \(line 1\): not found",
         ):
             pinik.load(robot(link("a", mesh.format("a")), link("b", mesh.format("b")), *parts))
 

@@ -83,6 +83,17 @@ def test_advancing_a_joint_of_several_coordinates_moves_that_joint_alone_as_inte
         np.testing.assert_array_equal(moved[others], q[others])
 
 
+def test_advancing_leaves_other_joints_to_the_last_bit_also_where_integrating_would_round_them():
+    robot = zoo()
+    free, q = Limits.of(robot, False), robot.random(3)
+    q[3:7] *= 1.0 + 1e-9  # the root's quaternion, which integrating a step of zero makes a unit one
+    for coordinate in coordinates(robot, "d"):
+        joint, moved = coordinate.joint, q.copy()
+        coordinate.advance(moved, 0.3, robot.model, free)
+        others = np.delete(np.arange(robot.model.nq), np.arange(joint.idx_q, joint.idx_q + joint.nq))
+        np.testing.assert_array_equal(moved[others], q[others])
+
+
 @pytest.mark.parametrize(("change", "reached"), [(5.0, [2.0, 0.5]), (-5.0, [-1.0, -0.25])])
 def test_advancing_past_a_limit_ends_on_it(change, reached):
     robot = load_quietly(HINGE_AND_SLIDE)
@@ -120,3 +131,21 @@ def test_a_joint_of_several_coordinates_has_room_without_end():
     assert len(several) == 6 + 6 + 3
     for coordinate in several:
         assert coordinate.room(robot.neutral(), limits) == (-math.inf, math.inf)
+
+
+@pytest.mark.parametrize("held", [(), ("first",), ("spin",), ("last",), ("first", "spin")])
+def test_the_held_entries_of_q_are_those_of_joints_that_do_not_move_the_frame_or_are_locked(held):
+    """A continuous joint has two entries of q, so that entries and tangent coordinates are counted differently."""
+    arm = pinik.load(
+        robot(
+            *(link(name) for name in "abcde"),
+            joint("first", "a", "b"),
+            joint("spin", "b", "c", kind="continuous", limit=""),
+            joint("last", "c", "d", origin((0.5, 0, 0))),
+            joint("beyond", "d", "e", origin((0.5, 0, 0))),
+        )
+    )
+    ids = {name: arm.model.joints[arm.model.getJointId(name)] for name in ("first", "spin", "last", "beyond")}
+    still = [j for name, j in ids.items() if name in held or name == "beyond"]
+    entries = sorted(entry for j in still for entry in range(j.idx_q, j.idx_q + j.nq))
+    assert Problem(arm, Target("d", (1, 2, 3)), locked=held).held_entries.tolist() == entries

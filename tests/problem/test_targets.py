@@ -158,6 +158,7 @@ class TestContradictions:
             ({"rpy": (0, 0)}, r"rpy must be 3 finite numbers \(roll, pitch, yaw in radians\)"),
             ({"quat_xyzw": (0, 0, 0, 0)}, "a quaternion must not be zero"),
             ({"quat_wxyz": (0, 0, 0)}, "quat_wxyz must be 4 finite numbers"),
+            ({"quat_xyzw": (0, 0, 0)}, "quat_xyzw must be 4 finite numbers"),
             ({"placement": np.eye(3)}, "placement must be 4×4 finite numbers"),
             ({"placement": 2 * np.eye(4)}, "must be a homogeneous matrix, whose last row is 0 0 0 1"),
             ({"placement": np.diag([1, 1, -1, 1])}, "rotation matrix"),

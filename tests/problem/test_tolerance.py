@@ -7,6 +7,7 @@ import math
 import pytest
 
 from pinik import InputError, TargetError, Tolerance
+from pinik.problem.tolerance import largest_of
 
 BOX = Tolerance((0.1, 0.2, 0.3), 0.5)
 BALL = Tolerance(0.1, 0.5)
@@ -74,3 +75,9 @@ class TestExcess:
     )
     def test_is_the_norm_of_what_lies_beyond_with_two_metres_for_a_radian(self, error, tolerance, excess):
         assert error.excess(tolerance, 2.0) == pytest.approx(excess)
+
+
+def test_the_largest_errors_are_those_that_were_asked_for():
+    assert largest_of([TargetError(None, 0.5), TargetError(None, 0.2)]) == TargetError(None, 0.5)
+    assert largest_of([TargetError(0.1, None), TargetError(0.3, None)]) == TargetError(0.3, None)
+    assert largest_of([TargetError(0.1, None), TargetError(None, 0.2)]) == TargetError(0.1, 0.2)

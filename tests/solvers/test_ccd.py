@@ -481,3 +481,11 @@ def test_no_angle_in_the_range_is_better_than_the_turn(cosine, sine, below, abov
     angles = np.linspace(-below, above, 2_001)
     best = (cosine * np.cos(angles) + sine * np.sin(angles)).max()
     assert cosine * math.cos(turn) + sine * math.sin(turn) >= best - 1e-12
+
+
+def test_the_relaxation_is_the_given_one_else_that_of_poses_and_none_inside_tolerances(arm):
+    pose = Kinematics(arm, Target("tip", (0.3, 0.1, 0.4), rpy=(0.0, 0.1, 0.2))).problem
+    position = Kinematics(arm, Target("tip", (0.3, 0.1, 0.4))).problem
+    assert CCD(relaxation=1.3).relaxation_for(pose) == CCD(relaxation=1.3).relaxation_for(pose, loose=True) == 1.3
+    assert CCD().relaxation_for(pose) > 1.0
+    assert CCD().relaxation_for(pose, loose=True) == CCD().relaxation_for(position) == 1.0

@@ -282,3 +282,11 @@ def test_the_cutoff_is_relative_to_the_largest_singular_value_and_to_the_lightes
 def test_the_cutoff_does_not_grow_with_the_number_of_large_singular_values():
     J, e = np.diag([1.0, 1.0, 1.0, 0.0012]), np.ones(4)
     np.testing.assert_allclose(PseudoInverse(cutoff=0.001).direction(J, e), np.linalg.pinv(J, rcond=0.001) @ e)
+
+
+def test_a_given_residual_replaces_the_norm_of_e_in_the_rules():
+    """On J = 1 the step is e / (1 + λ²), with λ² = damping² residual²."""
+    J, e = np.eye(3), np.array([0.3, 0.0, 0.4])
+    solver = DampedLeastSquares(damping=2.0, rule="residual")
+    assert solver.direction(J, e) == pytest.approx(e / (1.0 + 4.0 * 0.25))
+    assert solver.direction(J, e, 3.0) == pytest.approx(e / (1.0 + 4.0 * 9.0))

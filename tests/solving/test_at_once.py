@@ -152,3 +152,18 @@ def test_a_time_limit_is_each_question_s_own(two_link):
     many = pinik.solve_many(two_link, "tip", places, "two_bone", time_limit=1e-9)
     for k, place in enumerate(places):
         assert many[k].status is two_link.solve("tip", position=place, method="two_bone", time_limit=1e-9).status
+
+
+def test_a_miss_that_starts_at_its_nearest_point_takes_one_iteration_and_any_other_two():
+    robot = two_hinges()
+    starts = np.array([[0.0, 0.0], [0.5, 1.0]])
+    many = pinik.solve_many(robot, "hand", [(2.0, 0.0, 0.1), (2.0, 0.0, 0.1)], "two_bone", q0=starts)
+    assert not many.success.any()
+    assert many.iterations.tolist() == [1, 2]
+
+
+def test_the_solves_take_no_longer_than_the_call():
+    robot = two_hinges()
+    places = np.tile((0.5, 0.2, 0.1), (50, 1))
+    many = pinik.solve_many(robot, "hand", places, "two_bone")
+    assert 0.0 < sum(solution.time for solution in many) <= many.total_time

@@ -171,6 +171,21 @@ def test_a_jump_that_a_limit_demands_is_reported_with_the_joint_and_its_side(eng
 
 
 @pytest.mark.parametrize("engine", ENGINES)
+def test_a_place_that_only_the_other_elbow_reaches_is_found_by_a_restart(engine):
+    """The mirrored answer of equal bones lies outside the limits, and no run from the start comes to the other one."""
+    robot = pinik.load(two_links(shoulder=2.9, elbow=2.5, lowest=-1.0))
+    shoulder, elbow = 2.617, 2.34
+    start = robot.configuration({"shoulder": -0.552, "elbow": 1.145})
+    place = [np.cos(shoulder) + np.cos(shoulder + elbow), np.sin(shoulder) + np.sin(shoulder + elbow), 0.0]
+    other_shoulder = np.arctan2(place[1], place[0]) + elbow / 2.0
+    assert not -1.0 <= other_shoulder <= 2.9
+    track = pinik.track(robot, "tip", [place], start, engine=engine)
+    assert track.reached.all()
+    assert track.angles[0] == pytest.approx([shoulder, elbow], abs=1e-3)
+    assert not pinik.track(robot, "tip", [place], start, engine=engine, restarts=0).reached.any()
+
+
+@pytest.mark.parametrize("engine", ENGINES)
 def test_a_jump_at_a_singular_place_is_reported_as_such(engine):
     """A tip that passes 2 mm beside its own base turns the shoulder by more than 2 rad between two neighbours."""
     robot = pinik.load(two_links(shoulder=6.0, elbow=3.2))

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection
+from collections.abc import Collection, Mapping
 from dataclasses import replace
 from difflib import SequenceMatcher
+from functools import lru_cache
 
 from ..echoes import QUOTED, shortened
 from ..errors import near_names
@@ -20,10 +21,8 @@ _LETTERS = 4  # so many letters are needed for one of them to be wrong
 
 def meant(name: str, known: Collection[str], given: Collection[str] = ()) -> str | None:
     """The known name that this one resembles most, or None; one that is given beside it only if it is very near."""
-    for near in near_names(shortened(name, QUOTED), known):
-        if _likeness(name, near) >= (_SURELY if near in given else _RESEMBLES):
-            return near
-    return None
+    ranked = _ranked(name[:QUOTED], frozenset(known))
+    return next((near for near, likeness in ranked if near not in given or likeness >= _SURELY), None)
 
 
 def misspelt(element: Element) -> set[str]:
@@ -62,7 +61,7 @@ def rivals(element: Element, given: Collection[str]) -> dict[str, list[str]]:
 
 def is_sure(name: str, known: Collection[str]) -> bool:
     """Whether one known name is so near that it must be the one, and no other is."""
-    return sum(_likeness(name, one) >= _SURELY for one in known) == 1
+    return sum(likeness >= _SURELY for likeness in _resembling(name[:QUOTED], frozenset(known)).values()) == 1
 
 
 def is_slip(name: str, known: str) -> bool:
@@ -75,6 +74,29 @@ def _shown(element: Element) -> str:
     return f"<{shortened(element.tag, QUOTED)}> (line {element.line})"
 
 
+@lru_cache(maxsize=1024)  # the reader and the lint ask for the same name several times
+def _ranked(name: str, known: frozenset[str]) -> tuple[tuple[str, float], ...]:
+    """The known names that a name resembles, the nearest first, each with its likeness."""
+    likeness = _resembling(name, known)
+    is_plain = not likeness or (len(likeness) == 1 and 1.0 not in likeness.values())
+    names = likeness if is_plain else near_names(name, likeness)  # which knows letters in disorder
+    return tuple((near, likeness[near]) for near in names)
+
+
+@lru_cache(maxsize=1024)
+def _resembling(name: str, known: frozenset[str]) -> Mapping[str, float]:
+    """The known names that a name may be a slip for, each with its likeness."""
+    word = name.casefold()
+    letters = set(word)
+    found = {}
+    for one in sorted(known):
+        # A letter that only one of the two has belongs to nothing that they have in common.
+        common = min(len(word) - len(letters.difference(one.casefold())), len(one) - len(set(one.casefold()) - letters))
+        if 2 * common >= _RESEMBLES * (len(word) + len(one)) and (likeness := _likeness(name, one)) >= _RESEMBLES:
+            found[one] = likeness
+    return found
+
+
 def _likeness(name: str, known: str) -> float:
     """From 0 to 1: how much two names have in common; case, the order of letters and one wrong letter hardly count."""
     word, other = name[:QUOTED].casefold(), known.casefold()
@@ -82,4 +104,12 @@ def _likeness(name: str, known: str) -> float:
         return 1.0
     if len(word) == len(other) >= _LETTERS and sum(one != two for one, two in zip(word, other, strict=True)) == 1:
         return _SURELY
+    if abs(len(word) - len(other)) == 1 and _has_one_more(*sorted((word, other), key=len)):
+        return 2.0 * min(len(word), len(other)) / (len(word) + len(other))
     return SequenceMatcher(None, word, other).ratio()
+
+
+def _has_one_more(short: str, long: str) -> bool:
+    """Whether a word is another one with one letter more, which needs no search for what they have in common."""
+    place = next((index for index, (one, two) in enumerate(zip(short, long, strict=False)) if one != two), len(short))
+    return short[place:] == long[place + 1 :]

@@ -110,6 +110,7 @@ def _at(answer: Mapping[str, Any], path: Path) -> str:
 def _asked(request: Mapping[str, Any], surroundings: Surroundings, label: str) -> dict[str, Any]:
     """The answer of the process that runs xacro."""
     command = [sys.executable, "-I", str(_PROGRAM)]
+    included: list[str] = []
     with subprocess.Popen(
         command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, encoding="utf-8"
     ) as process:
@@ -123,28 +124,35 @@ def _asked(request: Mapping[str, Any], surroundings: Surroundings, label: str) -
         clock.daemon = True
         clock.start()
         try:
-            answer = _conversation(process, request, surroundings)
+            answer = _conversation(process, request, surroundings, included)
         finally:
             clock.cancel()
             process.kill()
+    last = f"; the last file that it included is {included[-1]}" if included else ""
     if late.is_set():
-        raise RobotLoadError(f"xacro: the file takes longer than {SECONDS:g} s to expand", source=label)
+        raise RobotLoadError(f"xacro: the file takes longer than {SECONDS:g} s to expand{last}", source=label)
     if answer is None:
-        cause = f"the file takes more than {megabytes(_MOST_MEMORY)} of memory to expand, or xacro itself failed"
+        cause = f"the file takes more than {megabytes(_MOST_MEMORY)} of memory to expand, or xacro itself failed{last}"
         raise RobotLoadError(f"xacro: {cause}", source=label)
     return answer
 
 
 def _conversation(
-    process: subprocess.Popen[str], request: Mapping[str, Any], surroundings: Surroundings
+    process: subprocess.Popen[str], request: Mapping[str, Any], surroundings: Surroundings, included: list[str]
 ) -> dict[str, Any] | None:
-    """Answer where packages are, until the process says what it made of the file; None if it ends without a word."""
+    """Answer where packages are, until the process says what it made of the file; None if it ends without a word.
+
+    The files that the process is about to include are added to `included`.
+    """
     assert process.stdin is not None
     assert process.stdout is not None
     try:
         _say(process.stdin, request)
         for line in process.stdout:
             answer: dict[str, Any] = json.loads(line)
+            if "include" in answer:
+                included.append(answer["include"])
+                continue
             if "find" not in answer:
                 return answer
             name = answer["find"]

@@ -1,5 +1,6 @@
 """The process that runs xacro: it reads a request, asks where packages are, and answers with the URDF or the fault.
 
+Before it reads an included file it says which, as that file may have no end.
 It is a program of its own and imports nothing of pinik. Requests and answers are lines of JSON on stdin and stdout.
 """
 
@@ -12,6 +13,7 @@ import os
 import re
 import sys
 from collections.abc import Iterator
+from functools import partial
 from types import TracebackType
 from typing import Any, TextIO
 from xml.dom import expatbuilder, minidom
@@ -78,7 +80,7 @@ def main() -> None:
     sys.path[:] = request["search"]
     _bound(request["memory"])
     try:
-        answer = _expanded(request, _Packages(stdin, stdout))
+        answer = _expanded(request, _Packages(stdin, stdout), stdout)
         lines = dict.fromkeys(line.strip() for line in _COLOUR.sub("", remarks.getvalue()).splitlines())
         answer["remarks"] = [line for line in lines if line][:_MOST_REMARKS]
     except MemoryError:
@@ -101,13 +103,13 @@ def _bound(memory: int) -> None:
         resource.setrlimit(resource.RLIMIT_AS, (memory, memory))
 
 
-def _expanded(request: dict[str, Any], packages: _Packages) -> dict[str, Any]:
+def _expanded(request: dict[str, Any], packages: _Packages, stdout: TextIO) -> dict[str, Any]:
     import xacro
     import xacrodoc
 
     path = request["path"]
     xacrodoc.packages.get_path = packages
-    xacro.parse = _parse
+    xacro.parse = partial(_parse, stdout=stdout)
     xacro.print_location = lambda: None
     _keep_places_of_copies()
     _support_dirname()
@@ -116,22 +118,26 @@ def _expanded(request: dict[str, Any], packages: _Packages) -> dict[str, Any]:
     try:
         with open(path, "rb") as file:
             text = file.read()
-        made = xacrodoc.XacroDoc.from_string(_parse(text, path), subargs=arguments, resolve_packages=False)
+        made = xacrodoc.XacroDoc.from_string(
+            _parse(text, path, stdout=stdout), subargs=arguments, resolve_packages=False
+        )
         document = made.dom.documentElement.toprettyxml(indent="  ")
     except Exception as error:
         return _fault(error, xacro.filestack)
     return {"document": document, "known": sorted(arguments.known)}
 
 
-def _parse(source: Any, filename: str | None = None) -> Any:
+def _parse(source: Any, filename: str | None = None, *, stdout: TextIO) -> Any:
     """Stands in for `xacro.parse`: a document whose elements know where they are."""
     import xacro
 
     if isinstance(source, minidom.Document):
         return source
     if source is None:
+        path = os.path.join(xacro.root_dir, str(filename))
+        _say(stdout, {"include": path})
         try:
-            with open(os.path.join(xacro.root_dir, str(filename)), "rb") as file:
+            with open(path, "rb") as file:
                 source = file.read()
         except OSError as error:
             xacro.filestack.pop()

@@ -24,7 +24,7 @@ _TINY = 2000.0  # smaller than the robot by this: screws are 300 times smaller, 
 def size_flaws(robot: RobotModel, shapes: Iterable[Corners]) -> list[Flaw]:
     """One flaw for each visual that is over 100 times larger or 2000 times smaller than the robot.
 
-    If all of them together are over 100 times smaller than the robot, that is one flaw.
+    If all of them together are over 100 times smaller than the robot, that is one flaw, with the line of the largest.
 
     Args:
         robot: The robot; without any distance between its links there is nothing to compare with.
@@ -36,17 +36,20 @@ def size_flaws(robot: RobotModel, shapes: Iterable[Corners]) -> list[Flaw]:
     extents = _extents(shapes)
     if not extents or not size:
         return []
-    largest = max(extents.values())
+    lines = {
+        (link.name, str(shape.index)): shape.line for link in robot.description.link_tags for shape in link.visuals
+    }
+    largest_one = max(extents, key=lambda shape: extents[shape])
+    largest = extents[largest_one]
     if 0.0 < largest < size / _TIMES:
         cause = f"its largest shape is {largest:.2g} m large, while the robot is about {size:.2g} m"
         mend = "Check the units of the meshes and of the joints' origins; both must be metres."
         why = "The shapes cannot be seen, or the joints stand far apart."
-        return [Flaw("<robot>", cause, code="shape-too-small", why=why, mend=mend)]
-    lines = {(link.name, shape.index): shape.line for link in robot.description.link_tags for shape in link.visuals}
+        return [Flaw("<robot>", cause, code="shape-too-small", line=lines.get(largest_one), why=why, mend=mend)]
     flaws = []
     for (link, visual), extent in extents.items():
         if extent > _TIMES * size or 0.0 < extent < size / _TINY:
-            flaws.append(_flaw(link, int(visual), lines.get((link, int(visual))), extent, size))
+            flaws.append(_flaw(link, int(visual), lines.get((link, visual)), extent, size))
     return flaws
 
 

@@ -104,8 +104,10 @@ def test_a_mesh_a_hundred_times_as_large_as_the_robot_is_doubted(run, write, tmp
     assert found["counts"] == {"shape-too-large": 1}
     assert "300 times larger" in found["flaws"][0]["cause"]
     assert run("check", write(text.replace("{}", ' scale="0.001 0.001 0.001"')), "--json").json["counts"] == {}
-    tiny = run("check", write(text.replace("{}", ' scale="1e-6 1e-6 1e-6"')), "--json").json
+    small = mesh.replace("{}", ' scale="1e-7 1e-7 1e-7"') + "\n" + mesh.replace("{}", ' scale="1e-6 1e-6 1e-6"')
+    tiny = run("check", write(text.replace(mesh, small)), "--json").json
     assert tiny["counts"] == {"shape-too-small": 1}
+    assert tiny["flaws"][0]["line"] == 2  # of the largest
 
 
 class TestFix:

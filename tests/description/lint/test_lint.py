@@ -259,6 +259,13 @@ def test_inertias_that_no_body_has(numbers, code):
     assert only(inertial(*numbers)).code == code
 
 
+@pytest.mark.parametrize("numbers", [(1, 0.1, 0.1, 0.3), (1, -0.1, 0.1, 0.1), (1, 1e-9, 1e-9, 1e-9)])
+def test_inertias_of_one_sort_are_reported_together_whatever_their_numbers(numbers):
+    one, two = only(inertial(*numbers)), only(inertial(numbers[0], *(1.1 * moment for moment in numbers[1:])))
+    assert one.cause != two.cause
+    assert one.common == two.common
+
+
 @pytest.mark.parametrize("numbers", [(1e-300, 1e300, 1e300, 1e300), (1e300, 1e-300, 1e-300, 1e-300), (5e-324, 1, 1, 1)])
 def test_masses_and_inertias_may_be_as_large_or_small_as_numbers_can_be(numbers):
     flaws(inertial(*numbers))
@@ -321,6 +328,15 @@ def test_names_that_differ_only_in_case():
     assert (flaw.code, flaw.element) == ("similar-names", "link 'arm'")
 
 
+def test_a_long_name_is_quoted_by_its_beginning_and_its_end():
+    name = "a" * 100 + "b" * 100
+    flaw = only(robot(link(name), link(name.upper()), joint("j", name, name.upper())))
+    assert flaw.element.startswith("link 'AAAA")
+    assert flaw.element.endswith("BBBB'")
+    assert len(flaw.element) <= len("link ''") + 60
+    assert f"link {name!r}" not in flaw.cause
+
+
 def colored(name: str, rgba: str = "") -> str:
     return f'<material name="{name}"><color rgba="{rgba}"/></material>' if rgba else f'<material name="{name}"/>'
 
@@ -355,6 +371,7 @@ def test_a_document_that_is_no_urdf_has_no_flaws():
 def test_a_root_in_capital_letters_has_an_edit():
     (flaw,) = lint(b'<Robot name="r"><link name="a"/></Robot>')
     assert [(edit.start, edit.text) for edit in flaw.edits] == [(1, "robot"), (34, "robot")]
+    assert flaw.mend == "Write <robot>."
 
 
 # What is doubted in the robots of the catalogue, all of it rightly: each sort was looked at, robot by robot.
@@ -411,3 +428,15 @@ def test_the_mend_of_a_readers_warning_says_what_to_write(kind, limit, mend):
 def test_second_elements_are_reported_together_whatever_joint_has_them(second):
     (flaw,) = reader.read(pair('<origin xyz="0 0 1"/>', second)).warnings
     assert flaw.common == "has several <origin> elements; the first is taken"
+
+
+def test_a_place_as_attribute_and_a_misspelt_joint_have_their_code_and_their_owner():
+    place = only(pair().replace('<joint name="j"', '<joint name="j" position="0 0 1"'))
+    assert (place.code, place.element) == ("unknown-attribute", "joint 'j'")
+    lost = only(robot(link("a"), '<jiont name="k"/>'))
+    assert (lost.code, lost.element) == ("unknown-element", "<jiont> 'k'")
+
+
+def test_a_planar_joint_without_an_axis_has_its_code():
+    description = reader.read(robot(link("a"), link("b"), joint("j", "a", "b", kind="planar", limit="")))
+    assert [flaw.code for flaw in description.warnings] == ["planar-axis"]
