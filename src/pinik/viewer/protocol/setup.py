@@ -120,10 +120,8 @@ def apply_setup(session: Session, setup: Setup) -> None:
 def _messages(session: Session, setup: Setup) -> Iterator[dict[str, Any]]:
     if "view" in setup:
         yield {"type": "view", "count": _whole("view", setup["view"])}
-    if "collisions" in setup:
-        yield from collisions_messages(session, setup["collisions"])
-    if "obstacles" in setup:
-        yield from obstacle_messages(session, _parsed("obstacles", setup["obstacles"], list))
+    yield from collisions_messages(session, setup.get("collisions", "off"))
+    yield from obstacle_messages(session, _parsed("obstacles", setup.get("obstacles", "[]"), list))
     if "balls" in setup:  # before the methods, because the methods on offer depend on the balls
         yield from _ball_messages(session, _parsed("balls", setup["balls"], list))
     if "parameters" in setup and "methods" not in setup:
