@@ -46,6 +46,19 @@ WRONG = {
     "value": [None, True, "0.3", [], {}, [0.3], {"damping": 0.3}, -1, 10**400, math.inf, "x" * 60_000],
     "point": [*NO_VECTOR, [0, 0, 100.5], [-101, 0, 0], [1e300, 0, 0]],
     "angles": NO_VECTOR,
+    "size": [
+        *(wrong for wrong in NO_NUMBER if wrong != [1]),
+        [0.1, 0.1],
+        [0.1] * 4,
+        [0.1, 0.1, 0.0],
+        [-0.1],
+        [11.0],
+        [0.1, 0.1, None],
+        [math.inf],
+        [10**400],
+        [[0.1]],
+        ["0.1"],
+    ],
     "axes": [None, True, 1, [], ["x"], {}, "xyz", "yx", "xx", "w", "x y", "X", "x" * 201],
     "tolerance": [
         *(wrong for wrong in NO_NUMBER if wrong is not None),
@@ -80,6 +93,8 @@ def fresh(robot):
     shown.add_ball("bone2")
     shown.set_mode(1, "pinned")
     shown.set_motion("random")
+    shown.obstacles.add("sphere", [0.1], [2.0, 0.0, 0.0])
+    shown.set_obstacles(shown.obstacles)
     for _ in range(3):
         shown.step()
     return shown
@@ -106,7 +121,8 @@ MALFORMED = list(malformed())
 def test_every_type_of_the_documentation_is_tried_here():
     table = PROTOCOL.read_text("utf-8").split("## From the page")[1]
     rows = dict(re.findall(r"^\| `(\w+)` \| (.*?) \|", table, re.MULTILINE))
-    elsewhere = {"type", "robot", "setup", "drawn"}  # the table's head, and what the show answers
+    answers = {"find_answers", "take_answer", "find_self_motion", "move_along"}
+    elsewhere = {"type", "robot", "setup", "drawn", *answers}  # the table's head, and what the show answers
     assert set(rows) - elsewhere == set(GOOD)
     for kind, (fields, _) in GOOD.items():
         assert set(re.findall(r"`(\w+)`", rows[kind])) == set(fields)

@@ -62,6 +62,20 @@ MESSAGES = st.one_of(
         lambda p, o: {"type": "tolerance", "position": p, "orientation": o}, st.floats(1e-6, 1), st.floats(1e-6, 3.2)
     ),
     st.builds(lambda i, p: {"type": "ball", "index": i, "position": p}, st.integers(0, 3), POINT),
+    st.builds(lambda on, avoid: {"type": "collisions", "on": on, "avoid": avoid}, st.booleans(), st.booleans()),
+    st.builds(
+        lambda box, size, p: {
+            "type": "add_obstacle",
+            "kind": "box" if box else "sphere",
+            "size": size if box else size[:1],
+            "position": p,
+        },
+        st.booleans(),
+        st.lists(st.floats(0.01, 1.0).map(lambda x: round(x, 4)), min_size=3, max_size=3),
+        POINT,
+    ),
+    st.builds(lambda i, p: {"type": "obstacle", "index": i, "position": p}, st.integers(0, 1), POINT),
+    st.builds(lambda i: {"type": "remove_obstacle", "index": i}, st.integers(0, 1)),
     st.builds(
         lambda i, on, rpy: {"type": "orientation", "index": i, "on": on, "rpy": rpy},
         st.integers(0, 3),

@@ -64,6 +64,7 @@ def without_angles(state):
 def test_a_state_has_the_fields_of_the_documentation(arm):
     session = Session(arm, clock=Clock())
     session.set_motion("curve")
+    session.obstacles.add("box", [0.2, 0.2, 0.2], [0.4, 0.1, 0.3])
     session.step()
     state = strict(Show(session, Later()).state())
     shown, told = keys(without_angles(state)), keys(without_angles(documented("state")))

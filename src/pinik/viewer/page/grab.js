@@ -8,8 +8,10 @@ export class Grab {
     /**
      * @param show the scene
      * @param handlers onGrab(k), onMove(k, [x, y, z]), onDrop(k), onHover(k or null)
+     * @param over the class of the stage while the pointer is over something that can be dragged
      */
-    constructor(show, handlers) {
+    constructor(show, handlers, over = "over-ball") {
+        this._over = over;
         this._show = show;
         this._handlers = handlers;
         this._held = null;
@@ -115,7 +117,7 @@ export class Grab {
     }
 
     _hover(k) {
-        this._show.stage.element.classList.toggle("over-ball", k !== null);
+        this._show.stage.element.classList.toggle(this._over, k !== null);
         this._handlers.onHover(k);
     }
 }

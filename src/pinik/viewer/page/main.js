@@ -1,6 +1,7 @@
 /** The live page: connects the session's messages with the picture, the panel and the user's input. */
 
 import { Address } from "pinik/address.js";
+import { Answers } from "pinik/answers.js";
 import { Cards } from "pinik/cards.js";
 import { Chart } from "pinik/chart.js";
 import { Connection } from "pinik/connection.js";
@@ -13,9 +14,11 @@ import { History } from "pinik/history.js";
 import { Keys } from "pinik/keys.js";
 import { Notices } from "pinik/notices.js";
 import { Nudge } from "pinik/nudge.js";
+import { Obstacles } from "pinik/obstacles.js";
 import { addPresets } from "pinik/presets.js";
 import { shortcuts } from "pinik/shortcuts.js";
 import { Show } from "pinik/show.js";
+import { Surroundings } from "pinik/surroundings.js";
 import { Table } from "pinik/table.js";
 import { Targets } from "pinik/targets.js";
 import { Theme } from "pinik/theme.js";
@@ -38,6 +41,8 @@ class Page {
         this.controls = new Controls(this.connection);
         this.cards = new Cards(byId("cards"), this.connection);
         this.targets = new Targets(this.connection, (k) => this.show.select(k));
+        this.surroundings = new Surroundings(byId("surroundings"), this.connection);
+        this.answers = new Answers(byId("answers"), this.connection, this.show);
         this.table = new Table(byId("table"));
         this.address = new Address((setup) => this.connection.send({ type: "setup", setup }));
         this.history = new History();
@@ -60,6 +65,8 @@ class Page {
         robot: (robot) => {
             this.show.setRobot(robot);
             this.targets.setRobot(robot);
+            this.surroundings.setRobot(robot);
+            this.answers.clear();
             this.notices.warnings(robot.warnings);
             this.robot = robot;
         },
@@ -69,6 +76,8 @@ class Page {
             this._showSettings(state);
             this.table.setState(state);
             this.show.setState(state);
+            this.obstacles.setState(state);
+            this.answers.setState(state);
             this.notices.loading(state.loading);
             this.address.show(state.setup);
         },
@@ -77,11 +86,13 @@ class Page {
             if (shapes.generation === this.robot.generation)
                 this.notices.warnings([...this.robot.warnings, ...shapes.warnings]);
         },
+        answers: (answers) => answers.generation === this.robot.generation && this.answers.showAll(answers),
+        self_motion: (motion) => motion.generation === this.robot.generation && this.answers.showMotion(motion),
         error: ({ message }) => this.notices.error(message),
     };
 
     _showSettings(state) {
-        for (const part of [this.controls, this.cards, this.targets]) part.setState(state);
+        for (const part of [this.controls, this.cards, this.targets, this.surroundings]) part.setState(state);
     }
 
     _take(buffer) {
@@ -129,6 +140,13 @@ class Page {
             onDrop: (k) => this.connection.flush(`ball ${k}`),
             onHover: (k) => this.show.pointAt(k),
         });
+        this.obstacles = new Obstacles(this.show);
+        const moved = (index, position) =>
+            this.connection.sendNewest(`obstacle ${index}`, { type: "obstacle", index, position });
+        const nothing = () => {};
+        const drop = (k) => this.connection.flush(`obstacle ${k}`);
+        const hands = { onGrab: nothing, onMove: moved, onDrop: drop, onHover: nothing };
+        this.obstacleGrab = new Grab(this.obstacles, hands, "over-obstacle");
         this.nudge = new Nudge(this.show, (k, position) => {
             this.show.balls.hold(k, new THREE.Vector3(...position));
             this.show.letGoOfBall(k);

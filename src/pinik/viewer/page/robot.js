@@ -5,6 +5,8 @@ import { quickMaterial } from "pinik/quick_material.js";
 import { Skeleton } from "pinik/skeleton.js";
 import { THREE } from "pinik/three.js";
 
+const RED = new THREE.Color(0xe02f44).convertSRGBToLinear();
+
 export class Robot {
     /**
      * @param robot the `robot` message
@@ -28,7 +30,7 @@ export class Robot {
             const mesh = new THREE.Mesh(part.geometry, fine);
             mesh.castShadow = true;
             this._links[part.link].add(mesh);
-            this._parts.push({ mesh, fine, coarse });
+            this._parts.push({ mesh, fine, coarse, link: robot.links[part.link].name });
             materials[part.link].push(fine, coarse);
         }
         this._marks = new LimitMarks(robot, carriedBy(robot, materials));
@@ -50,6 +52,29 @@ export class Robot {
         for (const { mesh, fine, coarse } of this._parts) {
             mesh.material = isFine ? fine : coarse;
             mesh.receiveShadow = isFine;
+        }
+    }
+
+    /** Draw the robot as a ghost. */
+    fade(opacity) {
+        for (const { mesh, fine } of this._parts) {
+            Object.assign(fine, { transparent: true, opacity, depthWrite: false });
+            mesh.material = fine;
+            mesh.castShadow = false;
+        }
+        this._skeleton?.fade(opacity);
+    }
+
+    /** Paint the links with these names red, and only them. */
+    redden(names) {
+        for (const { mesh, fine, coarse, link } of this._parts) {
+            const isRed = names.has(link);
+            if (mesh.userData.isRed === isRed) continue;
+            mesh.userData.isRed = isRed;
+            for (const material of [fine, coarse]) {
+                mesh.userData.own ??= fine.color.clone();
+                material.color.copy(isRed ? RED : mesh.userData.own);
+            }
         }
     }
 

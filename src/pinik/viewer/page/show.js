@@ -67,6 +67,7 @@ export class Show {
         this.state = state;
         this._selected = Math.min(this._selected, Math.max(0, state.balls.length - 1));
         this._showBalls();
+        this.instances.forEach((instance, i) => instance.robot.redden(touched(state, i)));
         const asked = ({ balls, motion, curve, view }) =>
             [motion, curve, view, balls.map((ball) => ball.mode + ball.frame)].join();
         if (before && this._framed && asked(before) !== asked(state)) {
@@ -161,6 +162,11 @@ export class Show {
         if (this.instances.length) this._sight.all(smoothly, preset);
     }
 
+    /** The robot's shapes, as `Shapes.parts` returns them; null before they arrive. */
+    get parts() {
+        return this._parts;
+    }
+
     get ballRadius() {
         return BALL * this.robot.size;
     }
@@ -237,4 +243,9 @@ export class Show {
             }),
         );
     }
+}
+
+/** The names of what touches in instance `i`. */
+function touched(state, i) {
+    return new Set((state.instances[i]?.touching ?? []).flat());
 }

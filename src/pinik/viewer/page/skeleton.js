@@ -47,6 +47,10 @@ export class Skeleton {
         }
     }
 
+    fade(opacity) {
+        for (const material of [this._bone, this._joint]) Object.assign(material, { transparent: true, opacity });
+    }
+
     dispose() {
         this._bone.dispose();
         this._joint.dispose();

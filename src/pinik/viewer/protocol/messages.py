@@ -10,6 +10,7 @@ from ...checks import as_finite_number, as_vector
 from ...echoes import QUOTED, shortened
 from ...errors import InputError, UnknownNameError
 from ...problem.tolerance import Tolerance
+from ..simulation.obstacles import Obstacles
 from ..simulation.session import Session
 
 __all__ = ["FARTHEST", "RANGES", "any_text", "apply", "checked", "parse", "read_json", "text", "whole_number"]
@@ -114,6 +115,13 @@ def text(what: str, value: Any) -> str:
     return value
 
 
+def _sizes(what: str, value: Any) -> list[float]:
+    """Check that a value is a list of one to three numbers."""
+    if not isinstance(value, list) or not 1 <= len(value) <= 3:
+        raise InputError(f"{what} must be a list of one to three numbers; got {shortened(str(value), QUOTED)!r}")
+    return [as_finite_number(number, what) for number in value]
+
+
 def _truth(what: str, value: Any) -> bool:
     if not isinstance(value, bool):
         raise InputError(f"{what} must be true or false; got {value!r}")
@@ -192,6 +200,16 @@ def _run(session: Session, on: bool) -> None:
     session.running = on
 
 
+def _on_obstacles(act: Callable[..., None]) -> Callable[..., None]:
+    """A change of the obstacles, of which the session is told."""
+
+    def change(session: Session, **fields: Any) -> None:
+        act(session.obstacles, **fields)
+        session.set_obstacles(session.obstacles)
+
+    return change
+
+
 _INSTANCE: dict[str, Check] = {"instance": whole_number}
 _BALL: dict[str, Check] = {"index": whole_number}
 
@@ -228,6 +246,11 @@ _MESSAGES: dict[str, tuple[dict[str, Check], Callable[..., None]]] = {
         {**_BALL, "tolerance": _tolerance_or_none},
         lambda s, index, tolerance: s.balls.number(index).tolerate(tolerance),
     ),
+    "collisions": ({"on": _truth, "avoid": _truth}, lambda s, on, avoid: s.set_contacts(on, avoid)),
+    "add_obstacle": ({"kind": text, "size": _sizes, "position": _point}, _on_obstacles(Obstacles.add)),
+    "obstacle": ({**_BALL, "position": _point}, _on_obstacles(Obstacles.put)),
+    "obstacle_size": ({**_BALL, "size": _sizes}, _on_obstacles(Obstacles.resize)),
+    "remove_obstacle": (_BALL, _on_obstacles(Obstacles.remove)),
     "effector": ({**_BALL, "mode": text}, Session.set_mode),
     "add_effector": ({"frame": text}, Session.add_ball),
     "remove_effector": (_BALL, lambda s, index: s.balls.remove(index)),

@@ -15,6 +15,7 @@ from ..simulation.instance import StepSettings
 from ..simulation.session import Session
 from .messages import apply, read_json
 from .parameters import changed_parameters, describe_parameters, tolerance_of
+from .surroundings import collisions_messages, obstacle_messages, written_collisions, written_obstacles
 
 __all__ = ["Setup", "apply_setup", "read_setup", "write_setup"]
 
@@ -22,7 +23,7 @@ Setup = dict[str, str]
 _LONGEST = 20_000
 _JSON_NAMES = {list: "array", dict: "object"}
 _KEYS = ("robot", "root", "view", "methods", "parameters", "motion", "curve", "speed", "limits", "polish", "iterations",
-         "tolerance", "balls", "run")  # fmt: skip
+         "tolerance", "balls", "collisions", "obstacles", "run")  # fmt: skip
 
 
 def write_setup(session: Session) -> str:
@@ -51,6 +52,10 @@ def write_setup(session: Session) -> str:
     if settings.tolerance != default.tolerance:
         setup["tolerance"] = ",".join(map(_short, (settings.tolerance.farthest, settings.tolerance.orientation)))
     setup["balls"] = _compact([_ball(session, index) for index in range(len(session.balls))])
+    if session.contacts.on:
+        setup["collisions"] = written_collisions(session)
+    if session.obstacles:
+        setup["obstacles"] = _compact(written_obstacles(session))
     setup["run"] = "on" if session.running else "off"
     return urlencode(setup, quote_via=quote, safe=",:[]{}")
 
@@ -115,6 +120,8 @@ def apply_setup(session: Session, setup: Setup) -> None:
 def _messages(session: Session, setup: Setup) -> Iterator[dict[str, Any]]:
     if "view" in setup:
         yield {"type": "view", "count": _whole("view", setup["view"])}
+    yield from collisions_messages(session, setup.get("collisions", "off"))
+    yield from obstacle_messages(session, _parsed("obstacles", setup.get("obstacles", "[]"), list))
     if "balls" in setup:  # before the methods, because the methods on offer depend on the balls
         yield from _ball_messages(session, _parsed("balls", setup["balls"], list))
     if "parameters" in setup and "methods" not in setup:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 from typing import Any
 
 from ...description.catalog import catalog
@@ -73,6 +74,13 @@ def session_state(session: Session) -> dict[str, Any]:
             }
             for ball in session.balls
         ],
+        "collisions": {
+            "on": session.contacts.on,
+            "avoid": session.contacts.avoids,
+            "loading": session.contacts.waits,
+            "why_not": session.contacts.why_not,
+        },
+        "obstacles": [dataclasses.asdict(obstacle) for obstacle in session.obstacles],
         "instances": [
             _instance_state(instance, summary)
             for instance, summary in zip(session.seen, session.summaries, strict=True)
@@ -90,6 +98,7 @@ def _instance_state(instance: Instance, summary: Summary) -> dict[str, Any]:
         "parameters": describe_parameters(instance.solver),
         **verdict._asdict(),
         "active_limits": list(verdict.active_limits),
+        "touching": [list(pair) for pair in instance.contacts.touching(instance.q)],
         "angles": instance.robot.angles(instance.q),
         "statistics": summary._asdict(),
     }

@@ -17,13 +17,16 @@ from ...model.limits import Limits
 from ...problem.targets import Target
 from ...problem.tolerance import Tolerance, largest_of
 from ...robot import Robot
+from ...shapes.avoid import Avoid
 from ...solvers.base import Solver
 from ...solving.message import explain
 from ...solving.options import Options
 from ...solving.pursuit import Pursuit, pursue
 from ...solving.question import Question
 from ...solving.state import State, Status
-from ...solving.verdict import judge
+from ...solving.verdict import judge, measure_errors
+from .contacts import Contacts
+from .detour import Detours
 from .statistics import Statistics, StepFigures
 
 __all__ = ["STATUSES", "Instance", "Standing", "StepSettings", "same_objects"]
@@ -93,6 +96,7 @@ class Instance:
     Attributes:
         robot: The robot.
         q: Its configuration (nq,).
+        contacts: What it touches, and whether it avoids that.
         statistics: Statistics of its last steps.
         last: The figures of the last step; None before the first step and while there are no targets.
         status: One of `STATUSES`.
@@ -106,8 +110,11 @@ class Instance:
         home: Array,
         settings: StepSettings,
         clock: Callable[[], float] = time.perf_counter,
+        contacts: Contacts | None = None,
     ) -> None:
         self.robot = robot
+        self.contacts = contacts or Contacts(robot)
+        self._detours = Detours(robot)
         self.statistics = Statistics()
         self._solver = solver
         self._settings = settings
@@ -151,7 +158,8 @@ class Instance:
         self._state: State | None = None
         self._question: Question | None = None
         self._targets: tuple[Target, ...] = ()
-        self._trouble = ""
+        self._avoided: Avoid | None = None
+        self._trouble = self._blocked = ""
 
     def step(self, targets: Sequence[Target], seconds: float = math.inf) -> None:
         """Follow the targets for one simulation step, for about `seconds` at most.
@@ -163,19 +171,21 @@ class Instance:
         if not asked:
             self._forget_run("there are no targets")
             return
-        moved = not same_objects(asked, self._targets)
+        avoided = self.contacts.avoided
+        moved = not same_objects(asked, self._targets) or avoided != self._avoided
+        self._avoided = avoided
         if moved and [target.shape for target in asked] != [target.shape for target in self._targets]:
             self._forget_run()  # the kinds of the targets changed, so whether the method can solve for them may change
         self._targets = asked
         if self.status == "REFUSED":
             return
         self.counted = moved or self.status != Status.CONVERGED.name
-        if not self.counted:
+        if not self.counted or (self._blocked and not moved):
             self.last = self.last._replace(time=0.0, iterations=0, joint_updates=0, jump=0.0) if self.last else None
             return
         began, before, former = self._clock(), self.q, self._state
         try:
-            state = self._run(asked, began + seconds)
+            state = self._kept_free(self._run(asked, began + seconds), asked)
         except _RefusedError as refusal:
             self.status, self.counted, self._trouble = "REFUSED", False, f"waiting: {refusal}"
             return
@@ -205,6 +215,20 @@ class Instance:
         while state.status is None and self._clock() < deadline:
             state = self._pursuit.advance(self._pursuit.at_once)
         return state
+
+    def _kept_free(self, state: State, targets: tuple[Target, ...]) -> State:
+        """A state, or another one that touches nothing if things are to be avoided: the way round, or this place."""
+        self._blocked, guard = "", self.contacts.guard
+        if self._avoided is None or guard is None or not guard.touches(state.q):
+            return state
+        assert self._question is not None
+        free = self._detours.find(targets, self.q, self._question.options, self._avoided)
+        self._pursuit = None  # the next step begins where this one ends
+        if free.success:
+            return state._replace(q=free.q, errors=free.errors, status=Status.CONVERGED)
+        self._blocked = free.message
+        errors = measure_errors(self.robot, targets, self.q, self._question.options.tolerance)
+        return state._replace(q=self.q, errors=errors, status=Status.COLLIDING)
 
     def _begin(self, targets: tuple[Target, ...]) -> Pursuit:
         solver, settings = self._solver, self._settings
@@ -249,4 +273,7 @@ class Instance:
         active = question.active_limits(self.q) if question.options.limits else {}
         words = explain(question, self._targets, verdict, active)
         off = largest_of(verdict.errors)
+        if self._blocked:
+            words = f"waits, since every answer that was found touches something: {self._blocked}"
+            return Standing(Status.COLLIDING.name, words, off.position, off.orientation, tuple(active))
         return Standing(verdict.status.name, words, off.position, off.orientation, tuple(active))

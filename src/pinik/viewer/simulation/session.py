@@ -20,9 +20,11 @@ from ...solvers.registry import make_solver
 from ...solving.question import check_joint_names
 from .ball import MODES
 from .balls import Balls
+from .contacts import Contacts
 from .instance import Instance, StepSettings, same_objects
 from .method_menu import Methods, check_balls, chosen, filled_up, fitting, offered
 from .motion import MOTIONS, Motion
+from .obstacles import Obstacles
 from .statistics import Summary
 
 __all__ = ["STEPS_PER_SECOND", "VIEWS", "Session"]
@@ -46,6 +48,8 @@ class Session:
         instances: All four instances.
         balls: The balls, each with the frame that chases it.
         motion: The automatic motion of the balls.
+        contacts: What the instances touch, and whether they avoid it.
+        obstacles: What stands around them.
         running: Whether `tick` takes a step.
         steps: The number of steps since the last reset.
         notes: What else changed with the last change of robot, in words.
@@ -93,7 +97,8 @@ class Session:
         self._seed = seed
         self._clock = clock
         self._home = home_configuration(robot)
-        self.instances = [Instance(robot, s, self._home, self.settings, clock) for s in solvers]
+        self.contacts, self.obstacles = Contacts(robot), Obstacles()
+        self.instances = [Instance(robot, s, self._home, self.settings, clock, self.contacts) for s in solvers]
         self.balls = Balls(robot)
         self.set_view(view)
         self._refresh_statistics()
@@ -110,6 +115,8 @@ class Session:
         other.apply_settings(self.settings)
         other.motion.kind, other.motion.curve = self.motion.kind, self.motion.curve
         other.motion.speed = self.motion.speed
+        other.set_contacts(self.contacts.on, self.contacts.avoids)
+        other.set_obstacles(self.obstacles)
         return other
 
     @property
@@ -225,6 +232,17 @@ class Session:
         if name not in CURVES:
             raise UnknownNameError("curve", name, CURVES)
         self.motion.curve = name
+
+    def set_contacts(self, on: bool, avoids: bool) -> None:
+        """Look for what touches, and let the instances avoid it, which they only do where it is looked for."""
+        self.contacts.on, self.contacts.avoids = on, on and avoids
+        self._still_steps = 0
+
+    def set_obstacles(self, obstacles: Obstacles) -> None:
+        """Put these obstacles around the instances, or note that they have changed."""
+        self.obstacles = obstacles
+        self.contacts.surround(obstacles.solids)
+        self._still_steps = 0
 
     def move_ball(self, index: int, position: ArrayLike) -> None:
         """Move a ball to a position (3,) [m], and switch the motion to "hand"."""

@@ -10,6 +10,7 @@ from typing import Any
 from ...echoes import shortened
 from ...errors import InputError, PinikError
 from ...robot import Robot
+from ...shapes.collisions import RobotShapes
 from ..protocol.frames import FrameMaker
 from ..protocol.messages import any_text, apply, checked, parse, text, whole_number
 from ..protocol.recording import Recording
@@ -17,8 +18,10 @@ from ..protocol.robot_message import robot_message
 from ..protocol.robots import RobotMenu
 from ..protocol.setup import Setup, apply_setup, read_setup, write_setup
 from ..protocol.state import hello_message, session_state
+from ..simulation.contacts import Contacts
 from ..simulation.session import Session
 from .animation import animation_page
+from .answers import Answers
 from .later import Later
 from .pace import Pace
 from .robot_loader import RobotLoader
@@ -57,11 +60,14 @@ class Show:
         self._generation = 0
         self._pace = Pace(clock)
         self._shapes: Shapes | None = None
+        self._loading_contacts: Contacts | None = None
+        self._answers = Answers(later, self._seats.send)
         self._change_session(session)
 
     def _change_session(self, session: Session) -> None:
         self.session = session
         self._generation += 1
+        self._answers.forget()
         generation = self._generation
         self._robot = robot_message(session.robot, generation)
         if self._shapes is not None:
@@ -73,6 +79,7 @@ class Show:
         self._seats.send(json.dumps(self._robot))
         self._send_state()
         self._later(lambda: shapes_of(session.robot), lambda shapes: self._take_shapes(generation, shapes))
+        self._look_for_contacts()
 
     def _start_anew(self) -> None:
         """Discard the recording, whose frames show other instances or balls."""
@@ -104,7 +111,8 @@ class Show:
 
     def is_lively(self) -> bool:
         """Return whether there is a tab, and anything to tell it without being asked."""
-        waits = self._waits_for_shapes or self._loader.loading is not None or self._frame_due or self._state_due
+        waits = self._waits_for_shapes or self._loader.loading is not None or self.session.contacts.waits
+        waits = waits or self._frame_due or self._state_due
         return self.is_watched() and (waits or not self.session.sleeps)
 
     def join(self, tab: Tab) -> None:
@@ -178,6 +186,18 @@ class Show:
             case "robot":
                 fields = checked("robot", message, {"name": text, "root": text})
                 self._load(fields["name"], fields["root"], {})
+            case "find_answers":
+                checked("find_answers", message, {})
+                self._answers.find(self.session, self._generation)
+            case "find_self_motion":
+                fields = checked("find_self_motion", message, {"instance": whole_number})
+                self._answers.follow(self.session, self._generation, fields["instance"])
+            case "take_answer":
+                fields = checked("take_answer", message, {"index": whole_number, "instance": whole_number})
+                self._change(lambda session: self._answers.choose(session, **fields))
+            case "move_along":
+                fields = checked("move_along", message, {"index": whole_number})
+                self._change(lambda session: self._answers.move_along(session, **fields))
             case "setup":
                 self._set_up(read_setup(checked("setup", message, {"setup": any_text})["setup"]))
             case kind:
@@ -194,8 +214,23 @@ class Show:
             act(self.session)
         finally:
             self._frame_due = True
+            self._look_for_contacts()
             if self._cast() != before:
                 self._start_anew()
+
+    def _look_for_contacts(self) -> None:
+        """Load the collision shapes once they are needed; to find out which pairs count can take seconds."""
+        contacts = self.session.contacts
+        if contacts.waits and contacts is not self._loading_contacts:
+            self._loading_contacts = contacts
+
+            def take(shapes: RobotShapes | BaseException) -> None:
+                contacts.take(shapes)
+                self._state_due = self._frame_due = True
+                if contacts.why_not and contacts is self.session.contacts:
+                    self._seats.send(_notice(contacts.why_not))
+
+            self._later(contacts.load, take)
 
     def _cast(self) -> tuple[int, list[str]]:
         """Return what the layout of a frame depends on: the number of instances and the balls."""

@@ -1,0 +1,145 @@
+"""The other answers to what the balls ask for, and the self-motion of an instance, for pages that want to see them."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...errors import InputError, PinikError
+from ...problem.targets import Target
+from ...robot import Robot
+from ...solving.branches import Branches
+from ...solving.self_motion import SelfMotion, self_motion
+from ...solving.solve_all import solve_all
+from ..protocol.packing import JointPlacements
+from ..simulation.session import Session
+from .later import Later
+
+__all__ = ["Answers"]
+
+_MOST = 16
+_POINTS = 61
+_PATIENCE = 3.0  # [s]
+_DIGITS = 5
+
+
+class Answers:
+    """Finds all answers of a session, or the self-motion of one of its instances, in another thread.
+
+    The balls stop when they are asked for, since the answers hold for this place only. One of the answers, or a place
+    along the self-motion, is then taken by its number.
+    """
+
+    def __init__(self, later: Later, tell: Callable[[str], None]) -> None:
+        """Be ready.
+
+        Args:
+            later: Does work in another thread.
+            tell: Sends a message to every tab.
+        """
+        self._later, self._tell = later, tell
+        self.forget()
+
+    def forget(self) -> None:
+        """Forget what was found; work under way is told to nobody."""
+        self._found: list[NDArray[np.float64]] = []
+        self._along: list[NDArray[np.float64]] = []
+        self._instance = 0
+        self._request: object = None
+
+    def find(self, session: Session, generation: int) -> None:
+        """Find all answers to what the balls ask for, the nearest to the first instance first.
+
+        Raises:
+            InputError: No ball asks for anything.
+        """
+        robot, targets, q = self._asked(session, 0)
+        limits, avoid = session.settings.limits, session.contacts.avoided
+
+        def work() -> Branches:
+            return solve_all(robot, targets, q0=q, limits=limits, avoid=avoid, time_limit=_PATIENCE)
+
+        def take(found: Branches) -> None:
+            self._found = list(found.q[:_MOST])
+            more = f"; the nearest {_MOST} are shown" if len(found) > _MOST else ""
+            words = {"message": found.message + more, "distance": found.distance[:_MOST].tolist()}
+            self._say("answers", generation, robot, self._found, words)
+
+        self._begin(work, take)
+
+    def follow(self, session: Session, generation: int, instance: int) -> None:
+        """Find how an instance can move while the balls' frames stay where they are.
+
+        Raises:
+            InputError: There is no such instance, or no ball asks for anything.
+        """
+        robot, targets, q = self._asked(session, instance)
+        limits, tolerance = session.settings.limits, session.settings.tolerance
+
+        def work() -> SelfMotion:
+            return self_motion(robot, targets, q, points=_POINTS, limits=limits, tolerance=tolerance)
+
+        def take(found: SelfMotion) -> None:
+            self._along, self._instance = list(found.q) if found.dimension == 1 else [], instance
+            words = {"message": str(found), "instance": instance, "closed": found.closed}
+            self._say("self_motion", generation, robot, self._along, words)
+
+        self._begin(work, take)
+
+    def choose(self, session: Session, index: int, instance: int) -> None:
+        """Put an instance into one of the answers that were found.
+
+        Raises:
+            InputError: There is no such answer or instance.
+        """
+        _put(session, instance, self._found, index, "answer")
+
+    def move_along(self, session: Session, index: int) -> None:
+        """Put the instance whose self-motion was found to one of its places.
+
+        Raises:
+            InputError: There is no such place.
+        """
+        _put(session, self._instance, self._along, index, "place along the self-motion")
+
+    def _asked(self, session: Session, instance: int) -> tuple[Robot, tuple[Target, ...], NDArray[np.float64]]:
+        if not 0 <= instance < session.view:
+            raise InputError(f"instances are numbered from 0 to {session.view - 1}; got {instance}")
+        targets = tuple(session.balls.targets)
+        if not targets:
+            raise InputError("no ball asks for anything; switch one on first")
+        session.set_motion("hand")
+        return session.robot, targets, session.instances[instance].q
+
+    def _begin(self, work: Callable[[], Any], take: Callable[[Any], None]) -> None:
+        request = self._request = object()
+
+        def given(result: Any) -> None:
+            if request is not self._request:
+                return
+            if isinstance(result, BaseException):
+                words = str(result) if isinstance(result, PinikError) else f"{type(result).__name__}: {result}"
+                self._tell(json.dumps({"type": "error", "message": words}))
+            else:
+                take(result)
+
+        self._later(work, given)
+
+    def _say(
+        self, kind: str, generation: int, robot: Robot, found: list[NDArray[np.float64]], words: dict[str, Any]
+    ) -> None:
+        placements = JointPlacements(robot)
+        places = [np.round(placements.at(q), _DIGITS).ravel().tolist() for q in found]
+        self._tell(json.dumps({"type": kind, "generation": generation, **words, "placements": places}))
+
+
+def _put(session: Session, instance: int, known: list[NDArray[np.float64]], index: int, what: str) -> None:
+    if not 0 <= index < len(known):
+        raise InputError(f"there is no {what} {index}; {len(known)} were found, numbered from 0")
+    if not 0 <= instance < session.view:
+        raise InputError(f"instances are numbered from 0 to {session.view - 1}; got {instance}")
+    session.instances[instance].put(known[index])
