@@ -30,7 +30,7 @@ export class Robot {
             const mesh = new THREE.Mesh(part.geometry, fine);
             mesh.castShadow = true;
             this._links[part.link].add(mesh);
-            this._parts.push({ mesh, fine, coarse, link: robot.links[part.link].name });
+            this._parts.push({ mesh, fine, coarse, own: fine.color.clone(), link: robot.links[part.link].name });
             materials[part.link].push(fine, coarse);
         }
         this._marks = new LimitMarks(robot, carriedBy(robot, materials));
@@ -65,17 +65,9 @@ export class Robot {
         this._skeleton?.fade(opacity);
     }
 
-    /** Paint the links with these names red, and only them. */
+    /** Paint the links with these names red, and only them. The quick materials share the colours. */
     redden(names) {
-        for (const { mesh, fine, coarse, link } of this._parts) {
-            const isRed = names.has(link);
-            if (mesh.userData.isRed === isRed) continue;
-            mesh.userData.isRed = isRed;
-            for (const material of [fine, coarse]) {
-                mesh.userData.own ??= fine.color.clone();
-                material.color.copy(isRed ? RED : mesh.userData.own);
-            }
-        }
+        for (const { fine, own, link } of this._parts) fine.color.copy(names.has(link) ? RED : own);
     }
 
     /** The corners of the boxes around the robot's parts, in its own world: Vector3s. */

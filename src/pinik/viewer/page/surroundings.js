@@ -4,7 +4,7 @@ import { icon, make, say } from "pinik/elements.js";
 import { typed, write } from "pinik/hands.js";
 
 const SIZES = { box: ["length", "width", "height"], sphere: ["radius"] };
-const NEW = { box: [0.3, 0.3, 0.3], sphere: [0.2] }; // as fractions of the robot's size
+const NEW = { box: [0.16, 0.16, 0.16], sphere: [0.09] }; // as fractions of the robot's size
 
 export class Surroundings {
     /**
