@@ -20,7 +20,9 @@ from ...solving.question import check_joint_names
 from .ball import MODES
 from .balls import Balls
 from .instance import Instance, StepSettings
-from .method_menu import Methods, check_balls, chosen, filled_up, fitting, offered
+from .leading import Leading
+from .method_menu import Methods, check_balls, chosen, filled_up, offered
+from .misses import Misses
 from .motion import MOTIONS, Motion
 from .statistics import Summary
 
@@ -44,9 +46,13 @@ class Session:
         instances: All four instances.
         balls: The balls, each with the frame that chases it.
         motion: The automatic motion of the balls.
+        leading: The instances whose joints lead instead of the balls.
+        misses: Whether the session pauses on a miss, and the last one.
         running: Whether `tick` takes a step.
         steps: The number of steps since the last reset.
         notes: What else changed with the last change of robot, in words.
+        seed: The seed of the random positions.
+        clock: A function that returns the time in seconds.
     """
 
     def __init__(
@@ -86,28 +92,14 @@ class Session:
         self.notes: list[str] = []
         self._offered: tuple[list[str], list[str]] = ([], [])  # for which frames, what
         self.settings = StepSettings()
+        self.leading, self.misses = Leading(), Misses()
         self.motion = Motion(robot, seed)
-        self._seed = seed
-        self._clock = clock
+        self.seed, self.clock = seed, clock
         self._home = home_configuration(robot)
         self.instances = [Instance(robot, s, self._home, self.settings, clock) for s in solvers]
         self.balls = Balls(robot)
         self.set_view(view)
         self._refresh_statistics()
-
-    def with_robot(self, robot: Robot) -> Session:
-        """A session with another robot and the same settings, as far as they apply to that robot."""
-        solvers, notes = fitting(
-            [instance.solver for instance in self.instances], self.methods, robot, principal_frames(robot)
-        )
-        other = Session(robot, solvers, view=self.view, seed=self._seed, clock=self._clock)
-        other.methods = self.methods
-        other.notes = notes
-        other.running = self.running
-        other.apply_settings(self.settings)
-        other.motion.kind, other.motion.curve = self.motion.kind, self.motion.curve
-        other.motion.speed = self.motion.speed
-        return other
 
     @property
     def seen(self) -> list[Instance]:
@@ -128,18 +120,23 @@ class Session:
 
     def tick(self) -> bool:
         """Take a step if the session is running; return whether it is."""
-        if self.running:
+        was_running = self.running
+        if was_running:
             self.step()
-        return self.running
+        return was_running
 
     def step(self) -> None:
         """Advance the balls by 1/60 s, and let every visible instance chase them."""
         self.motion.advance(self.balls, 1.0 / STEPS_PER_SECOND)
         share = _SOLVERS_SHARE / STEPS_PER_SECOND / self.view
-        for instance in self.seen:
-            instance.step(self.balls.targets, share)
+        led = self.leading.among(self.balls.targets)
+        for index, instance in enumerate(self.seen):
+            if index not in led:
+                instance.step(self.balls.targets, share)
         self.steps += 1
-        if not self.running or self._clock() - self._refreshed >= 1.0:
+        if self.misses.look(self.seen, self.balls.targets, jumped=self.motion.kind == "random"):
+            self.running = False
+        if not self.running or self.clock() - self._refreshed >= 1.0:
             self._refresh_statistics()
 
     def reset(self) -> None:
@@ -149,6 +146,7 @@ class Session:
         for ball in self.balls:
             ball.go_home()
         self.motion.restart()
+        self.leading.hold((), ())
         self.steps = 0
         self._refresh_statistics()
 
@@ -247,4 +245,4 @@ class Session:
 
     def _refresh_statistics(self) -> None:
         self._summaries = [instance.statistics.summary() for instance in self.instances]
-        self._refreshed = self._clock()
+        self._refreshed = self.clock()

@@ -17,6 +17,7 @@ from ..protocol.robot_message import robot_message
 from ..protocol.robots import RobotMenu
 from ..protocol.setup import Setup, apply_setup, read_setup, write_setup
 from ..protocol.state import hello_message, session_state
+from ..simulation.another_robot import with_robot
 from ..simulation.session import Session
 from .animation import animation_page
 from .later import Later
@@ -137,6 +138,7 @@ class Show:
         if not (self._waits_for_shapes and self._seats) and self.session.tick():
             self._pace.note_step()
             self._frame_due = True
+            self._state_due = self._state_due or not self.session.running  # it has paused
         else:
             self._pace.forget()
         if self._frame_due:
@@ -176,10 +178,10 @@ class Show:
             case "setup":
                 self._set_up(read_setup(checked("setup", message, {"setup": any_text})["setup"]))
             case kind:
-                motion = self.session.motion.kind
+                before = self._leads()
                 self._change(lambda session: apply(session, message))
-                # Every frame shows a dragged ball, so the state can wait until it is due anyway.
-                waits = kind == "ball" and motion == self.session.motion.kind
+                # Every frame shows a ball or a joint that is dragged, so the state can wait until it is due anyway.
+                waits = kind in ("ball", "angles") and before == self._leads()
                 self._state_due = self._state_due or not waits or not self.session.running
 
     def _change(self, act: Callable[[Session], None]) -> None:
@@ -195,6 +197,10 @@ class Show:
     def _cast(self) -> tuple[int, list[str]]:
         """Return what the layout of a frame depends on: the number of instances and the balls."""
         return self.session.view, [ball.frame for ball in self.session.balls]
+
+    def _leads(self) -> tuple[str, frozenset[int]]:
+        """Return what moves the balls."""
+        return self.session.motion.kind, self.session.leading.among(self.session.balls.targets)
 
     def _set_up(self, setup: Setup) -> None:
         robot = self.session.robot
@@ -215,7 +221,7 @@ class Show:
         try:
             if isinstance(robot, InputError):
                 raise robot
-            session = self.session.with_robot(robot)
+            session = with_robot(self.session, robot)
             try:
                 if setup:
                     apply_setup(session, setup)
