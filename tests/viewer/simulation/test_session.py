@@ -542,6 +542,37 @@ def test_solvers_get_seven_tenths_of_a_step_between_them(arm):
     assert shown.instances[0].last.iterations == 12  # one of them before it first looks at the clock
 
 
+def test_a_session_rests_once_nothing_has_moved_for_a_second_and_a_half(arm):
+    shown = session(arm, ["dls"])
+    shown.running = True
+    shown.set_motion("hand")
+    steps(shown, 80)
+    assert not shown.rests
+    steps(shown, 30)
+    assert shown.rests
+    assert shown.sleeps
+    shown.move_ball(0, [0.3, 0.1, 0.8])
+    steps(shown, 1)
+    assert not shown.rests
+    steps(shown, 200)
+    shown.set_motion("curve")
+    assert not shown.sleeps  # the balls are about to move
+    shown.running = False
+    assert shown.sleeps
+
+
+def test_a_robot_that_still_moves_keeps_a_session_from_resting(arm):
+    """Out of reach, the pseudo-inverse swings for ever."""
+    shown = session(arm, ["pinv"])
+    shown.running = True
+    shown.move_ball(0, [1.2, 0.0, 0.3])
+    steps(shown, 300)
+    before = shown.instances[0].q
+    steps(shown, 1)
+    assert np.abs(shown.instances[0].q - before).max() > 0.1
+    assert not shown.rests
+
+
 # Another robot
 
 

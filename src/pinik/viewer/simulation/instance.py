@@ -26,13 +26,22 @@ from ...solving.state import State, Status
 from ...solving.verdict import judge
 from .statistics import Statistics, StepFigures
 
-__all__ = ["STATUSES", "Instance", "Standing", "StepSettings"]
+__all__ = ["STATUSES", "Instance", "Standing", "StepSettings", "same_objects"]
 
 Array = NDArray[np.float64]
 
 STATUSES = ("IDLE", *(status.name for status in Status), "FAILED", "REFUSED")
 """How a step may end: with the status of a solve; IDLE without targets; FAILED if a custom solver raised an exception;
 REFUSED if the method cannot solve for these targets."""
+
+
+_STILL = 1e-7
+"""The largest change of a joint in one step [rad or m] that nobody sees."""
+
+
+def same_objects(some: Sequence[object], others: Sequence[object]) -> bool:
+    """Whether two sequences hold the very same objects."""
+    return len(some) == len(others) and all(a is b for a, b in zip(some, others, strict=True))
 
 
 @dataclass(frozen=True)
@@ -159,7 +168,7 @@ class Instance:
         if not asked:
             self._forget_run("there are no targets")
             return
-        moved = len(asked) != len(self._targets) or any(a is not b for a, b in zip(asked, self._targets, strict=True))
+        moved = not same_objects(asked, self._targets)
         if moved and [target.shape for target in asked] != [target.shape for target in self._targets]:
             self._forget_run()  # the kinds of the targets changed, so whether the method can solve for them may change
         self._targets = asked
@@ -219,6 +228,11 @@ class Instance:
         self.last = StepFigures(spent, 0, 0, reached=False, error=None, jump=0.0)
         self.status, self.counted = "FAILED", True
         self.statistics.add(self.last)
+
+    @property
+    def moves(self) -> bool:
+        """Whether the last step moved a joint as far as anybody can see."""
+        return self.last is not None and self.last.jump > _STILL
 
     @property
     def orientation_error(self) -> float | None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 
 from ...problem.targets import Target
+from .instance import same_objects
 
 __all__ = ["Leading"]
 
@@ -26,6 +27,6 @@ class Leading:
 
     def among(self, targets: Sequence[Target]) -> frozenset[int]:
         """The instances that lead while the balls ask for these targets, the same objects as when they began to."""
-        if self._held and [*map(id, targets)] != [*map(id, self._targets)]:
+        if self._held and not same_objects(targets, self._targets):
             self._held = frozenset()
         return self._held

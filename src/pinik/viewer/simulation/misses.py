@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 from ...problem.targets import Target
 from ...solving.state import Status
-from .instance import Instance
+from .instance import Instance, same_objects
 
 __all__ = ["Misses"]
 
@@ -38,8 +38,7 @@ class Misses:
             targets: The targets of this step.
             jumped: Whether balls that moved have jumped to another place, where a miss is a new one.
         """
-        moved = [*map(id, targets)] != [*map(id, self._targets)]
-        if jumped and moved:
+        if jumped and not same_objects(targets, self._targets):
             self._known.clear()
         self._targets = tuple(targets)
         missing = {index for index, instance in enumerate(seen) if instance.status in _MISSES}
