@@ -51,8 +51,9 @@ def test_the_question_gives_the_same_answer_in_python_and_on_the_command_line(go
     shown.balls[1].release("xy")
     set_angles(shown, None, {"panda_joint1": 0.3, "panda_joint2": -0.4})
     shown.move_ball(0, goal)
+    method = pinik.DampedLeastSquares(damping=0.2, max_step=0.3)
     own = panda.solve(
-        shown.balls.targets, method=pinik.DampedLeastSquares(damping=0.2, max_step=0.3), q0=shown.instances[0].q, restarts=0,
+        shown.balls.targets, method=method, q0=shown.instances[0].q, restarts=0,
         tolerance=(0.002, 0.02), polish=False,
     )  # fmt: skip
     copied = texts(shown)

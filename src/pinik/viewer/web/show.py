@@ -7,6 +7,7 @@ import time
 from collections.abc import Callable
 from typing import Any
 
+from ...description.catalog import catalog
 from ...echoes import shortened
 from ...errors import InputError, PinikError
 from ...robot import Robot
@@ -22,10 +23,12 @@ from ..simulation.session import Session
 from .animation import animation_page
 from .later import Later
 from .pace import Pace
+from .reload import reloaded
 from .robot_loader import RobotLoader
 from .scene import Shapes
 from .seats import Seats, Tab
 from .shape_cache import shapes_of
+from .watch import Watch
 
 __all__ = ["Show"]
 
@@ -47,6 +50,7 @@ class Show:
         later: Later,
         version: str = "",
         clock: Callable[[], float] = time.perf_counter,
+        reload: Callable[[], Robot] | None = None,
     ) -> None:
         self.session = session
         self.recording = Recording()
@@ -57,14 +61,16 @@ class Show:
         self._hello = hello_message(version, session.methods, menu.own_names)
         self._generation = 0
         self._pace = Pace(clock)
+        self._watch = None if reload is None else Watch(session.robot, reload, later)
+        self._opened = session.robot.name
         self._shapes: Shapes | None = None
         self._change_session(session)
 
-    def _change_session(self, session: Session) -> None:
+    def _change_session(self, session: Session, keeps_view: bool = False) -> None:
         self.session = session
         self._generation += 1
         generation = self._generation
-        self._robot = robot_message(session.robot, generation)
+        self._robot = robot_message(session.robot, generation) | {"keeps_view": keeps_view}
         if self._shapes is not None:
             self._seats.withdraw(self._shapes.commands)  # else those of robot after robot would wait for a slow tab
         self._shapes = None
@@ -166,6 +172,27 @@ class Show:
         if self._seats:
             self._seats.offer_state(json.dumps(self.state()))
 
+    def look_at_files(self) -> bool:
+        """Look at the watched files while somebody watches; return whether there is anything new to send."""
+        if self._watch is not None and self.is_watched():
+            self._watch.look(self._take_reloaded)
+        return self._frame_due or self._state_due
+
+    def _take_reloaded(self, robot: Robot | None) -> None:
+        self._state_due = True
+        if robot is None:
+            return
+        is_shown = self.session.robot.name == self._opened
+        self._loader.menu.renew(robot)
+        self._opened = robot.name
+        self._hello["robots"] = [*self._loader.menu.own_names, *catalog()]
+        self._seats.send(json.dumps(self._hello))
+        if is_shown:
+            try:
+                self._change_session(reloaded(self.session, robot.with_root(self.session.robot.root)), keeps_view=True)
+            except PinikError as error:
+                self._seats.send(_notice(str(error)))
+
     # Requests
 
     def do(self, message: dict[str, Any]) -> None:
@@ -247,6 +274,7 @@ class Show:
             "generation": self._generation,
             "steps_per_second": self._pace.value if self.session.running else None,
             "loading": self._loader.loading,
+            "watched": None if self._watch is None else {"file": self._watch.file, "fault": self._watch.fault},
             "setup": write_setup(self.session),
         }
 
