@@ -20,11 +20,15 @@ from urdf_texts import joint, link, robot
 AGE = iter(range(1, 10**6))
 
 
-def arm(length, *, name="own", more=""):
+def arm(length, *, name="own"):
     first = joint("turn", "base", "one")
     second = joint("bend", "one", "two", f'<origin xyz="{length} 0 0"/>')
-    return robot(link("base"), link("one"), link("two"), link("tip"), first, second,
-                 joint("end", "two", "tip", f'<origin xyz="{length} 0 0"/>', kind="fixed"), more, name=name)  # fmt: skip
+    end = joint("end", "two", "tip", f'<origin xyz="{length} 0 0"/>', kind="fixed", limit="")
+    return named(name, link("base"), link("one"), link("two"), link("tip"), first, second, end)
+
+
+def named(name, *parts):
+    return robot(*parts).replace('name="r"', f'name="{name}"', 1)
 
 
 def write(path, text):
@@ -72,7 +76,7 @@ def test_a_changed_file_brings_the_new_robot_with_the_old_angles_and_settings(st
     assert [one.solver.name for one in now.seen] == ["dls", "ccd"]
     assert not now.settings.limits
     assert sorted(now.leading.among(now.balls.targets)) == [1]
-    told = [json.loads(m) for m in stage.tab.received if isinstance(m, str) and '"robot"' in m[:20]]
+    told = [json.loads(m) for m in stage.tab.sent if isinstance(m, str) and '"robot"' in m[:20]]
     assert [message["keeps_view"] for message in told if message["type"] == "robot"] == [False, True]
     assert stage.show.state()["watched"] == {"file": "own.urdf", "fault": None}
 
@@ -98,7 +102,7 @@ def test_what_the_robot_no_longer_has_is_dropped_and_its_new_name_is_on_the_menu
     stage.look()
     now = stage.show.session
     assert (now.robot.name, now.robot.joint_names) == ("other", ("turn", "fold"))
-    assert "second" not in now.balls.frames or True
+    assert "second" in now.robot.frame_names
     assert stage.show.state()["robot"] == "other"
     stage.show.receive(stage.tab, json.dumps({"type": "robot", "name": "other", "root": "planar"}))
     stage.later.do_all()
@@ -118,11 +122,16 @@ def test_srdf_meshes_and_included_files_are_watched_too(tmp_path):
     mesh.write_bytes(b"x")
     write(macro, "<robot/>")
     shape = '<visual><geometry><mesh filename="m.stl"/></geometry></visual>'
-    write(path, robot(link("base", shape), name="own"))
-    found = files_of(load_in_silence(path)) if pinik else []
+    write(path, named("own", link("base", shape)))
+    found = files_of(load_in_silence(path))
     assert {path, path.with_suffix(".srdf"), mesh, macro} <= set(found)
     loads = []
-    watch = Watch(load_in_silence(path), lambda: loads.append(1) or load_in_silence(path), lambda work, then: then(work()))
+
+    def again():
+        loads.append(path)
+        return load_in_silence(path)
+
+    watch = Watch(load_in_silence(path), again, lambda work, then: then(work()))
     for file in (mesh, macro, path.with_suffix(".srdf")):
         write(file, "<robot name='own'/>")
         watch.look(lambda robot: None)
