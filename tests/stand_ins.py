@@ -58,6 +58,13 @@ GOOD = {
     "remove_obstacle": ({"index": 0}, {"index": "index"}),
     "effector": ({"index": 0, "mode": "pinned"}, {"index": "index", "mode": "name"}),
     "add_effector": ({"frame": "bone3"}, {"frame": "name"}),
+    "pause_on_miss": ({"on": True}, {"on": "truth"}),
+    "angles": (
+        {"instance": None, "angles": {"bone1_x": 0.2}},
+        {"instance": "instance", "angles": "joint values"},
+    ),
+    "paste": ({"instance": 1, "text": "bone1_x: 0.2"}, {"instance": "instance", "text": "pasted"}),
+    "balls_lead": ({}, {}),
     "remove_effector": ({"index": 1}, {"index": "index"}),
 }
 

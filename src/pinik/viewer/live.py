@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
+from functools import partial
 from typing import TYPE_CHECKING
 
+from ..errors import InputError
 from ..extras import needed_by
-from ..loading import load
+from ..loading import load, load_in_silence
 from ..robot import Robot
 from ..solvers.base import Solver
 from ..version import __version__
@@ -29,6 +31,7 @@ def live(
     running: bool = True,
     port: int | None = None,
     host: str = "127.0.0.1",
+    watch: bool | Callable[[], Robot] = False,
 ) -> LiveView:
     """Open a live view: a page on which instances of a robot chase the same balls, each with its own method.
 
@@ -48,16 +51,36 @@ def live(
         host: The address to listen on. On any address but the loopback, everybody who can reach it can watch and change
             the view.
 
+        watch: Whether to load the robot again when its file changes: its URDF or xacro file, its SRDF or a mesh. The
+            page keeps its camera, and joints keep their angles; while the file is faulty, the page says why, and shows
+            the robot as it last was. Instead of True, give the function that loads it, if that takes more than its
+            path.
+
     Raises:
         RobotLoadError: The robot cannot be loaded.
         UnknownNameError: There is no robot, method or motion of that name.
-        InputError: There are more than four methods, `view` is wrong, or the port or address is not available.
+        InputError: There are more than four methods, `view` is wrong, the port or address is not available, or the
+            robot that is to be watched is not given by the path of its file.
         MissingExtraError: The packages of pinik[live] are not installed.
     """
     with needed_by("the live view", "live"):
         from .web.live_view import LiveView
 
-    machine = robot if isinstance(robot, Robot) else load(robot, root=root, package_dirs=package_dirs)
+    folders = list(package_dirs)
+    machine = robot if isinstance(robot, Robot) else load(robot, root=root, package_dirs=folders)
+    reload: Callable[[], Robot] | None = watch if callable(watch) else None
+    if watch is True:
+        if isinstance(robot, Robot) or machine.description.path is None:
+            raise InputError("must be the path of a file, so that it can be watched", argument="robot")
+        reload = partial(load_in_silence, robot, root=root, package_dirs=folders)
     return LiveView(
-        machine, methods, view=view, port=port, host=host, motion=motion, running=running, version=__version__
+        machine,
+        methods,
+        view=view,
+        port=port,
+        host=host,
+        motion=motion,
+        running=running,
+        version=__version__,
+        reload=reload,
     )

@@ -14,7 +14,8 @@ from hypothesis import strategies as st
 
 import pinik
 from judge import plain_placement
-from pinik.viewer.protocol.messages import FARTHEST, RANGES, apply, parse, read_json
+from pinik.viewer.protocol.messages import FARTHEST, RANGES, apply, parse
+from pinik.viewer.protocol.reading import read_json
 from pinik.viewer.simulation.session import Session
 from stand_ins import GOOD, Clock, snapshot
 
@@ -58,6 +59,50 @@ WRONG = {
         [10**400],
         [[0.1]],
         ["0.1"],
+    ],
+    "instance": [True, False, "1", "", [], [1], {}, {"a": 1}, 1.0, 0.5, -1, 4, 10**400],
+    "joint values": [
+        None,
+        True,
+        1,
+        "bone1_x",
+        [],
+        {},
+        ["bone1_x"],
+        {"bone1_x": None},
+        {"bone1_x": "0.1"},
+        {"bone1_x": True},
+        {"bone1_x": [0.1]},
+        {"bone1_x": 10**400},
+        {"bone1_x": math.inf},
+        {"bone1_x": 99.0},
+        {"nope": 0.1},
+        {"bone1_x": 0.1, "nope": 0.1},
+        {f"joint{k}": 0.1 for k in range(1001)},
+    ],
+    "pasted": [
+        None,
+        True,
+        1,
+        {},
+        [],
+        "",
+        "  ",
+        "nope: 0.1",
+        "bone1_x: 99",
+        "bone1_x 0.1",
+        "1, 2",
+        "{",
+        "{}",
+        '{"bone1_x": NaN}',
+        '{"bone1_x": "0.1"}',
+        '{"angles": {"nope": 1}}',
+        "bone1_x: 0.1\nbone1_x: 0.2",
+        "bone1_x: os.system('x')",
+        "!!python/object: 1",
+        "name: [bone1_x]\nposition: [0.1, 0.2]",
+        "x" * 20_001,
+        "[" * 3000,
     ],
     "axes": [None, True, 1, [], ["x"], {}, "xyz", "yx", "xx", "w", "x y", "X", "x" * 201],
     "tolerance": [

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import math
 
 import numpy as np
 import pytest
@@ -82,15 +83,17 @@ def test_with_every_angle_zero_joints_hang_together_by_their_placements(name):
 
 def test_the_message_of_a_small_robot():
     message = robot_message(pinik.load("two_link"), 4)
+    reach = pytest.approx([-math.pi, math.pi])
+    fixed, hinge = {"leader": None, "range": None}, {"leader": None, "range": reach}
     assert message == {
         "type": "robot",
         "generation": 4,
         "name": "two_link",
         "root": "fixed",
         "joints": [
-            {"name": "universe", "parent": 0, "kind": "fixed", "placement": [0, 0, 0, 0, 0, 0, 1]},
-            {"name": "joint1", "parent": 0, "kind": "revolute", "placement": [0, 0, 0, 0, 0, 0, 1]},
-            {"name": "joint2", "parent": 1, "kind": "revolute", "placement": [0.5, 0, 0, 0, 0, 0, 1]},
+            {**fixed, "name": "universe", "parent": 0, "kind": "fixed", "placement": [0, 0, 0, 0, 0, 0, 1]},
+            {**hinge, "name": "joint1", "parent": 0, "kind": "revolute", "placement": [0, 0, 0, 0, 0, 0, 1]},
+            {**hinge, "name": "joint2", "parent": 1, "kind": "revolute", "placement": [0.5, 0, 0, 0, 0, 0, 1]},
         ],
         "links": [
             {"name": "base", "joint": 0, "placement": [0, 0, 0, 0, 0, 0, 1]},
@@ -134,3 +137,16 @@ def test_warnings_of_loading_are_passed_on():
     with pytest.warns(pinik.UrdfWarning):
         model = pinik.load(urdf)
     assert robot_message(model, 1)["warnings"] == list(model.warnings) != []
+
+
+def test_a_joint_tells_its_leader_and_its_range_which_keeps_its_followers_inside_theirs():
+    found = {each["name"]: each for each in robot_message(load_quietly("panda", root="free_flyer"), 1)["joints"]}
+    assert found["panda_finger_joint2"]["leader"] == "panda_finger_joint1"
+    assert found["panda_finger_joint2"]["range"] == [0.0, 0.04]
+    assert (found["panda_joint4"]["leader"], found["panda_joint4"]["range"]) == (None, [-3.0718, -0.0698])
+    assert found["root_joint"]["range"] is None
+    turning = {each["name"]: each for each in robot_message(load_quietly(by_hand.ZOO), 1)["joints"]}
+    assert turning["k_turn"]["range"] is None
+    assert {follower: turning[follower]["leader"] for follower in load_quietly(by_hand.ZOO).mimics} == {
+        follower: leader for follower, (leader, _, _) in load_quietly(by_hand.ZOO).mimics.items()
+    }

@@ -99,6 +99,13 @@ MESSAGES = st.one_of(
     ),
     st.builds(lambda f: {"type": "add_effector", "frame": f}, st.sampled_from(FRAMES)),
     st.builds(lambda i: {"type": "remove_effector", "index": i}, st.integers(0, 3)),
+    st.builds(lambda on: {"type": "pause_on_miss", "on": on}, st.booleans()),
+    st.builds(
+        lambda i, angles: {"type": "angles", "instance": i, "angles": angles},
+        st.none() | st.integers(0, 3),
+        st.dictionaries(st.sampled_from(ARM.joint_names), NUMBER, min_size=1),
+    ),
+    st.just({"type": "balls_lead"}),
     st.just({"type": "step"}),
 )
 

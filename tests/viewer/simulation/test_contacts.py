@@ -9,6 +9,7 @@ import pytest
 
 import pinik
 from collision_oracle import PlainCollisions
+from pinik.viewer.simulation.another_robot import with_robot
 from pinik.viewer.simulation.obstacles import MOST_OBSTACLES, Obstacles
 from pinik.viewer.simulation.session import Session
 from robots import load_quietly
@@ -134,7 +135,7 @@ def test_a_robot_without_collision_shapes_says_so():
 def test_another_robot_keeps_obstacles_and_switches():
     shown = session("dls")
     put(shown, "box", [0.1, 0.1, 0.1], [1.0, 0.0, 0.0])
-    other = shown.with_robot(load_quietly("ur5"))
+    other = with_robot(shown, load_quietly("ur5"))
     assert [obstacle.kind for obstacle in other.obstacles] == ["box"]
     assert other.contacts.on
     assert other.contacts.avoids

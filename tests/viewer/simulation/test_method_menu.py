@@ -12,6 +12,7 @@ from judge import plain_placement
 from pinik.viewer.protocol.messages import apply
 from pinik.viewer.protocol.setup import apply_setup, read_setup, write_setup
 from pinik.viewer.protocol.state import session_state
+from pinik.viewer.simulation.another_robot import with_robot
 from pinik.viewer.simulation.session import Session
 from robots import load_quietly
 from stand_ins import Clock, snapshot
@@ -185,19 +186,19 @@ def test_its_parameters_go_through_a_set_up(two_link):
 def test_with_a_robot_that_it_cannot_move_it_makes_room_and_says_so(two_link, arm):
     shown = session(two_link, ["ccd", "jt", "dls", pinik.TwoBoneSolver(elbow="up")])
     shown.running = True
-    there = shown.with_robot(arm)
+    there = with_robot(shown, arm)
     assert [one.solver.name for one in there.instances] == ["ccd", "jt", "dls", "pinv"]
     (note,) = there.notes
     assert note.startswith(f"instance 4 now uses pinv: two_bone cannot chase a ball here: frame 'tip' {ALONE}: 12")
     steps(there, 2)
     assert all(one.status == "CONVERGED" for one in there.instances)
-    back = there.with_robot(two_link)
+    back = with_robot(there, two_link)
     assert (back.notes, "two_bone" in back.offered) == ([], True)
-    kept = shown.with_robot(load_quietly("asr_twodof"))
+    kept = with_robot(shown, load_quietly("asr_twodof"))
     assert (kept.notes, kept.instances[3].solver) == ([], pinik.TwoBoneSolver(elbow="up"))
 
 
 def test_instances_that_make_room_take_different_methods(two_link, arm):
-    there = session(two_link, ["two_bone", "two_bone"]).with_robot(arm)
+    there = with_robot(session(two_link, ["two_bone", "two_bone"]), arm)
     assert sorted(one.solver.name for one in there.instances) == sorted(EVERY_ROBOTS)
     assert [note[:10] for note in there.notes] == ["instance 1", "instance 2"]

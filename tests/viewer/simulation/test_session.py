@@ -13,6 +13,7 @@ import pinik
 from by_hand import rotation_from_rpy
 from judge import is_inside, plain_placement
 from pinik.viewer.protocol.setup import apply_setup, read_setup, write_setup
+from pinik.viewer.simulation.another_robot import with_robot
 from pinik.viewer.simulation.balls import MOST_BALLS
 from pinik.viewer.simulation.session import STEPS_PER_SECOND, Session
 from robots import load_quietly
@@ -585,7 +586,7 @@ def test_another_robot_keeps_the_settings_and_drops_joints_that_it_lacks(arm, pa
     shown.change_settings(tolerance=pinik.Tolerance(1e-3, 1e-2))
     shown.running = True
     steps(shown, 3)
-    other = shown.with_robot(panda)
+    other = with_robot(shown, panda)
     assert (other.robot, other.view, other.running, other.steps) == (panda, 2, True, 0)
     assert (other.motion.kind, other.motion.curve, other.motion.speed) == ("random", "knot", 2.5)
     assert other.settings == shown.settings
@@ -599,7 +600,7 @@ def test_another_robot_keeps_the_settings_and_drops_joints_that_it_lacks(arm, pa
     fresh.set_motion("random")
     fresh.step()
     assert other.balls[0].position.tolist() == fresh.balls[0].position.tolist()  # the seed as well
-    kept = shown.with_robot(load_quietly("arm", root="free_flyer"))
+    kept = with_robot(shown, load_quietly("arm", root="free_flyer"))
     assert dict(kept.instances[0].solver.stiffness) == stiff
 
 

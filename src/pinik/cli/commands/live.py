@@ -2,16 +2,18 @@
 
 from __future__ import annotations
 
+from functools import partial
 from typing import Annotated
 
 import typer
 
+from ...loading import load_in_silence
 from ...viewer.live import live as open_view
 from ..inputs.assignments import solver_with
-from ..inputs.loading import load_robot
+from ..inputs.loading import load_robot, xacro_arguments
 from ..inputs.options import AllowOutside, PackageDirs, Root, XacroArgs
 from ..terminal import output
-from ..terminal.exits import ExitStatus
+from ..terminal.exits import CommandError, ExitStatus
 
 __all__ = ["live"]
 
@@ -52,6 +54,9 @@ def live(
     no_browser: Annotated[
         bool, typer.Option("--no-browser", help="Print the address of the page without opening it.")
     ] = False,
+    watch: Annotated[
+        bool, typer.Option("--watch", help="Load the robot again when its file, its SRDF or a mesh changes.")
+    ] = False,
     package_dir: PackageDirs = None,
     xacro_arg: XacroArgs = None,
     allow_outside: AllowOutside = False,
@@ -65,10 +70,23 @@ def live(
       pinik live
       pinik live lion --root free_flyer --methods ccd,dls
       pinik live path/to/robot.urdf --view 1 --methods pinv
+      pinik live path/to/robot.urdf --watch
     """
     solvers = [solver_with(name.strip(), None) for name in methods.split(",")]
     machine = load_robot(robot, root=root, package_dirs=package_dir, xacro_args=xacro_arg, allow_outside=allow_outside)
-    with open_view(machine, solvers, view=view, motion=motion, port=port, host=host) as page:
+    reload = partial(
+        load_in_silence,
+        robot,
+        root=root,
+        package_dirs=package_dir or (),
+        xacro_args=xacro_arguments(xacro_arg),
+        allow_outside=allow_outside,
+    )
+    if watch and machine.description.path is None:
+        raise CommandError("--watch needs the path of a robot's file")
+    with open_view(
+        machine, solvers, view=view, motion=motion, port=port, host=host, watch=reload if watch else False
+    ) as page:
         output.emit(page.url)
         output.say("Press Ctrl-C to end the live view.")
         if not no_browser and not page.open():

@@ -22,8 +22,9 @@ export class Balls {
         this._places.length = frame.balls;
         this._places.forEach(({ position, quaternion }, k) => {
             const numbers = frame.ball(k);
+            if (this._isHeld(k)) return;
             quaternion.fromArray(numbers, 3);
-            if (!this._isHeld(k)) position.fromArray(numbers);
+            position.fromArray(numbers);
         });
     }
 
@@ -43,6 +44,12 @@ export class Balls {
     hold(k, position) {
         this._held.set(k, Infinity);
         this._places[k]?.position.copy(position);
+    }
+
+    /** Turn a ball; frames do not move it until it is released. */
+    turn(k, quaternion) {
+        this._held.set(k, Infinity);
+        this._places[k]?.quaternion.copy(quaternion);
     }
 
     letGo(k) {

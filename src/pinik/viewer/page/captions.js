@@ -28,7 +28,7 @@ export class Captions {
             return {
                 title,
                 method,
-                words: verdict(name, positionError, orientationError, state),
+                words: state.led?.includes(i) ? "moved by hand" : verdict(name, positionError, orientationError, state),
                 good: name === "CONVERGED",
             };
         });

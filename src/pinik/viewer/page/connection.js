@@ -39,6 +39,7 @@ export class Connection {
 
     /** Send now, or drop the message while offline: after reconnecting, the server sends its state anyway. */
     send(message) {
+        this.onSend?.(message);
         if (this.open) this._socket.send(JSON.stringify(message));
     }
 

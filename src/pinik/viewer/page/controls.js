@@ -21,6 +21,9 @@ export class Controls {
         byId("motion").addEventListener("change", ({ target }) => send("motion", { motion: target.value }));
         byId("curve").addEventListener("change", ({ target }) => send("curve", { curve: target.value }));
         byId("limits").addEventListener("change", ({ target }) => send("limits", { on: target.checked }));
+        byId("pause-on-miss").addEventListener("change", ({ target }) =>
+            send("pause_on_miss", { on: target.checked }),
+        );
         byId("polish").addEventListener("change", ({ target }) => send("polish", { on: target.checked }));
         byId("start").addEventListener("click", () => this.toggleRun());
         byId("step").addEventListener("click", () => this.step());
@@ -130,6 +133,9 @@ export class Controls {
         for (const name of ["robot", "root", "motion", "curve"]) write(byId(name), state[name]);
         write(byId("limits"), state.limits);
         write(byId("polish"), state.polish);
+        write(byId("pause-on-miss"), state.pause_on_miss);
+        byId("missed").hidden = !state.missed;
+        say(byId("missed"), state.missed ? `Paused: ${state.missed}` : "");
         write(byId("speed"), plain(state.speed));
         write(byId("speed-slider"), this._speed.position(state.speed));
         write(byId("until-reached"), state.iterations.until_reached);

@@ -1,5 +1,6 @@
 /** Dragging a ball with the mouse or a finger, in the plane of the screen, or horizontally with Shift. */
 
+import { snapPosition } from "pinik/snap.js";
 import { THREE } from "pinik/three.js";
 
 const REACH = { mouse: 18, pen: 22, touch: 34 }; // [px] beyond a ball's radius
@@ -71,13 +72,13 @@ export class Grab {
         }
         if (event.pointerId !== this._held.pointer) return;
         event.stopPropagation();
-        const where = `${event.clientX} ${event.clientY} ${event.shiftKey}`;
+        const where = `${event.clientX} ${event.clientY} ${event.shiftKey} ${event.ctrlKey || event.metaKey}`;
         if (where === this._held.where) return; // the same move, reported twice
         this._held.where = where;
         const position = this._dragged(event);
         if (!position) return;
         this._held.position = position;
-        const inRobot = position.clone().sub(this._show.offset(this._held.instance));
+        const inRobot = snapPosition(position.clone().sub(this._show.offset(this._held.instance)), event);
         this._show.holdBall(this._held.k, inRobot);
         this._handlers.onMove(this._held.k, inRobot.toArray());
     }

@@ -5,17 +5,21 @@ import { Answers } from "pinik/answers.js";
 import { Cards } from "pinik/cards.js";
 import { Chart } from "pinik/chart.js";
 import { Connection } from "pinik/connection.js";
+import { Copying } from "pinik/copying.js";
 import { Controls } from "pinik/controls.js";
 import { byId } from "pinik/elements.js";
 import { isFrame } from "pinik/frame.js";
 import { Grab } from "pinik/grab.js";
 import { watchHands } from "pinik/hands.js";
 import { History } from "pinik/history.js";
+import { Joints } from "pinik/joints.js";
 import { Keys } from "pinik/keys.js";
 import { Notices } from "pinik/notices.js";
 import { Nudge } from "pinik/nudge.js";
 import { Obstacles } from "pinik/obstacles.js";
+import { PictureDialog } from "pinik/picture.js";
 import { addPresets } from "pinik/presets.js";
+import { Rings } from "pinik/rings.js";
 import { shortcuts } from "pinik/shortcuts.js";
 import { Show } from "pinik/show.js";
 import { Surroundings } from "pinik/surroundings.js";
@@ -23,6 +27,7 @@ import { Table } from "pinik/table.js";
 import { Targets } from "pinik/targets.js";
 import { Theme } from "pinik/theme.js";
 import { THREE } from "pinik/three.js";
+import { Undo } from "pinik/undo.js";
 
 const CHARTS = 100; // [ms] between two drawings of the charts
 
@@ -44,6 +49,10 @@ class Page {
         this.surroundings = new Surroundings(byId("surroundings"), this.connection);
         this.answers = new Answers(byId("answers"), this.connection, this.show);
         this.table = new Table(byId("table"));
+        this.joints = new Joints(this.connection);
+        this.undo = new Undo(this.connection);
+        this.copying = new Copying(this.connection, this.joints);
+        this.picture = new PictureDialog(this.show, this.theme);
         this.address = new Address((setup) => this.connection.send({ type: "setup", setup }));
         this.history = new History();
         this._drawnCharts = 0;
@@ -64,14 +73,14 @@ class Page {
         },
         robot: (robot) => {
             this.show.setRobot(robot);
-            this.targets.setRobot(robot);
-            this.surroundings.setRobot(robot);
+            for (const part of [this.targets, this.joints, this.undo, this.surroundings]) part.setRobot(robot);
             this.answers.clear();
             this.notices.warnings(robot.warnings);
             this.robot = robot;
         },
         state: (state) => {
             this.state = state;
+            this.undo.setState(state);
             document.title = `${state.robot} – pinik`;
             this._showSettings(state);
             this.table.setState(state);
@@ -79,6 +88,7 @@ class Page {
             this.obstacles.setState(state);
             this.answers.setState(state);
             this.notices.loading(state.loading);
+            this.notices.watched(state.watched);
             this.address.show(state.setup);
         },
         shapes: (shapes) => {
@@ -92,7 +102,8 @@ class Page {
     };
 
     _showSettings(state) {
-        for (const part of [this.controls, this.cards, this.targets, this.surroundings]) part.setState(state);
+        const parts = [this.controls, this.cards, this.targets, this.joints, this.surroundings];
+        for (const part of parts) part.setState(state);
     }
 
     _take(buffer) {
@@ -134,6 +145,22 @@ class Page {
     }
 
     _makeHands() {
+        const isLocal = () => byId("ring-local").ariaPressed === "true";
+        for (const id of ["ring-local", "ring-world"])
+            byId(id).addEventListener("click", () => {
+                for (const own of ["ring-local", "ring-world"]) byId(own).ariaPressed = String(own === id);
+                this.show.stage.touch();
+            });
+        // Before the balls, so that a ring beside a ball is taken first.
+        this.rings = new Rings(this.show, {
+            selected: () => this.targets.selected,
+            local: isLocal,
+            onTurn: (index, rpy) => {
+                this.connection.sendNewest(`turn ${index}`, { type: "orientation", index, on: true, rpy });
+                this.targets.turned(index, rpy);
+            },
+            onDrop: (index) => this.connection.flush(`turn ${index}`),
+        });
         this.grab = new Grab(this.show, {
             onGrab: (k) => this.targets.select(k),
             onMove: (k, position) => this._moveBall(k, position),
@@ -200,6 +227,10 @@ window.pinik = {
     /** Whether the picture has stopped changing and has been drawn in full detail. */
     get settled() {
         return page.show.stage.settled;
+    },
+    /** The middle of one side of a ring around the selected ball in the first instance, as `targetOnScreen`. */
+    ringOnScreen(axis, angle) {
+        return page.rings.onScreen(axis, angle);
     },
     /** The position of ball k in the first instance, in CSS pixels of the page. */
     targetOnScreen(k) {

@@ -3,6 +3,7 @@
 import { byId, icon, make, say } from "pinik/elements.js";
 
 const SHOWN = 8000; // [ms]
+const GOOD = 4000; // [ms]
 
 export class Notices {
     error(words) {
@@ -20,6 +21,24 @@ export class Notices {
     connected(on) {
         byId("banner").hidden = on;
         document.documentElement.classList.toggle("offline", !on);
+    }
+
+    /** Say what is wrong with the watched file, or that it is good again. */
+    watched(file) {
+        const fault = file?.fault ?? null;
+        const strip = byId("watched");
+        clearTimeout(this._mended);
+        if (fault) say(strip, `${fault}. You see the robot as it last was.`);
+        else if (this._fault) {
+            say(strip, `${file.file} is good again.`);
+            this._mended = setTimeout(() => {
+                strip.hidden = true;
+            }, GOOD);
+        }
+        strip.classList.toggle("good", !fault);
+        if (fault || this._fault) strip.hidden = false;
+        else if (!strip.classList.contains("good")) strip.hidden = true;
+        this._fault = fault;
     }
 
     loading(name) {

@@ -44,7 +44,9 @@ export class Show {
         this._shapes.clear();
         this.balls.forget();
         this._sight.forget();
-        Object.assign(this, { robot, drawn: "", _parts: null, _frame: null, _next: null, ground: null, _framed: 0 });
+        Object.assign(this, { robot, drawn: "", _parts: null, _frame: null, _next: null });
+        if (robot.keeps_view) this.camera.moved = true;
+        else Object.assign(this, { ground: null, _framed: 0 });
         this.stage.touch();
     }
 
@@ -228,14 +230,17 @@ export class Show {
         return this.balls.places[k].position.clone().add(this.offset(instance));
     }
 
+    /** The size of a pixel at what the camera looks at [m]. */
+    get pixel() {
+        const { camera, controls } = this.stage.viewer;
+        const distance = camera.position.distanceTo(controls.target);
+        return (2 * distance * Math.tan((camera.fov * Math.PI) / 360)) / this.stage.height;
+    }
+
     /** Every visible copy of every ball: {k, instance, at, radius}, in pixels of the canvas. */
     ballsOnScreen() {
         if (!this.state || !this.robot) return [];
-        const { camera, controls } = this.stage.viewer;
-        const pixel =
-            (2 * camera.position.distanceTo(controls.target) * Math.tan((camera.fov * Math.PI) / 360)) /
-            this.stage.height;
-        const radius = this.ballRadius / pixel;
+        const radius = this.ballRadius / this.pixel;
         return this.instances.flatMap((_, instance) =>
             this.balls.places.flatMap((_place, k) => {
                 if (this.state.balls[k]?.mode === "off") return [];

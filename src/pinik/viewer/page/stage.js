@@ -123,11 +123,7 @@ export class Stage {
             renderer.setPixelRatio(ratio);
             renderer.setSize(this.width, this.height);
         }
-        if (this.fine !== fine) {
-            this.fine = fine;
-            this.ground.refine(fine);
-            this.onRefine?.(fine);
-        }
+        this.refine(fine);
         // Each kind of material is drawn at one level of detail only, so each keeps its own kind of shadow.
         renderer.shadowMap.type = fine ? THREE.PCFSoftShadowMap : THREE.BasicShadowMap;
         renderer.shadowMap.needsUpdate = shadows;
@@ -137,6 +133,14 @@ export class Stage {
         this.viewer.render();
         this.frames += 1;
         this.onDrawn?.();
+    }
+
+    /** Draw in detail, or quickly. */
+    refine(fine) {
+        if (this.fine === fine) return;
+        this.fine = fine;
+        this.ground.refine(fine);
+        this.onRefine?.(fine);
     }
 
     /** The position of a point of the scene (z up) on the canvas [CSS px]; `behind` if it is behind the camera. */

@@ -91,6 +91,15 @@ export class Targets {
         write(mode, ball.mode);
     }
 
+    /** Show an orientation that a ring has given, without waiting for the session. */
+    turned(k, rpy) {
+        this._asked.ask(`orientation ${k}`, { on: true, rpy });
+        if (k !== this.selected) return;
+        TURN.forEach((id, axis) => {
+            write(byId(id), plain(rpy[axis] / DEGREE, 1));
+        });
+    }
+
     /** Show a ball's position after a drag without waiting for the session. */
     moved(k, position) {
         this._asked.ask(`position ${k}`, position);
@@ -112,7 +121,7 @@ export class Targets {
         TURN.forEach((id, axis) => {
             write(byId(id), plain(ball.rpy[axis] / DEGREE, 1));
         });
-        byId("turns").hidden = !ball.oriented;
+        byId("turns").hidden = byId("ring-axes").hidden = !ball.oriented;
     }
 
     /** Show which axes are free. Something must stay asked for, so the last switch that would end that is disabled. */

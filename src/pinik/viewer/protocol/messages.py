@@ -2,18 +2,20 @@
 
 from __future__ import annotations
 
-import json
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Mapping
 from typing import Any
 
 from ...checks import as_finite_number, as_vector
 from ...echoes import QUOTED, shortened
 from ...errors import InputError, UnknownNameError
 from ...problem.tolerance import Tolerance
+from ..simulation.by_hand import set_angles
 from ..simulation.obstacles import Obstacles
 from ..simulation.session import Session
+from .pasting import angles_by_joint, paste_angles
+from .reading import read_json
 
-__all__ = ["FARTHEST", "RANGES", "any_text", "apply", "checked", "parse", "read_json", "text", "whole_number"]
+__all__ = ["FARTHEST", "RANGES", "any_text", "apply", "checked", "parse", "text", "whole_number"]
 
 RANGES: dict[str, tuple[float, float]] = {
     "speed": (0.1, 100.0),
@@ -26,7 +28,6 @@ FARTHEST = 100.0
 """How far from the world's origin a ball may be [m]."""
 _LONGEST_NAME = 200
 _LARGEST_ANGLE = 100.0  # [rad]
-_DEEPEST = 8
 
 Check = Callable[[str, Any], Any]
 
@@ -45,32 +46,6 @@ def parse(written: str) -> dict[str, Any]:
         raise InputError('a message must be a JSON object with a "type"')
     text("the type of a message", message["type"])
     return message
-
-
-def read_json(text: str) -> Any:
-    """Read JSON that nests at most eight levels deep, which is more than any message needs.
-
-    Raises:
-        ValueError: The text is not JSON, nests too deeply, or contains NaN or an infinity by name.
-    """
-
-    def refuse(word: str) -> None:
-        raise ValueError(f"{word} is not a JSON number")
-
-    try:
-        value = json.loads(text, parse_constant=refuse)
-    except RecursionError:
-        raise ValueError("it nests too deeply") from None
-    level = [value]
-    for _ in range(_DEEPEST):
-        level = [inner for outer in level if isinstance(outer, (list, dict)) for inner in _parts(outer)]
-    if level:
-        raise ValueError("it nests too deeply")
-    return value
-
-
-def _parts(outer: list[Any] | dict[str, Any]) -> Iterable[Any]:
-    return outer.values() if isinstance(outer, dict) else outer
 
 
 def apply(session: Session, message: Mapping[str, Any]) -> None:
@@ -135,6 +110,10 @@ def whole_number(what: str, value: Any) -> int:
     return value
 
 
+def _instance_or_none(what: str, value: Any) -> int | None:
+    return None if value is None else whole_number(what, value)
+
+
 def _in_range(name: str, *, whole: bool = False) -> Check:
     def check(what: str, value: Any) -> float:
         low, high = RANGES[name]
@@ -192,12 +171,16 @@ def _set_tolerance(session: Session, position: float, orientation: float) -> Non
 
 
 def _single_step(session: Session) -> None:
-    session.running = False
+    session.running, session.misses.last = False, None
     session.step()
 
 
 def _run(session: Session, on: bool) -> None:
-    session.running = on
+    session.running, session.misses.last = on, None
+
+
+def _pause_on_miss(session: Session, on: bool) -> None:
+    session.misses.pause, session.misses.last = on, None
 
 
 def _on_obstacles(act: Callable[..., None]) -> Callable[..., None]:
@@ -234,6 +217,7 @@ _MESSAGES: dict[str, tuple[dict[str, Check], Callable[..., None]]] = {
         _set_tolerance,
     ),
     "run": ({"on": _truth}, _run),
+    "pause_on_miss": ({"on": _truth}, _pause_on_miss),
     "step": ({}, _single_step),
     "reset": ({}, Session.reset),
     "ball": ({**_BALL, "position": _point}, Session.move_ball),
@@ -253,5 +237,8 @@ _MESSAGES: dict[str, tuple[dict[str, Check], Callable[..., None]]] = {
     "remove_obstacle": (_BALL, _on_obstacles(Obstacles.remove)),
     "effector": ({**_BALL, "mode": text}, Session.set_mode),
     "add_effector": ({"frame": text}, Session.add_ball),
+    "angles": ({"instance": _instance_or_none, "angles": angles_by_joint}, set_angles),
+    "balls_lead": ({}, lambda s: s.leading.hold((), ())),
+    "paste": ({"instance": _instance_or_none, "text": any_text}, paste_angles),
     "remove_effector": (_BALL, lambda s, index: s.balls.remove(index)),
 }

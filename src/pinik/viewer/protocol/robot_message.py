@@ -8,6 +8,7 @@ import pinocchio
 
 from ...model.home import robot_size
 from ...robot import Robot
+from ..simulation.by_hand import angle_range
 
 __all__ = ["robot_message"]
 
@@ -34,6 +35,8 @@ def robot_message(robot: Robot, generation: int) -> dict[str, Any]:
                 "parent": model.parents[joint_id],
                 "kind": by_id[joint_id].kind if joint_id else "fixed",
                 "placement": _seven(model.jointPlacements[joint_id]),
+                "leader": by_id[joint_id].leader if joint_id else None,
+                "range": list(reach) if (reach := joint_id and angle_range(robot, by_id[joint_id])) else None,
             }
             for joint_id, name in enumerate(model.names)
         ],

@@ -23,6 +23,10 @@ class RobotMenu:
         self._first = first
         self.own_names = [] if first.name in catalog() else [first.name]
 
+    def renew(self, first: Robot) -> None:
+        """Put another robot in place of the first one, whose file has changed."""
+        self.__init__(first)  # type: ignore[misc]
+
     def check(self, name: str, root: str) -> None:
         """Check that a robot and a root exist.
 

@@ -10,11 +10,13 @@ from urllib.parse import parse_qsl, quote, urlencode
 from ...echoes import QUOTED, shortened
 from ...errors import InputError, UnknownNameError
 from ...problem.tolerance import Tolerance
-from ..simulation.ball import Ball
 from ..simulation.instance import StepSettings
 from ..simulation.session import Session
-from .messages import apply, read_json
-from .parameters import changed_parameters, describe_parameters, tolerance_of
+from .led import angle_messages, led_angles
+from .messages import apply
+from .parameters import changed_parameters, describe_parameters
+from .reading import read_json
+from .setup_balls import ball_messages, ball_text
 from .surroundings import collisions_messages, obstacle_messages, written_collisions, written_obstacles
 
 __all__ = ["Setup", "apply_setup", "read_setup", "write_setup"]
@@ -23,7 +25,7 @@ Setup = dict[str, str]
 _LONGEST = 20_000
 _JSON_NAMES = {list: "array", dict: "object"}
 _KEYS = ("robot", "root", "view", "methods", "parameters", "motion", "curve", "speed", "limits", "polish", "iterations",
-         "tolerance", "balls", "collisions", "obstacles", "run")  # fmt: skip
+         "tolerance", "balls", "angles", "lead", "pause", "collisions", "obstacles", "run")  # fmt: skip
 
 
 def write_setup(session: Session) -> str:
@@ -51,32 +53,17 @@ def write_setup(session: Session) -> str:
         setup["iterations"] = str(settings.at_most)
     if settings.tolerance != default.tolerance:
         setup["tolerance"] = ",".join(map(_short, (settings.tolerance.farthest, settings.tolerance.orientation)))
-    setup["balls"] = _compact([_ball(session, index) for index in range(len(session.balls))])
+    setup["balls"] = _compact([ball_text(session, index) for index in range(len(session.balls))])
+    if angles := led_angles(session):
+        setup["angles"] = _compact(angles)
+    if session.misses.pause:
+        setup["pause"] = "on"
     if session.contacts.on:
         setup["collisions"] = written_collisions(session)
     if session.obstacles:
         setup["obstacles"] = _compact(written_obstacles(session))
     setup["run"] = "on" if session.running else "off"
     return urlencode(setup, quote_via=quote, safe=",:[]{}")
-
-
-def _ball(session: Session, index: int) -> list[Any]:
-    """Return [frame, mode, position, rpy, extra].
-
-    The position is null if the motion decides it, and rpy is null if it is not asked for. `extra` is an object with the
-    free axes and the ball's own tolerance, if there are any. What is null or empty at the end is left out.
-    """
-    ball = session.balls[index]
-    moved = ball.mode == "off" or (session.motion.kind != "hand" and ball.mode == "on")
-    position = None if moved else [round(float(x), 4) for x in ball.position]
-    rpy = [round(float(x), 4) for x in ball.rpy] if ball.oriented else None
-    extra: dict[str, Any] = {"free": ball.free} if ball.free else {}
-    if ball.tolerance is not None:
-        extra["tolerance"] = tolerance_of(ball)
-    parts = [ball.frame, ball.mode, position, rpy, extra or None]
-    while parts[-1] is None:
-        parts.pop()
-    return parts
 
 
 def _short(number: float) -> str:
@@ -122,8 +109,13 @@ def _messages(session: Session, setup: Setup) -> Iterator[dict[str, Any]]:
         yield {"type": "view", "count": _whole("view", setup["view"])}
     yield from collisions_messages(session, setup.get("collisions", "off"))
     yield from obstacle_messages(session, _parsed("obstacles", setup.get("obstacles", "[]"), list))
+    yield {"type": "limits", "on": _on("limits", setup.get("limits", "on"))}
+    angles, starts = _parsed("angles", setup.get("angles", "{}"), dict), _lead(setup) == "balls"
+    if starts:  # the robots begin in this pose, and the balls are elsewhere
+        yield from angle_messages(session, angles)
+        yield {"type": "balls_lead"}
     if "balls" in setup:  # before the methods, because the methods on offer depend on the balls
-        yield from _ball_messages(session, _parsed("balls", setup["balls"], list))
+        yield from ball_messages(session, _parsed("balls", setup["balls"], list))
     if "parameters" in setup and "methods" not in setup:
         raise InputError("set-up: parameters need the methods that they belong to")
     if "methods" in setup:
@@ -142,7 +134,6 @@ def _messages(session: Session, setup: Setup) -> Iterator[dict[str, Any]]:
             for name, value in (defaults | wanted).items():
                 yield {"type": "parameter", "instance": index, "name": name, "value": value}
     settings = session.settings
-    yield {"type": "limits", "on": _on("limits", setup.get("limits", "on"))}
     yield {"type": "polish", "on": _on("polish", setup.get("polish", "off"))}
     yield {
         "type": "iterations",
@@ -156,58 +147,19 @@ def _messages(session: Session, setup: Setup) -> Iterator[dict[str, Any]]:
     yield {"type": "speed", "value": _numbers("speed", setup["speed"], 1)[0] if "speed" in setup else 1.0}
     if "motion" in setup:
         yield {"type": "motion", "motion": setup["motion"]}
+    if not starts:
+        yield from angle_messages(session, angles)
+    yield {"type": "pause_on_miss", "on": _on("pause", setup.get("pause", "off"))}
     if "run" in setup:
         yield {"type": "run", "on": _on("run", setup["run"])}
 
 
-def _ball_messages(session: Session, balls: list[Any]) -> Iterator[dict[str, Any]]:
-    """Yield the balls' frames first, so that every ball has its number, then what each ball asks for."""
-    for ball in balls:
-        if not (isinstance(ball, list) and 2 <= len(ball) <= 5 and _is_extra(ball[4:])):
-            raise InputError(f"set-up: a ball must be [frame, mode, position, rpy, {{free, tolerance}}]; got {ball!r}")
-    wanted = [ball[0] for ball in balls]
-    if not wanted:
-        raise InputError("set-up: balls must contain at least one ball")
-    yield from _removals(session, wanted)
-    for frame in wanted:
-        if frame not in session.balls.frames:
-            yield {"type": "add_effector", "frame": frame}
-        yield from _removals(session, wanted)  # a ball that had to stay as the last one can go now
-    session.balls.arrange(wanted)
-    for frame, mode, position, rpy, extra in ([*ball, None, None, None][:5] for ball in balls):
-        index = session.balls.frames.index(frame)
-        here = session.balls[index]
-        if here.mode != mode:
-            yield {"type": "effector", "index": index, "mode": mode}
-        if position is not None and position != [round(float(x), 4) for x in here.position]:
-            yield {"type": "ball", "index": index, "position": position}
-        yield from _asked(index, here, rpy, **(extra or {}))
-
-
-def _is_extra(parts: list[Any]) -> bool:
-    return all(isinstance(extra, dict) and set(extra) <= {"free", "tolerance"} for extra in parts)
-
-
-def _asked(index: int, here: Ball, rpy: Any, free: Any = "", tolerance: Any = None) -> Iterator[dict[str, Any]]:
-    """Yield the changes to what a ball asks for. The order keeps it asking for something at every moment."""
-    release = {"type": "free", "index": index, "axes": free}
-    turns = (rpy is not None) != here.oriented or rpy not in (None, [round(float(x), 4) for x in here.rpy])
-    if free != here.free and rpy is None:
-        yield release
-    if turns:
-        angles = here.rpy.tolist() if rpy is None else rpy
-        yield {"type": "orientation", "index": index, "on": rpy is not None, "rpy": angles}
-    if free != here.free:
-        yield release
-    if tolerance != tolerance_of(here):
-        yield {"type": "ball_tolerance", "index": index, "tolerance": tolerance}
-
-
-def _removals(session: Session, wanted: list[Any]) -> Iterator[dict[str, Any]]:
-    """Yield the removal of every ball whose frame is not wanted; one ball always stays."""
-    for index in reversed(range(len(session.balls))):
-        if session.balls[index].frame not in wanted and len(session.balls) > 1:
-            yield {"type": "remove_effector", "index": index}
+def _lead(setup: Setup) -> str:
+    """What leads: the joints whose angles are given, or the balls."""
+    lead = setup.get("lead", "joints" if "angles" in setup else "balls")
+    if lead not in ("joints", "balls"):
+        raise InputError(f"set-up: lead must be joints or balls; got {shortened(lead, QUOTED)!r}")
+    return lead
 
 
 def _on(name: str, text: str) -> bool:

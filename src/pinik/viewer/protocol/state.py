@@ -60,6 +60,9 @@ def session_state(session: Session) -> dict[str, Any]:
         "polish": settings.polish,
         "iterations": {"until_reached": settings.until_reached, "at_most": settings.at_most},
         "tolerance": settings.tolerance._asdict(),
+        "pause_on_miss": session.misses.pause,
+        "missed": session.misses.last,
+        "led": sorted(session.leading.among(session.balls.targets)),
         "step": session.steps,
         "balls": [
             {

@@ -62,6 +62,11 @@ class Ball:
         self.position = as_point(position, f"the position of ball {self.frame!r}")
         self._target = None
 
+    def follow(self, placement: pinocchio.SE3) -> None:
+        """Move to where a frame is, and ask for its orientation there if an orientation is asked for."""
+        self.rpy = pinocchio.rpy.matrixToRpy(placement.rotation)
+        self.put(placement.translation)
+
     def orient(self, on: bool, rpy: ArrayLike) -> None:
         """Ask for an orientation, fixed-axis roll, pitch, yaw (3,) [rad], or stop asking for one.
 

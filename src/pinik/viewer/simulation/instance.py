@@ -149,6 +149,11 @@ class Instance:
         self.statistics.clear()
         self._forget_run()
 
+    def pose(self, q: Array) -> None:
+        """Take a pose (nq,) that somebody set by hand, and keep the statistics."""
+        self.q = q
+        self._forget_run("its joints lead, and the balls follow")
+
     def _forget_run(self, why: str = "no step has been taken yet") -> None:
         self.last: StepFigures | None = None
         self.status = "IDLE"

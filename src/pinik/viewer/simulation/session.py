@@ -22,7 +22,9 @@ from .ball import MODES
 from .balls import Balls
 from .contacts import Contacts
 from .instance import Instance, StepSettings, same_objects
-from .method_menu import Methods, check_balls, chosen, filled_up, fitting, offered
+from .leading import Leading
+from .method_menu import Methods, check_balls, chosen, filled_up, offered
+from .misses import Misses
 from .motion import MOTIONS, Motion
 from .obstacles import Obstacles
 from .statistics import Summary
@@ -50,9 +52,13 @@ class Session:
         motion: The automatic motion of the balls.
         contacts: What the instances touch, and whether they avoid it.
         obstacles: What stands around them.
+        leading: The instances whose joints lead instead of the balls.
+        misses: Whether the session pauses on a miss, and the last one.
         running: Whether `tick` takes a step.
         steps: The number of steps since the last reset.
         notes: What else changed with the last change of robot, in words.
+        seed: The seed of the random positions.
+        clock: A function that returns the time in seconds.
     """
 
     def __init__(
@@ -93,31 +99,15 @@ class Session:
         self._targets: list[Target] = []  # of the last step
         self._offered: tuple[list[str], list[str]] = ([], [])  # for which frames, what
         self.settings = StepSettings()
+        self.leading, self.misses = Leading(), Misses()
         self.motion = Motion(robot, seed)
-        self._seed = seed
-        self._clock = clock
+        self.seed, self.clock = seed, clock
         self._home = home_configuration(robot)
         self.contacts, self.obstacles = Contacts(robot), Obstacles()
         self.instances = [Instance(robot, s, self._home, self.settings, clock, self.contacts) for s in solvers]
         self.balls = Balls(robot)
         self.set_view(view)
         self._refresh_statistics()
-
-    def with_robot(self, robot: Robot) -> Session:
-        """A session with another robot and the same settings, as far as they apply to that robot."""
-        solvers, notes = fitting(
-            [instance.solver for instance in self.instances], self.methods, robot, principal_frames(robot)
-        )
-        other = Session(robot, solvers, view=self.view, seed=self._seed, clock=self._clock)
-        other.methods = self.methods
-        other.notes = notes
-        other.running = self.running
-        other.apply_settings(self.settings)
-        other.motion.kind, other.motion.curve = self.motion.kind, self.motion.curve
-        other.motion.speed = self.motion.speed
-        other.set_contacts(self.contacts.on, self.contacts.avoids)
-        other.set_obstacles(self.obstacles)
-        return other
 
     @property
     def seen(self) -> list[Instance]:
@@ -148,22 +138,27 @@ class Session:
 
     def tick(self) -> bool:
         """Take a step if the session is running; return whether it is."""
-        if self.running:
+        was_running = self.running
+        if was_running:
             self.step()
-        return self.running
+        return was_running
 
     def step(self) -> None:
         """Advance the balls by 1/60 s, and let every visible instance chase them."""
         self.motion.advance(self.balls, 1.0 / STEPS_PER_SECOND)
         share = _SOLVERS_SHARE / STEPS_PER_SECOND / self.view
         targets = self.balls.targets
-        for instance in self.seen:
-            instance.step(targets, share)
+        led = self.leading.among(targets)
+        for index, instance in enumerate(self.seen):
+            if index not in led:
+                instance.step(targets, share)
         self.steps += 1
         is_still = not any([instance.moves for instance in self.seen])
         self._still_steps = self._still_steps + 1 if is_still and same_objects(targets, self._targets) else 0
         self._targets = targets
-        if not self.running or self._clock() - self._refreshed >= 1.0:
+        if self.misses.look(self.seen, targets, jumped=self.motion.kind == "random"):
+            self.running = False
+        if not self.running or self.clock() - self._refreshed >= 1.0:
             self._refresh_statistics()
 
     def reset(self) -> None:
@@ -173,6 +168,7 @@ class Session:
         for ball in self.balls:
             ball.go_home()
         self.motion.restart()
+        self.leading.hold((), ())
         self.steps = self._still_steps = 0
         self._refresh_statistics()
 
@@ -282,4 +278,4 @@ class Session:
 
     def _refresh_statistics(self) -> None:
         self._summaries = [instance.statistics.summary() for instance in self.instances]
-        self._refreshed = self._clock()
+        self._refreshed = self.clock()

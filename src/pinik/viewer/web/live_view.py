@@ -34,6 +34,7 @@ from .notebook import as_html, draw_beside
 from .server import make_server
 from .show import Show
 from .sockets import addressed, listen
+from .watch import SECONDS
 
 __all__ = ["LiveView"]
 
@@ -62,6 +63,7 @@ class LiveView:
         motion: str,
         running: bool,
         version: str,
+        reload: Callable[[], Robot] | None = None,
     ) -> None:
         """Start the server; `pinik.live` documents the arguments."""
         session = Session(robot, methods, view=view)
@@ -74,19 +76,25 @@ class LiveView:
         self._workers = ThreadPoolExecutor(2, thread_name_prefix="pinik-live-worker")
         self._closed = threading.Event()
         ready: Future[tuple[tornado.ioloop.IOLoop, Show, Heartbeat]] = Future()
-        arguments = (session, host, sockets, version, ready)
+        arguments = (session, host, sockets, version, reload, ready)
         self._thread = threading.Thread(target=self._serve, args=arguments, name="pinik-live", daemon=True)
         self._thread.start()
         self._loop, self._show, self._heartbeat = ready.result()
 
     def _serve(
-        self, session: Session, host: str, sockets: list[socket.socket], version: str, ready: Future[Any]
+        self,
+        session: Session,
+        host: str,
+        sockets: list[socket.socket],
+        version: str,
+        reload: Callable[[], Robot] | None,
+        ready: Future[Any],
     ) -> None:
         """Run the server. Only this thread ever touches the session."""
         asyncio.set_event_loop(asyncio.new_event_loop())
         loop = tornado.ioloop.IOLoop.current()
         try:
-            show = Show(session, later_in_threads(loop, self._workers), version)
+            show = Show(session, later_in_threads(loop, self._workers), version, reload=reload)
             heartbeat, guests = Heartbeat(show.tick, show.is_lively), Guests()
             server = make_server(show, heartbeat, guests, host, self._mark)
         except BaseException as error:
@@ -97,9 +105,18 @@ class LiveView:
             ready.set_exception(error)
             return
         door = Door(server, guests, sockets)
+
+        def look_at_files() -> None:
+            if show.look_at_files():
+                heartbeat.wake()
+
+        look = tornado.ioloop.PeriodicCallback(look_at_files, 1000 * SECONDS)
+        if reload is not None:
+            look.start()
         loop.add_callback(ready.set_result, (loop, show, heartbeat))
         loop.start()
         heartbeat.stop()
+        look.stop()
         door.close()
         loop.run_sync(server.close_all_connections, timeout=2.0)
         loop.close(all_fds=True)

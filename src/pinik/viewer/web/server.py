@@ -11,6 +11,8 @@ from typing import Any
 import tornado.httpserver
 import tornado.web
 
+from ...errors import PinikError
+from ..protocol.copying import texts_to_copy
 from .budget import Turns
 from .guests import Guests
 from .heartbeat import Heartbeat
@@ -54,6 +56,7 @@ def make_server(
             (r"/ws", _Socket, {**common, "turns": Turns()}),
             (rf"/api/alive/{mark}\.svg", _Alive, common),
             (r"/api/state", _State, common),
+            (r"/api/copy/([0-3])\.json", _Copy, common),
             (r"/api/statistics\.csv", _StatisticsTable, common),
             (r"/api/animation\.html", _Animation, {**common, "downloads": downloads}),
         ],
@@ -171,6 +174,18 @@ class _Download(_Handler):
         """Say what is sent, and under which name it is to be kept."""
         self.set_header("Content-Type", kind)
         self.set_header("Content-Disposition", f'attachment; filename="pinik-{name}"')
+
+
+class _Copy(_Handler):
+    cost = 5.0
+
+    def get(self, instance: str) -> None:
+        try:
+            texts = texts_to_copy(self.show.session, int(instance))
+        except PinikError as error:
+            raise tornado.web.HTTPError(404, reason="There is no such instance") from error
+        self.set_header("Content-Type", "application/json; charset=utf-8")
+        self.finish(json.dumps(texts))
 
 
 class _StatisticsTable(_Download):

@@ -7,6 +7,7 @@ import time
 from collections.abc import Callable
 from typing import Any
 
+from ...description.catalog import catalog
 from ...echoes import shortened
 from ...errors import InputError, PinikError
 from ...robot import Robot
@@ -18,16 +19,19 @@ from ..protocol.robot_message import robot_message
 from ..protocol.robots import RobotMenu
 from ..protocol.setup import Setup, apply_setup, read_setup, write_setup
 from ..protocol.state import hello_message, session_state
+from ..simulation.another_robot import with_robot
 from ..simulation.contacts import Contacts
 from ..simulation.session import Session
 from .animation import animation_page
 from .answers import Answers
 from .later import Later
 from .pace import Pace
+from .reload import reloaded
 from .robot_loader import RobotLoader
 from .scene import Shapes
 from .seats import Seats, Tab
 from .shape_cache import shapes_of
+from .watch import Watch
 
 __all__ = ["Show"]
 
@@ -49,6 +53,7 @@ class Show:
         later: Later,
         version: str = "",
         clock: Callable[[], float] = time.perf_counter,
+        reload: Callable[[], Robot] | None = None,
     ) -> None:
         self.session = session
         self.recording = Recording()
@@ -59,17 +64,19 @@ class Show:
         self._hello = hello_message(version, session.methods, menu.own_names)
         self._generation = 0
         self._pace = Pace(clock)
+        self._watch = None if reload is None else Watch(session.robot, reload, later)
+        self._opened = session.robot.name
         self._shapes: Shapes | None = None
         self._loading_contacts: Contacts | None = None
         self._answers = Answers(later, self._seats.send)
         self._change_session(session)
 
-    def _change_session(self, session: Session) -> None:
+    def _change_session(self, session: Session, keeps_view: bool = False) -> None:
         self.session = session
         self._generation += 1
         self._answers.forget()
         generation = self._generation
-        self._robot = robot_message(session.robot, generation)
+        self._robot = robot_message(session.robot, generation) | {"keeps_view": keeps_view}
         if self._shapes is not None:
             self._seats.withdraw(self._shapes.commands)  # else those of robot after robot would wait for a slow tab
         self._shapes = None
@@ -150,6 +157,7 @@ class Show:
         if not (self._waits_for_shapes and self._seats) and self.session.tick():
             self._pace.note_step()
             self._frame_due = self._frame_due or not self.session.rests
+            self._state_due = self._state_due or not self.session.running  # it has paused
         else:
             self._pace.forget()
         if self._frame_due:
@@ -171,6 +179,27 @@ class Show:
         self._state_sent = self._clock()
         if self._seats:
             self._seats.offer_state(json.dumps(self.state()))
+
+    def look_at_files(self) -> bool:
+        """Look at the watched files while somebody watches; return whether there is anything new to send."""
+        if self._watch is not None and self.is_watched():
+            self._watch.look(self._take_reloaded)
+        return self._frame_due or self._state_due
+
+    def _take_reloaded(self, robot: Robot | None) -> None:
+        self._state_due = True
+        if robot is None:
+            return
+        is_shown = self.session.robot.name == self._opened
+        self._loader.menu.renew(robot)
+        self._opened = robot.name
+        self._hello["robots"] = [*self._loader.menu.own_names, *catalog()]
+        self._seats.send(json.dumps(self._hello))
+        if is_shown:
+            try:
+                self._change_session(reloaded(self.session, robot.with_root(self.session.robot.root)), keeps_view=True)
+            except PinikError as error:
+                self._seats.send(_notice(str(error)))
 
     # Requests
 
@@ -201,10 +230,10 @@ class Show:
             case "setup":
                 self._set_up(read_setup(checked("setup", message, {"setup": any_text})["setup"]))
             case kind:
-                motion = self.session.motion.kind
+                before = self._leads()
                 self._change(lambda session: apply(session, message))
-                # Every frame shows a dragged ball, so the state can wait until it is due anyway.
-                waits = kind == "ball" and motion == self.session.motion.kind
+                # Every frame shows a ball or a joint that is dragged, so the state can wait until it is due anyway.
+                waits = kind in ("ball", "angles") and before == self._leads()
                 self._state_due = self._state_due or not waits or not self.session.running
 
     def _change(self, act: Callable[[Session], None]) -> None:
@@ -236,6 +265,10 @@ class Show:
         """Return what the layout of a frame depends on: the number of instances and the balls."""
         return self.session.view, [ball.frame for ball in self.session.balls]
 
+    def _leads(self) -> tuple[str, frozenset[int]]:
+        """Return what moves the balls."""
+        return self.session.motion.kind, self.session.leading.among(self.session.balls.targets)
+
     def _set_up(self, setup: Setup) -> None:
         robot = self.session.robot
         name = setup.get("robot", robot.name)
@@ -255,7 +288,7 @@ class Show:
         try:
             if isinstance(robot, InputError):
                 raise robot
-            session = self.session.with_robot(robot)
+            session = with_robot(self.session, robot)
             try:
                 if setup:
                     apply_setup(session, setup)
@@ -276,6 +309,7 @@ class Show:
             "generation": self._generation,
             "steps_per_second": self._pace.value if self.session.running else None,
             "loading": self._loader.loading,
+            "watched": None if self._watch is None else {"file": self._watch.file, "fault": self._watch.fault},
             "setup": write_setup(self.session),
         }
 

@@ -1,0 +1,71 @@
+"""Joints moved by hand: the robots take the pose, and the balls follow by forward kinematics."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...checks import as_finite_number
+from ...errors import InputError
+from ...model.joint import WIDEST_RANGE, Joint
+from ...robot import Robot
+from .session import Session
+
+__all__ = ["angle_range", "set_angles"]
+
+Array = NDArray[np.float64]
+
+_SLACK = 1e-6  # [rad or m] by which rounded text may exceed a limit
+
+
+def angle_range(robot: Robot, joint: Joint) -> tuple[float, float] | None:
+    """The limits of a joint's own angle [rad or m], those of its followers included; None if it has none."""
+    lower, upper = joint.angle_range(float(robot.lower_q[joint.idx_q]), float(robot.upper_q[joint.idx_q]))
+    return (lower, upper) if joint.nq < 2 and upper - lower <= WIDEST_RANGE else None
+
+
+def set_angles(session: Session, instance: int | None, angles: Mapping[str, float]) -> None:
+    """Set joints of one visible instance, or of all; they lead from now on, and the balls follow the first of them.
+
+    All instances together take the pose of the first one, with these joints changed. The motion becomes "hand".
+
+    Args:
+        session: The session.
+        instance: The number of the instance, or None for all.
+        angles: Joint name → angle [rad], or position [m] for sliding joints. Joints that are not named stay.
+
+    Raises:
+        UnknownNameError: There is no such joint.
+        InputError: There is no such visible instance, no joint is named, one has no angle or follows another joint, or
+            an angle is not finite or is outside the limits while these are enforced.
+    """
+    if instance is not None and not 0 <= instance < session.view:
+        raise InputError(f"the visible instances are numbered from 0 to {session.view - 1}; got {instance}")
+    if not angles:
+        raise InputError("no joint is named whose angle is to be set")
+    led = range(session.view) if instance is None else [instance]
+    q = session.instances[led[0]].q.copy()
+    for name, angle in angles.items():
+        joint = session.robot.settable_joint(name)
+        _check(session, joint, as_finite_number(angle, f"the angle of joint {name!r}"))
+        joint.set_angle(q, float(angle))
+    for index in led:
+        session.instances[index].pose(q)
+    session.set_motion("hand")
+    for ball in session.balls:
+        if ball.mode != "off":
+            ball.follow(session.robot.placement(ball.frame, q))
+    session.leading.hold(led, session.balls.targets)
+
+
+def _check(session: Session, joint: Joint, angle: float) -> None:
+    """Refuse what a joint cannot do, or may not do while limits are enforced."""
+    within = angle_range(session.robot, joint) if joint.has_one_axis and session.settings.limits else None
+    lower, upper = within or (-WIDEST_RANGE, WIDEST_RANGE)
+    if not lower - _SLACK <= angle <= upper + _SLACK:
+        unit = "m" if joint.kind == "prismatic" else "rad"
+        reason = "its limits are" if within else "it can be set"
+        reason = f"{reason} from {lower:g} to {upper:g} {unit}"
+        raise InputError(f"joint {joint.name!r} cannot be at {angle:g} {unit}: {reason}")
