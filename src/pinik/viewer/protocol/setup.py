@@ -16,13 +16,13 @@ from ..simulation.session import Session
 from .messages import apply, read_json
 from .parameters import changed_parameters, describe_parameters, tolerance_of
 
-__all__ = ["Setup", "apply_setup", "read_setup", "write_setup"]
+__all__ = ["Setup", "apply_setup", "balls_text", "read_setup", "write_setup"]
 
 Setup = dict[str, str]
 _LONGEST = 20_000
 _JSON_NAMES = {list: "array", dict: "object"}
 _KEYS = ("robot", "root", "view", "methods", "parameters", "motion", "curve", "speed", "limits", "polish", "iterations",
-         "tolerance", "balls", "run")  # fmt: skip
+         "tolerance", "statistics", "balls", "run")  # fmt: skip
 
 
 def write_setup(session: Session) -> str:
@@ -50,9 +50,16 @@ def write_setup(session: Session) -> str:
         setup["iterations"] = str(settings.at_most)
     if settings.tolerance != default.tolerance:
         setup["tolerance"] = ",".join(map(_short, (settings.tolerance.farthest, settings.tolerance.orientation)))
-    setup["balls"] = _compact([_ball(session, index) for index in range(len(session.balls))])
+    if session.scores.window != "last":
+        setup["statistics"] = session.scores.window
+    setup["balls"] = balls_text(session)
     setup["run"] = "on" if session.running else "off"
     return urlencode(setup, quote_via=quote, safe=",:[]{}")
+
+
+def balls_text(session: Session) -> str:
+    """Return what a link says about all balls: a JSON list with one list for each."""
+    return _compact([_ball(session, index) for index in range(len(session.balls))])
 
 
 def _ball(session: Session, index: int) -> list[Any]:
@@ -144,6 +151,7 @@ def _messages(session: Session, setup: Setup) -> Iterator[dict[str, Any]]:
     }
     tolerance = _numbers("tolerance", setup["tolerance"], 2) if "tolerance" in setup else Tolerance()
     yield {"type": "tolerance", "position": tolerance[0], "orientation": tolerance[1]}
+    yield {"type": "statistics", "cover": setup.get("statistics", "last")}
     if "curve" in setup:
         yield {"type": "curve", "curve": setup["curve"]}
     yield {"type": "speed", "value": _numbers("speed", setup["speed"], 1)[0] if "speed" in setup else 1.0}

@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from ...errors import InputError
 from ...model.limits import Limits
+from ...motion.figures import StepFigures
 from ...problem.kinematics import Kinematics
 from ...problem.targets import Target
 from ...problem.tolerance import Tolerance, largest_of
@@ -25,7 +26,6 @@ from ...solving.question import Question
 from ...solving.run import Pace, States, run
 from ...solving.state import State, Status
 from ...solving.verdict import judge
-from .statistics import Statistics, StepFigures
 
 __all__ = ["STATUSES", "Instance", "Standing", "StepSettings"]
 
@@ -85,10 +85,9 @@ class Instance:
     Attributes:
         robot: The robot.
         q: Its configuration (nq,).
-        statistics: Statistics of its last steps.
         last: The figures of the last step; None before the first step and while there are no targets.
         status: One of `STATUSES`.
-        counted: Whether the last step had work to do, and so counts in the statistics.
+        counted: Whether the last step had work to do, and so counts in the statistics, for all instances alike.
     """
 
     def __init__(
@@ -100,7 +99,6 @@ class Instance:
         clock: Callable[[], float] = time.perf_counter,
     ) -> None:
         self.robot = robot
-        self.statistics = Statistics()
         self._solver = solver
         self._settings = settings
         self._clock = clock
@@ -115,7 +113,6 @@ class Instance:
     @solver.setter
     def solver(self, solver: Solver) -> None:
         self._solver = solver
-        self.statistics.clear()
         self._forget_run()
 
     @property
@@ -129,9 +126,8 @@ class Instance:
         self._forget_run()
 
     def put(self, q: Array) -> None:
-        """Start again from `q` (nq,), with empty statistics."""
+        """Start again from `q` (nq,)."""
         self.q = q
-        self.statistics.clear()
         self._forget_run()
 
     def _forget_run(self, why: str = "no step has been taken yet") -> None:
@@ -163,7 +159,10 @@ class Instance:
             return
         self.counted = moved or self.status != Status.CONVERGED.name
         if not self.counted:
-            self.last = self.last._replace(time=0.0, iterations=0, joint_updates=0, jump=0.0) if self.last else None
+            if self.last:
+                self.last = self.last._replace(
+                    time=0.0, iterations=0, joint_updates=0, jump=0.0, idle=True, cut_off=False
+                )
             return
         began, before, former = self._clock(), self.q, self._state
         try:
@@ -185,8 +184,8 @@ class Instance:
             reached=state.status is Status.CONVERGED,
             error=off.position,
             jump=float(np.abs(pinocchio.difference(self.robot.model, before, state.q)).max(initial=0.0)),
+            cut_off=state.status is None,
         )
-        self.statistics.add(self.last)
 
     def _run(self, targets: tuple[Target, ...], deadline: float) -> State:
         if self._states is None:
@@ -215,7 +214,11 @@ class Instance:
         self._trouble = f"the solver failed: {type(error).__name__}: {error}"
         self.last = StepFigures(spent, 0, 0, reached=False, error=None, jump=0.0)
         self.status, self.counted = "FAILED", True
-        self.statistics.add(self.last)
+
+    @property
+    def engine(self) -> str:
+        """The engine that steps it: "native" or "python"."""
+        return str(getattr(getattr(self, "_pursuit", None), "engine", "python"))
 
     @property
     def orientation_error(self) -> float | None:

@@ -11,7 +11,6 @@ from numpy.typing import ArrayLike
 
 from ...errors import InputError, UnknownNameError
 from ...model.home import home_configuration
-from ...motion.curves import CURVES
 from ...motion.effectors import principal_frames
 from ...robot import Robot
 from ...solvers.base import Solver
@@ -22,6 +21,7 @@ from .balls import Balls
 from .instance import Instance, StepSettings
 from .method_menu import Methods, check_balls, chosen, filled_up, fitting, offered
 from .motion import MOTIONS, Motion
+from .scoreboard import Scoreboard, terms
 from .statistics import Summary
 
 __all__ = ["STEPS_PER_SECOND", "VIEWS", "Session"]
@@ -46,6 +46,7 @@ class Session:
         motion: The automatic motion of the balls.
         running: Whether `tick` takes a step.
         steps: The number of steps since the last reset.
+        scores: The statistics of the visible instances.
         notes: What else changed with the last change of robot, in words.
     """
 
@@ -92,8 +93,8 @@ class Session:
         self._home = home_configuration(robot)
         self.instances = [Instance(robot, s, self._home, self.settings, clock) for s in solvers]
         self.balls = Balls(robot)
+        self.scores = Scoreboard(clock)
         self.set_view(view)
-        self._refresh_statistics()
 
     def with_robot(self, robot: Robot) -> Session:
         """A session with another robot and the same settings, as far as they apply to that robot."""
@@ -107,6 +108,7 @@ class Session:
         other.apply_settings(self.settings)
         other.motion.kind, other.motion.curve = self.motion.kind, self.motion.curve
         other.motion.speed = self.motion.speed
+        other.scores.cover(self.scores.window)
         return other
 
     @property
@@ -123,8 +125,9 @@ class Session:
 
     @property
     def summaries(self) -> list[Summary]:
-        """The statistics of the visible instances, refreshed once per second."""
-        return self._summaries[: self.view]
+        """The statistics of the visible instances, refreshed once per second, and empty once their terms changed."""
+        self._agree_on_terms()
+        return self.scores.summaries
 
     def tick(self) -> bool:
         """Take a step if the session is running; return whether it is."""
@@ -134,13 +137,13 @@ class Session:
 
     def step(self) -> None:
         """Advance the balls by 1/60 s, and let every visible instance chase them."""
+        self._agree_on_terms()
         self.motion.advance(self.balls, 1.0 / STEPS_PER_SECOND)
         share = _SOLVERS_SHARE / STEPS_PER_SECOND / self.view
         for instance in self.seen:
             instance.step(self.balls.targets, share)
         self.steps += 1
-        if not self.running or self._clock() - self._refreshed >= 1.0:
-            self._refresh_statistics()
+        self.scores.count(self.seen, at_once=not self.running)
 
     def reset(self) -> None:
         """Return the robots and balls to where they began, and clear the statistics."""
@@ -150,7 +153,7 @@ class Session:
             ball.go_home()
         self.motion.restart()
         self.steps = 0
-        self._refresh_statistics()
+        self.scores.begin_anew(self.view)
 
     def set_view(self, count: int) -> None:
         """Show 1, 2 or 4 instances."""
@@ -205,9 +208,7 @@ class Session:
 
     def set_curve(self, name: str) -> None:
         """Set the curve that the balls follow."""
-        if name not in CURVES:
-            raise UnknownNameError("curve", name, CURVES)
-        self.motion.curve = name
+        self.motion.choose_curve(name)
 
     def move_ball(self, index: int, position: ArrayLike) -> None:
         """Move a ball to a position (3,) [m], and switch the motion to "hand"."""
@@ -238,13 +239,11 @@ class Session:
         check_joint_names(self.robot, solver)
         if solver != instance.solver:
             instance.solver = solver
-            self._refresh_statistics()
 
     def _instance(self, index: int) -> Instance:
         if not 0 <= index < len(self.instances):
             raise InputError(f"instances are numbered from 0 to {len(self.instances) - 1}; got {index}")
         return self.instances[index]
 
-    def _refresh_statistics(self) -> None:
-        self._summaries = [instance.statistics.summary() for instance in self.instances]
-        self._refreshed = self._clock()
+    def _agree_on_terms(self) -> None:
+        self.scores.agree(terms(self.seen, self.settings, self.motion, self.balls), self.view)
