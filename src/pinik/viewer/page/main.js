@@ -35,10 +35,10 @@ class Page {
             onOpen: () => this.notices.connected(true),
             onClose: () => this.notices.connected(false),
         });
-        this.controls = new Controls(this.connection);
+        this.controls = new Controls(this.connection, this.notices);
         this.cards = new Cards(byId("cards"), this.connection);
         this.targets = new Targets(this.connection, (k) => this.show.select(k));
-        this.table = new Table(byId("table"));
+        this.table = new Table(byId("table"), this.connection);
         this.address = new Address((setup) => this.connection.send({ type: "setup", setup }));
         this.history = new History();
         this._drawnCharts = 0;
@@ -55,7 +55,7 @@ class Page {
     _on = {
         hello: (hello) => {
             this.hello = hello;
-            for (const part of [this.show, this.controls, this.cards]) part.setHello(hello);
+            for (const part of [this.show, this.controls, this.cards, this.table]) part.setHello(hello);
         },
         robot: (robot) => {
             this.show.setRobot(robot);
@@ -161,6 +161,9 @@ const page = new Page();
 window.pinik = {
     get state() {
         return page.state;
+    },
+    get table() {
+        return page.table;
     },
     get viewer() {
         return page.show.stage.viewer;
