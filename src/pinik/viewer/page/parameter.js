@@ -17,7 +17,7 @@ function row(description, control, ...after) {
         ["symbol", description.symbol],
         ["unit", description.unit],
     ])
-        if (text) title.append(make("small", { className }, text));
+        if (text) title.append(" ", make("small", { className }, text));
     const label = make("label", { className: "head", title: description.help }, title, control);
     return make(
         "div",
