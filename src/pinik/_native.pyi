@@ -11,7 +11,7 @@ pinocchio_version: str = "4.1.0"
 
 coal_version: str = "3.0.3"
 
-abi: str = "02e4b751847afb40"
+abi: str = "d06a6684f1616356"
 
 class JointKind(enum.Enum):
     revolute = 0
@@ -130,6 +130,14 @@ class Constants:
     @same_answer.setter
     def same_answer(self, arg: float, /) -> None: ...
     @property
+    def colliding_least(self) -> int: ...
+    @colliding_least.setter
+    def colliding_least(self, arg: int, /) -> None: ...
+    @property
+    def colliding_since(self) -> int: ...
+    @colliding_since.setter
+    def colliding_since(self, arg: int, /) -> None: ...
+    @property
     def nothing_new_share(self) -> float: ...
     @nothing_new_share.setter
     def nothing_new_share(self, arg: float, /) -> None: ...
@@ -193,6 +201,34 @@ class Constants:
     def search_outside(self) -> float: ...
     @search_outside.setter
     def search_outside(self, arg: float, /) -> None: ...
+    @property
+    def search_spacing(self) -> float: ...
+    @search_spacing.setter
+    def search_spacing(self, arg: float, /) -> None: ...
+    @property
+    def search_nearly_singular(self) -> float: ...
+    @search_nearly_singular.setter
+    def search_nearly_singular(self, arg: float, /) -> None: ...
+    @property
+    def search_alike(self) -> float: ...
+    @search_alike.setter
+    def search_alike(self, arg: float, /) -> None: ...
+    @property
+    def continuum_singular(self) -> float: ...
+    @continuum_singular.setter
+    def continuum_singular(self, arg: float, /) -> None: ...
+    @property
+    def continuum_aside(self) -> float: ...
+    @continuum_aside.setter
+    def continuum_aside(self, arg: float, /) -> None: ...
+    @property
+    def continuum_iterations(self) -> int: ...
+    @continuum_iterations.setter
+    def continuum_iterations(self, arg: int, /) -> None: ...
+    @property
+    def continuum_parts(self) -> int: ...
+    @continuum_parts.setter
+    def continuum_parts(self, arg: int, /) -> None: ...
     @property
     def jump_floor(self) -> float: ...
     @jump_floor.setter
@@ -536,6 +572,7 @@ class Engine:
         start: Annotated[NDArray[numpy.float64], dict(shape=(None,), order="C")],
         goals: Annotated[NDArray[numpy.float64], dict(shape=(None, 18), order="C", writable=False)],
         nearest: bool,
+        spent: float = 0.0,
     ) -> Answer: ...
     def solve_many(
         self, starts: NDArray[numpy.float64], goals: NDArray[numpy.float64], nearest: bool, threads: int
@@ -608,10 +645,35 @@ class Track:
     ]: ...
     def tick(
         self, start: NDArray[numpy.float64], most: NDArray[numpy.float64], goals: NDArray[numpy.float64]
-    ) -> tuple[NDArray[numpy.float64], bool, bool, float, float]: ...
+    ) -> tuple[NDArray[numpy.float64], bool, bool, NDArray[numpy.float64] | None, float, float]: ...
     def tick_at(
         self, start: NDArray[numpy.float64], most: NDArray[numpy.float64], place: object
-    ) -> tuple[NDArray[numpy.float64], bool, bool, float, float] | None: ...
+    ) -> tuple[NDArray[numpy.float64], bool, bool, NDArray[numpy.float64] | None, float, float] | None: ...
+
+class Pursuit:
+    def __init__(
+        self,
+        engine: Engine,
+        start: Annotated[NDArray[numpy.float64], dict(shape=(None,), order="C", writable=False)],
+        goals: Annotated[NDArray[numpy.float64], dict(shape=(None, 18), order="C", writable=False)],
+        max_iterations: int,
+        patience: Patience,
+    ) -> None: ...
+    def state(
+        self,
+    ) -> tuple[
+        NDArray[numpy.float64],
+        int,
+        int,
+        tuple[tuple[float | None, float | None, tuple[float, float, float] | None], ...],
+        float,
+        int,
+        Status,
+    ]: ...
+    def advance(self, most: int) -> None: ...
+    def aim_at(
+        self, goals: Annotated[NDArray[numpy.float64], dict(shape=(None, 18), order="C", writable=False)]
+    ) -> None: ...
 
 class Searcher:
     def __init__(self, engine: Engine) -> None: ...
@@ -623,6 +685,7 @@ class Searcher:
             NDArray[numpy.float64],
             NDArray[numpy.float64],
             NDArray[numpy.float64],
+            NDArray[numpy.int64],
             NDArray[numpy.int64],
             NDArray[numpy.int64],
             int,
@@ -644,6 +707,7 @@ class Searcher:
                 NDArray[numpy.float64],
                 NDArray[numpy.float64],
                 NDArray[numpy.float64],
+                NDArray[numpy.int64],
                 NDArray[numpy.int64],
                 NDArray[numpy.int64],
                 int,

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cmath>
+#include <vector>
 
 #include "../model/spatial.hpp"
 
@@ -37,12 +38,26 @@ struct TargetError {
   }
 };
 
+// The largest position and orientation error of several targets.
+inline TargetError largest_of(const std::vector<TargetError>& errors) {
+  TargetError largest;
+  for (const TargetError& error : errors) {
+    largest.position = std::fmax(largest.position, error.position);
+    largest.orientation = std::fmax(largest.orientation, error.orientation);
+  }
+  return largest;
+}
+
 // The numbers of one target, in the axes of its reference frame. What the target does not constrain is not read.
 struct Goal {
   Vec3 position = Vec3::Zero();
   Mat3 rotation = Mat3::Identity();
   Vec3 direction = Vec3::UnitX();
   Vec3 at = Vec3::Zero();
+
+  bool operator==(const Goal& other) const {
+    return position == other.position && rotation == other.rotation && direction == other.direction && at == other.at;
+  }
 };
 
 }  // namespace pinik

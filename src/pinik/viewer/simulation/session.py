@@ -12,13 +12,14 @@ from numpy.typing import ArrayLike
 from ...errors import InputError, UnknownNameError
 from ...model.home import home_configuration
 from ...motion.effectors import principal_frames
+from ...problem.targets import Target
 from ...robot import Robot
 from ...solvers.base import Solver
 from ...solvers.registry import make_solver
 from ...solving.question import check_joint_names
 from .ball import MODES
 from .balls import Balls
-from .instance import Instance, StepSettings
+from .instance import Instance, StepSettings, same_objects
 from .method_menu import Methods, check_balls, chosen, filled_up, fitting, offered
 from .motion import MOTIONS, Motion
 from .scoreboard import Scoreboard, terms
@@ -30,6 +31,7 @@ STEPS_PER_SECOND = 60
 VIEWS = (1, 2, 4)
 # The share of a step's time that the solvers may take; the rest is for drawing and for messages from the page.
 _SOLVERS_SHARE = 0.7
+_STILL_STEPS = 90  # a second and a half, which is longer than random motion pauses
 _DEFAULT_METHODS = ("ccd", "jt", "pinv", "dls")
 
 
@@ -83,8 +85,9 @@ class Session:
             check_joint_names(robot, solver)
         self.robot = robot
         self.running = False
-        self.steps = 0
+        self.steps = self._still_steps = 0
         self.notes: list[str] = []
+        self._targets: list[Target] = []  # of the last step
         self._offered: tuple[list[str], list[str]] = ([], [])  # for which frames, what
         self.settings = StepSettings()
         self.motion = Motion(robot, seed)
@@ -129,6 +132,16 @@ class Session:
         self._agree_on_terms()
         return self.scores.summaries
 
+    @property
+    def rests(self) -> bool:
+        """Whether neither a ball nor a robot has moved for a while."""
+        return self._still_steps > _STILL_STEPS
+
+    @property
+    def sleeps(self) -> bool:
+        """Whether nothing will move until somebody asks for something."""
+        return not self.running or (self.rests and not self.motion.moves(self.balls))
+
     def tick(self) -> bool:
         """Take a step if the session is running; return whether it is."""
         if self.running:
@@ -140,10 +153,14 @@ class Session:
         self._agree_on_terms()
         self.motion.advance(self.balls, 1.0 / STEPS_PER_SECOND)
         share = _SOLVERS_SHARE / STEPS_PER_SECOND / self.view
+        targets = self.balls.targets
         for instance in self.seen:
-            instance.step(self.balls.targets, share)
+            instance.step(targets, share)
         self.steps += 1
         self.scores.count(self.seen, at_once=not self.running)
+        is_still = not any([instance.moves for instance in self.seen])
+        self._still_steps = self._still_steps + 1 if is_still and same_objects(targets, self._targets) else 0
+        self._targets = targets
 
     def reset(self) -> None:
         """Return the robots and balls to where they began, and clear the statistics."""
@@ -152,7 +169,7 @@ class Session:
         for ball in self.balls:
             ball.go_home()
         self.motion.restart()
-        self.steps = 0
+        self.steps = self._still_steps = 0
         self.scores.begin_anew(self.view)
 
     def set_view(self, count: int) -> None:
