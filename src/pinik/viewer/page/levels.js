@@ -14,7 +14,8 @@ export class Levels {
         this._chosen = 1;
         this._least = 1;
         this._buttons = LEVELS.map(([level, name, words, title]) => {
-            const button = make("button", { type: "button", title, dataset: { testid: `level-${index}-${name}` } }, words);
+            const dataset = { testid: `level-${index}-${name}` };
+            const button = make("button", { type: "button", title, dataset }, words);
             button.addEventListener("click", () => {
                 this._chosen = level;
                 onChange();

@@ -46,10 +46,8 @@ export class Table {
         const ended = instances.filter(({ statistics }) => statistics.cut_off > 0);
         const counts = ended.map(({ method, statistics }) => `${method} in ${statistics.cut_off}`);
         byId("cut-off").hidden = ended.length === 0;
-        say(
-            byId("cut-off"),
-            `* The clock cut off ${counts.join(", ")} of ${steps} steps. That is this machine's doing, not the method's.`,
-        );
+        const whose = "That is this machine's doing, not the method's.";
+        say(byId("cut-off"), `* The clock cut off ${counts.join(", ")} of ${steps} steps. ${whose}`);
     }
 
     _make(i) {
