@@ -38,6 +38,8 @@ GOOD = {
     "run": ({"on": True}, {"on": "truth"}),
     "step": ({}, {}),
     "reset": ({}, {}),
+    "begin_anew": ({}, {}),
+    "statistics": ({"cover": "all"}, {"cover": "name"}),
     "ball": ({"index": 0, "position": [0.1, 0.2, 0.3]}, {"index": "index", "position": "point"}),
     "orientation": (
         {"index": 0, "on": True, "rpy": [0.1, 0.2, 0.3]},
@@ -222,7 +224,9 @@ def snapshot(session: Session) -> str:
             shown,
             write_setup(session),
             [instance.q.tolist() for instance in session.instances],
-            [(i.solver.name, repr(i.solver), i.statistics.summary()) for i in session.instances],
+            [(i.solver.name, repr(i.solver)) for i in session.instances],
+            session.scores.window,
+            session.summaries,
             [ball.home.tolist() for ball in session.balls],
         ]
     )

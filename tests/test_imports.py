@@ -179,7 +179,7 @@ def test_shapes_are_loaded_for_nobody_who_did_not_ask():
 
 
 def test_the_simulation_knows_no_socket_and_no_drawing():
-    below = {"picture", "viewer.protocol", "viewer.web", "shapes"}
+    below = {"picture", "viewer.protocol", "viewer.web", "shapes.meshes", "shapes.mesh_files", "shapes.triangles"}
     wrong = [
         str(i)
         for i in OWN

@@ -17,6 +17,8 @@ class StepFigures(NamedTuple):
         reached: Whether every target was within tolerance at the end.
         error: The largest position error at the end [m]; None if no target has a position.
         jump: The largest change of any joint [rad or m].
+        idle: Whether there was nothing to do: every target was reached already, and none had moved.
+        cut_off: Whether the clock ended the step, and not the method.
     """
 
     time: float
@@ -25,3 +27,5 @@ class StepFigures(NamedTuple):
     reached: bool
     error: float | None
     jump: float
+    idle: bool = False
+    cut_off: bool = False

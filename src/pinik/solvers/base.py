@@ -73,11 +73,12 @@ class Solver:
     max_step: float = max_step_parameter(math.inf)
     max_residual: float = parameter(
         math.inf,
-        "D_max: longest position residual that a step uses",
+        "longest position residual that a step uses",
         unit="m",
         low=1e-6,
         slider=(0.01, 1.0),
         unbounded=True,
+        symbol="D_max",
     )
 
     def __init_subclass__(cls) -> None:
@@ -152,12 +153,14 @@ class JacobianSolver(Solver, ABC):
     name = ""
 
     stiffness: Mapping[str, float] = stiffness_parameter(
-        "w_i: weight of a joint's motion, from 0 (fixed) to 1; 1 for joints not named"
+        "weight of a joint's motion, from 0 (fixed) to 1; 1 for joints not named"
     )
     step_size: float = parameter(
-        1.0, "factor on the clamped step (α in the thesis)", low=1e-6, high=2.0, slider=(0.01, 2.0)
+        1.0, "factor on the clamped step", low=1e-6, high=2.0, slider=(0.01, 2.0), symbol="α in the thesis", level=3
     )
-    target_jacobian: bool = parameter(False, "compute the Jacobian at the target instead of the effector (eq. 3.9)")
+    target_jacobian: bool = parameter(
+        False, "compute the Jacobian at the target instead of the effector (eq. 3.9)", level=3
+    )
 
     @abstractmethod
     def direction(self, J: Array, e: Array) -> Array:

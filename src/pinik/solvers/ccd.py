@@ -60,23 +60,27 @@ class CCD(SweepingSolver):
     patience = Patience(30, 0.05)
 
     stiffness: Mapping[str, float] = stiffness_parameter(
-        "w_i: fraction of its optimal change that a joint makes; 1 for joints not named"
+        "fraction of its optimal change that a joint makes; 1 for joints not named"
     )
     relaxation: float | None = parameter(
         None,
-        "ω: factor on the optimal change of every joint; automatic is 1 for positions and 1.7 for poses",
+        "factor on the optimal change of every joint; automatic is 1 for positions and 1.7 for poses",
         low=0.01,
         high=1.99,
         slider=(0.1, 1.99),
         optional=True,
+        symbol="ω",
+        level=1,
     )
     position_weight: float = parameter(
-        15.0, "k: weight of position relative to orientation", low=1e-6, high=1e6, slider=(0.1, 1e3)
+        15.0, "weight of position relative to orientation", low=1e-6, high=1e6, slider=(0.1, 1e3), symbol="k"
     )
     scaling: str = parameter(
         "area",
-        "α = k/W² (area), independent of scale, or k/W (printed)",
+        "how the weight is scaled by the chain's length W: k/W² (area), independent of scale, or k/W (printed)",
         choices=("area", "printed"),
+        symbol="α",
+        level=3,
     )
 
     def sweep(self, q: Array, kinematics: Kinematics, limits: Limits, tolerance: Tolerance) -> tuple[Array, int]:

@@ -49,15 +49,25 @@ class DampedLeastSquares(JacobianSolver):
     converges_quadratically = True
 
     damping: float = parameter(
-        math.sqrt(0.5), "λ, or the factor from which the rule computes λ", low=1e-9, high=100.0, slider=(1e-3, 10.0)
+        math.sqrt(0.5),
+        "how much steps are damped, or the factor from which the rule computes that",
+        low=1e-9,
+        high=100.0,
+        slider=(1e-3, 10.0),
+        symbol="λ",
+        level=1,
     )
     rule: str = parameter(
         "residual",
         "rule that computes λ in each step",
         choices=("constant", "residual", "sugihara", "manipulability"),
     )
-    manipulability: float = parameter(0.05, "w₀ of the manipulability rule", low=1e-9, slider=(1e-3, 1.0))
-    factorization: str = parameter("ldlt", "factorization that solves the linear system", choices=("ldlt", "svd"))
+    manipulability: float = parameter(
+        0.05, "threshold of the manipulability rule", low=1e-9, slider=(1e-3, 1.0), symbol="w₀", level=3
+    )
+    factorization: str = parameter(
+        "ldlt", "factorization that solves the linear system", choices=("ldlt", "svd"), level=3
+    )
 
     def direction(self, J: Array, e: Array, residual: float | None = None) -> Array:
         """Jᵀ(JJᵀ + λ²I)⁻¹e. If `residual` [m] is given, the rules use it instead of ‖e‖."""

@@ -61,6 +61,8 @@ class Parameter:
         choices: The allowed strings, for a choice.
         optional: Whether None is allowed as a value with its own meaning.
         unbounded: Whether infinity is allowed; None stands for it too, because JSON has no infinity.
+        symbol: The symbol that formulas use, such as "λ".
+        level: 1 for the parameter that matters most, 2 for those worth trying, 3 for the rest.
         name: The name of the dataclass field.
     """
 
@@ -73,6 +75,8 @@ class Parameter:
     choices: tuple[str, ...] = ()
     optional: bool = False
     unbounded: bool = False
+    symbol: str = ""
+    level: int = 2
     name: str = ""
 
     @cached_property
@@ -178,10 +182,12 @@ def parameter(
     choices: tuple[str, ...] = (),
     optional: bool = False,
     unbounded: bool = False,
+    symbol: str = "",
+    level: int = 2,
 ) -> Any:
     """A dataclass field for a solver's parameter; the arguments are those of `Parameter`."""
     own = JointValues(default) if isinstance(default, Mapping) else default
-    described = Parameter(own, help, unit, low, high, slider, tuple(choices), optional, unbounded)
+    described = Parameter(own, help, unit, low, high, slider, tuple(choices), optional, unbounded, symbol, level)
     return dataclasses.field(default=own, metadata={"parameter": described})
 
 
@@ -206,4 +212,4 @@ def max_step_parameter(default: float) -> Any:
 
 def stiffness_parameter(help: str) -> Any:
     """The parameter with a weight from 0 to 1 for the motion of each joint."""
-    return parameter({}, help, low=0.0, high=1.0)
+    return parameter({}, help, low=0.0, high=1.0, symbol="w_i")

@@ -44,7 +44,12 @@ class PseudoInverse(JacobianSolver):
 
     max_step: float = max_step_parameter(0.5)
     cutoff: float = parameter(
-        1e-3, "singular values below this fraction of the largest are dropped", low=0.0, high=0.5, slider=(0.0, 0.2)
+        1e-3,
+        "singular values below this fraction of the largest are dropped",
+        low=0.0,
+        high=0.5,
+        slider=(0.0, 0.2),
+        level=1,
     )
     rest_posture: Mapping[str, float] = parameter({}, "joint angles to move towards in the null space", unit="rad or m")
     rest_gain: float = parameter(0.1, "fraction of the way to the rest posture covered per step", low=0.0, high=1.0)

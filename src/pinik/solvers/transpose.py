@@ -31,7 +31,14 @@ class JacobianTranspose(JacobianSolver):
 
     max_step: float = max_step_parameter(0.5)
     alpha: float | None = parameter(
-        None, "α; automatic is the optimal value in every step", low=1e-6, high=1e3, slider=(1e-2, 10.0), optional=True
+        None,
+        "length of a step along the gradient; automatic is the optimal value in every step",
+        low=1e-6,
+        high=1e3,
+        slider=(1e-2, 10.0),
+        optional=True,
+        symbol="α",
+        level=1,
     )
 
     def direction(self, J: Array, e: Array) -> Array:

@@ -43,7 +43,7 @@ class TwoBoneSolver(SweepingSolver):
     restarts = 0
 
     elbow: str = parameter(
-        "nearest", "which of two solutions inside the limits to take", choices=("nearest", "up", "down")
+        "nearest", "which of two solutions inside the limits to take", choices=("nearest", "up", "down"), level=1
     )
 
     def check(self, problem: Problem) -> None:

@@ -211,6 +211,50 @@ def test_the_tolerance_is_typed_in_millimetres_and_degrees(open_panel):
     assert state["tolerance"]["position"] == pytest.approx(0.02)
 
 
+@pytest.mark.parametrize(
+    ("field", "text", "kind", "value"),
+    [
+        ("tolerance", "0.3", "position", 0.0003),
+        ("tolerance", "1.5 cm", "position", 0.015),
+        ("tolerance", "2e-3m", "position", 0.002),
+        ("tolerance", "0,7 mm", "position", 0.0007),
+        ("tolerance", "50 µm", "position", 0.00005),
+        ("tolerance-angle", "2 °", "orientation", np.radians(2)),
+        ("tolerance-angle", "0.01 rad", "orientation", 0.01),
+    ],
+)
+def test_a_tolerance_takes_its_unit_and_stays_short(open_panel, field, text, kind, value):
+    desk = open_panel("two_link", methods=("dls",))
+    desk.type(field, text)
+    state = desk.until(lambda s: s["tolerance"][kind] != (1e-4 if kind == "position" else 1e-3))
+    assert state["tolerance"][kind] == pytest.approx(value, rel=1e-11)
+    if kind == "position":
+        assert state["tolerance"][kind] == value  # to the last digit, so that links stay short
+
+
+def test_a_tolerance_out_of_range_is_refused_in_the_unit_that_was_typed(open_panel):
+    desk = open_panel("two_link", methods=("dls",))
+    for text in ("2000", "3 m", "five", ""):
+        desk.type("tolerance", text)
+        desk.expect(desk.toasts).to_have_count(1)
+        desk.expect(desk.toasts).to_contain_text(f'The tolerance must be from 0.001 to 1000 mm; got "{text}".')
+        desk.toasts.get_by_role("button").click()
+        desk.expect("tolerance").to_have_value("0.1")
+    assert desk.state["tolerance"]["position"] == 1e-4
+
+
+def test_an_emptied_coordinate_comes_back_and_the_last_ball_cannot_go(open_panel):
+    desk = open_panel("two_link", methods=("dls",))
+    shown = desk.part("target-x").input_value()
+    desk.type("target-x", "")
+    desk.expect("target-x").to_have_value(shown)
+    remove = desk.part("ball-remove-0")
+    desk.expect(remove).to_be_disabled()
+    desk.expect(remove).to_have_attribute("title", "The last ball stays; switch it off instead")
+    desk.view.send("add_effector", frame="link2")
+    desk.expect(remove).to_be_enabled()
+
+
 def test_polish_goes_on_within_the_tolerance(open_panel, arm):
     desk = open_panel(methods=("dls",), running=True)
     desk.expect("polish").not_to_be_checked()

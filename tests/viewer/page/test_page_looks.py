@@ -179,25 +179,25 @@ def test_meshcats_one_command_that_evaluates_text_does_nothing_here(open_desk):
 
 
 def test_no_figure_of_the_statistics_is_cut_short(open_desk):
-    """With the widest texts that a row can contain. The iterations, in two font sizes, are the page's own."""
+    """With the widest texts that a row can contain, at every width. The iterations are the page's own."""
     desk = open_desk("two_link", ("two_bone", "ccd", "jt", "dls"), viewport=WIDE)
     desk.expect("status-0").to_be_visible()
-    widest = ["two_bone", "0.85 mm short", "0.671 ms", None, "98.3 %", "0.099 mm", "44.4°"]
-    cut = desk.page.evaluate(
-        """texts => {
-            const cells = [...document.querySelector("tbody tr").cells];
-            const dot = cells[0].querySelector("*")?.cloneNode();
-            cells.forEach((cell, k) => texts[k] && cell.replaceChildren(texts[k]));
-            if (dot) cells[0].prepend(dot);
-            const isCut = (cell) => {
-                const { paddingLeft, paddingRight } = getComputedStyle(cell);
-                const all = document.createRange();
-                all.selectNodeContents(cell);
-                const room = cell.getBoundingClientRect().width - parseFloat(paddingLeft) - parseFloat(paddingRight);
-                return all.getBoundingClientRect().width > room;
-            };
-            return cells.filter(isCut).map((cell) => cell.textContent);
-        }""",
-        widest,
-    )
-    assert cut == []
+    widest = [None, "0.85 mm short", "87.1 µs", None, "98.3 %", "0.099 mm", "44.4°"]
+    for width in (1920, 1280, 1110, 900, 762, 390):
+        desk.page.set_viewport_size({"width": width, "height": 800})
+        cut = desk.page.evaluate(
+            """texts => {
+                const cells = [...document.querySelector("#table tbody tr").cells];
+                cells.forEach((cell, k) => texts[k] && cell.replaceChildren(texts[k]));
+                const room = document.querySelector(".figures").getBoundingClientRect();
+                const isCut = (cell) => {
+                    const box = cell.getBoundingClientRect();
+                    const hides = getComputedStyle(cell).overflow !== "visible" && cell.scrollWidth > cell.clientWidth;
+                    return hides || !box.width || box.left < room.left - 1 || box.right > room.right + 1;
+                };
+                return cells.filter(isCut).map((cell) => cell.textContent);
+            }""",
+            widest,
+        )
+        assert cut == [], f"{width} px"
+        assert desk.runs("document.documentElement.scrollWidth") <= width

@@ -10,8 +10,15 @@ from desk import METHODS
 def open_parameters(open_panel, method, **options):
     """A running view of one instance with its parameters open."""
     desk = open_panel("two_link", methods=(method,), running=True, motion="curve", **options)
-    desk.part("parameters-0").locator("summary").click()
+    open_all(desk, 0)
     return desk
+
+
+def open_all(desk, instance):
+    """Open an instance's card and show all of its parameters, if it offers a choice."""
+    desk.part(f"parameters-{instance}").locator("summary").click()
+    if desk.part(f"level-{instance}-all").is_visible():
+        desk.click(f"level-{instance}-all")
 
 
 def value(state, name, instance=0):
@@ -32,7 +39,7 @@ def test_every_parameter_has_a_widget_with_its_value_range_unit_and_help(open_pa
     state = desk.state
     described = [(i, p) for i, instance in enumerate(state["instances"]) for p in instance["parameters"]]
     for i in range(len(METHODS)):
-        desk.part(f"parameters-{i}").locator("summary").click()
+        open_all(desk, i)
     for i, parameter in described:
         testid = f"param-{i}-{parameter['name']}"
         field = desk.part(testid)
@@ -40,6 +47,7 @@ def test_every_parameter_has_a_widget_with_its_value_range_unit_and_help(open_pa
         said = row(desk, testid).inner_text()
         assert parameter["help"] in said
         assert parameter["unit"] in said
+        assert parameter["symbol"] in said
         match parameter["kind"]:
             case "number":
                 shown = field.input_value()
@@ -56,6 +64,24 @@ def test_every_parameter_has_a_widget_with_its_value_range_unit_and_help(open_pa
             case "joints":
                 offered = field.locator("option").evaluate_all("all => all.map(({ value }) => value).filter(Boolean)")
                 assert offered == state["joint_names"]
+
+
+def test_a_card_shows_the_parameter_that_matters_then_more_then_all(open_panel):
+    desk = open_panel("two_link", ("dls",))
+    desk.part("parameters-0").locator("summary").click()
+    rows = desk.part("parameters-0").locator(".parameter:visible .name")
+    counts = []
+    for level, name in enumerate(("main", "more", "all"), start=1):
+        desk.click(f"level-0-{name}")
+        own = [p["name"].replace("_", " ") for p in desk.state["instances"][0]["parameters"] if p["level"] <= level]
+        desk.expect(rows).to_have_count(len(own))
+        assert set(rows.evaluate_all("all => all.map((e) => e.firstChild.data)")) == set(own)
+        counts.append(len(own))
+    assert counts[0] == 1 < counts[1] < counts[2]
+    assert rows.first.inner_text().split() == ["damping", "λ"]
+    desk.choose("param-0-factorization", "svd")
+    desk.click("level-0-main")
+    desk.expect(rows).to_have_count(2)  # what was changed stays in view
 
 
 def test_a_number_is_typed_or_slid(open_panel):
@@ -147,6 +173,7 @@ def test_a_joint_added_before_the_last_one_is_confirmed_keeps_both(open_panel):
     tab.get_by_test_id("parameters-0").locator("summary").click()
     first, second = desk.state["joint_names"]
     tab.evaluate("() => { const now = performance.now(); performance.now = () => now; }")  # no time passes between them
+    tab.get_by_test_id("level-0-all").click()
     adder = tab.get_by_test_id("param-0-stiffness")
     adder.select_option(first)
     desk.until(lambda s: first in value(s, "stiffness"))
@@ -158,7 +185,7 @@ def test_a_joint_added_before_the_last_one_is_confirmed_keeps_both(open_panel):
 def test_another_method_or_instance_keeps_to_its_own_parameters(open_panel):
     desk = open_panel("two_link", methods=("dls", "pinv"), running=True)
     for i in (0, 1):
-        desk.part(f"parameters-{i}").locator("summary").click()
+        open_all(desk, i)
     desk.type("param-1-cutoff", 0.05)
     state = desk.until(lambda s: value(s, "cutoff", 1) == 0.05)
     assert all(p["value"] == p["default"] for p in state["instances"][0]["parameters"])
@@ -171,7 +198,7 @@ def test_a_number_out_of_range_is_refused_in_words_and_shown_as_it_was(open_pane
     desk = open_panel("two_link", ("dls", "ccd"))
     joint = desk.state["joint_names"][0]
     for i in (0, 1):
-        desk.part(f"parameters-{i}").locator("summary").click()
+        open_all(desk, i)
     desk.choose("param-1-stiffness", joint)
     desk.until(lambda s: value(s, "stiffness", 1))
     chosen = [i["parameters"] for i in desk.agree()["instances"]]

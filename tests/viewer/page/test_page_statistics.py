@@ -15,7 +15,7 @@ from PIL import Image
 from desk import METHODS
 
 COLUMNS = ["mean-time", "mean-iterations", "efficiency", "mean-error", "largest-jump"]
-UNITS = {"ms": 1e-3, "%": 0.01, "m": 1.0, "cm": 0.01, "mm": 0.001, "°": np.pi / 180, "": 1.0}
+UNITS = {"ms": 1e-3, "µs": 1e-6, "%": 0.01, "m": 1.0, "cm": 0.01, "mm": 0.001, "°": np.pi / 180, "": 1.0}
 
 
 def figures(desk, i):
@@ -42,7 +42,7 @@ def test_statistics_fill_and_change_while_it_runs(open_panel):
         assert [desk.text(f"{column}-{i}") for i in range(4)] == ["–"] * 4
     desk.click("start")
     for i in range(4):
-        desk.expect(f"mean-time-{i}").to_contain_text("ms")
+        desk.expect(f"mean-time-{i}").to_contain_text(re.compile("ms|µs"))
         desk.expect(f"efficiency-{i}").to_contain_text("%")
     before = [desk.text(f"mean-time-{i}") for i in range(4)]
     desk.wait(lambda: all(desk.text(f"mean-time-{i}") != before[i] for i in range(4)))
@@ -82,6 +82,70 @@ def test_reset_empties_the_statistics(open_panel):
     desk.click("reset")
     for column in COLUMNS:
         desk.expect(f"{column}-0").to_have_text("–")
+
+
+def test_all_methods_are_counted_over_the_same_steps_which_begin_anew_or_cover_all(open_panel):
+    desk = open_panel(methods=METHODS, motion="curve", running=True)
+    desk.until(lambda s: all(i["statistics"]["steps"] > 20 for i in s["instances"]))
+    desk.click("start")
+    desk.until(lambda s: not s["running"])
+    state = desk.agree()
+    steps = {i["statistics"]["steps"] for i in state["instances"]}
+    assert len(steps) == 1
+    desk.expect("counted").to_have_text(f"{steps.pop()} steps")
+    assert [desk.text(f"engine-{i}") for i in range(4)] == [i["engine"] for i in state["instances"]]
+    desk.choose("window", "all")
+    desk.until(lambda s: s["window"] == "all")
+    assert "statistics=all" in desk.address()
+    angles = [i["angles"] for i in state["instances"]]
+    desk.click("begin-anew")
+    state = desk.until(lambda s: {i["statistics"]["steps"] for i in s["instances"]} == {0})
+    assert [i["angles"] for i in state["instances"]] == angles
+    desk.expect("counted").to_have_text("0 steps")
+    desk.expect("efficiency-0").to_have_text("–")
+
+
+def test_steps_that_the_clock_ended_are_said_apart(open_panel):
+    desk = open_panel("two_link", methods=("dls", "ccd"))
+    desk.expect("cut-off").to_be_hidden()
+    told = desk.runs("""{
+        const state = structuredClone(pinik.state);
+        const figures = { steps: 50, busy: 50, mean_time: 0.0000871, mean_iterations: 1, mean_joint_updates: 0,
+                          efficiency: 0.5, mean_error: 0.1, largest_jump: 0.1 };
+        state.instances[0].statistics = { ...figures, cut_off: 12 };
+        state.instances[1].statistics = { ...figures, cut_off: 0 };
+        pinik.table.setState(state);
+        return [...document.querySelectorAll("[data-cut=true]")].map(({ dataset }) => dataset.testid);
+    }""")
+    assert told == ["efficiency-0"]
+    desk.expect("cut-off").to_contain_text("cut off dls in 12 of 50 steps")
+    desk.expect("mean-time-0").to_have_text("87.1 µs")
+
+
+def test_caption_card_and_table_say_one_number_at_any_moment(open_panel):
+    """They are read in one go while the ball moves away from robots that cannot follow."""
+    desk = open_panel("two_link", methods=("dls",), running=True)
+    read = """[...document.querySelectorAll("[data-testid^=status-], [data-testid^=label-] .words, .message")]
+        .map(({ textContent }) => /([\\d.]+ \\S*m) short/.exec(textContent)?.[1])"""
+    seen = set()
+    for k in range(40):
+        desk.view.move_ball([2.0 + 0.05 * k, 0.3, 0.0])
+        desk.page.wait_for_timeout(60)
+        words = desk.runs(read)
+        assert len(words) == 3
+        assert len(set(words)) == 1, words
+        seen.add(words[0])
+    assert len(seen - {None}) > 3
+
+
+def test_a_robot_that_swings_is_said_to_swing_on_its_card(open_panel):
+    desk = open_panel(methods=("pinv",), running=True)
+    desk.view.send("parameter", instance=0, name="max_residual", value=0.05)
+    desk.view.move_ball([0.0, 1.5, 0.2])
+    message = desk.part("message-0")
+    desk.expect(message).to_contain_text("does not come to rest")
+    box, text = message.bounding_box(), message.evaluate("e => e.scrollHeight - e.clientHeight")
+    assert (text, box["height"] > 60) == (0, True)
 
 
 def chart(desk, testid):

@@ -156,6 +156,7 @@ def test_a_set_up_says_what_differs_from_the_beginning_in_plain_words(arm):
     shown.change_settings(polish=True)
     shown.change_settings(tolerance=pinik.Tolerance(0.001, 0.01))
     shown.balls[0].orient(True, [0.1, 0.2, 0.3])
+    shown.scores.cover("all")
     shown.running = True
     said = {name: values[0] for name, values in parse_qs(write_setup(shown), strict_parsing=True).items()}
     assert json.loads(said.pop("parameters")) == {"0": {"position_weight": 7.0}}
@@ -172,8 +173,12 @@ def test_a_set_up_says_what_differs_from_the_beginning_in_plain_words(arm):
         "polish": "on",
         "iterations": "9",
         "tolerance": "0.001,0.01",
+        "statistics": "all",
         "run": "on",
     }
+    again = Session(arm, clock=Clock())
+    apply_setup(again, read_setup(write_setup(shown)))
+    assert again.scores.window == "all"
 
 
 def test_a_set_up_fits_into_an_address():

@@ -88,7 +88,7 @@ def test_a_state_tells_the_session(arm):
     session.running = True
     for _ in range(5):
         session.tick()
-    session._refresh_statistics()
+    session.scores.cover("last")
     state = strict(session_state(session))
     assert (state["robot"], state["root"], state["view"], state["running"]) == ("arm", "fixed", 2, True)
     assert (state["motion"], state["curve"], state["speed"], state["limits"]) == ("curve", "wave", 1.5, False)
@@ -120,7 +120,9 @@ def test_nothing_to_tell_is_null(arm):
         None,
         [],
     )
-    assert one["statistics"] == {name: 0 if name == "steps" else None for name in one["statistics"]}
+    assert one["statistics"] == {
+        name: 0 if name in ("steps", "busy", "cut_off") else None for name in one["statistics"]
+    }
 
 
 @pytest.mark.parametrize("name", ["hector", "tiago", "lion", "talos"])

@@ -17,19 +17,21 @@ FIGURES = st.builds(
     reached=st.booleans(),
     error=st.none() | st.floats(0, 10),
     jump=st.floats(0, 7),
+    idle=st.booleans(),
+    cut_off=st.booleans(),
 )
 
 
-def filled(steps):
+def filled(steps, window="last"):
     statistics = Statistics()
     for step in steps:
         statistics.add(step)
-    return statistics.summary()
+    return statistics.summary(window)
 
 
-@given(st.lists(FIGURES, min_size=1, max_size=40))
-def test_a_summary_is_the_means_and_the_largest(steps):
-    summary = filled(steps)
+@given(st.lists(FIGURES, min_size=1, max_size=40), st.sampled_from(["last", "all"]))
+def test_a_summary_is_the_means_and_the_largest(steps, window):
+    summary = filled(steps, window)
     errors = [s.error for s in steps if s.error is not None]
     assert summary.steps == len(steps)
     assert summary.mean_time == pytest.approx(np.mean([s.time for s in steps]))
@@ -38,14 +40,12 @@ def test_a_summary_is_the_means_and_the_largest(steps):
     assert summary.efficiency == pytest.approx(sum(s.reached for s in steps) / len(steps))
     assert summary.mean_error == (pytest.approx(np.mean(errors)) if errors else None)
     assert summary.largest_jump == max(s.jump for s in steps)
+    assert summary.busy == len([s for s in steps if not s.idle])
+    assert summary.cut_off == len([s for s in steps if s.cut_off])
 
 
 def test_nothing_to_tell_is_none():
-    assert filled([]) == (0, None, None, None, None, None, None)
-    statistics = Statistics()
-    statistics.add(StepFigures(1, 1, 1, True, 1, 1))
-    statistics.clear()
-    assert statistics.summary() == filled([])
+    assert filled([]) == filled([], "all") == (0, None, None, None, None, None, None, 0, 0)
 
 
 def test_the_window_is_the_last_thousand_steps_exactly():
@@ -56,4 +56,14 @@ def test_the_window_is_the_last_thousand_steps_exactly():
     assert (full.steps, full.largest_jump, full.efficiency) == (1000, 9.0, 0.999)
     assert full.mean_time == pytest.approx((5.0 + 999) / 1000)
     moved_on = filled([first, *[other] * 1000])
-    assert moved_on == (1000, 1.0, 2.0, 4.0, 1.0, 1.0, 0.5)
+    assert moved_on == (1000, 1.0, 2.0, 4.0, 1.0, 1.0, 0.5, 1000, 0)
+    whole = filled([first, *[other] * 1000], "all")
+    assert (whole.steps, whole.largest_jump, whole.efficiency) == (1001, 9.0, pytest.approx(1000 / 1001))
+
+
+def test_the_newest_steps_come_newest_first():
+    statistics = Statistics()
+    for jump in range(5):
+        statistics.add(StepFigures(0.0, 1, 0, reached=False, error=None, jump=jump))
+    assert [step.jump for step in statistics.newest(3)] == [4, 3, 2]
+    assert len(statistics.newest(30)) == 5

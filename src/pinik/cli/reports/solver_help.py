@@ -31,5 +31,6 @@ def _lines(solver: type[Solver]) -> list[str]:
     for field in dataclasses.fields(solver):
         own = described.get(field.name, Parameter(field.default, "", name=field.name))
         facts = "; ".join(filter(None, [own.range_in_words, f"default {own.default_in_words}"]))
-        texts.append(f"{own.name}: {own.help} ({facts})" if own.help else f"{own.name} ({facts})")
+        name = f"{own.name} [{own.symbol}]" if own.symbol else own.name
+        texts.append(f"{name}: {own.help} ({facts})" if own.help else f"{name} ({facts})")
     return [textwrap.fill(text, 78, initial_indent="  ", subsequent_indent="      ") for text in texts]

@@ -1,7 +1,7 @@
 /** The texts and positions of the labels below the robots. */
 
 import { Labels } from "pinik/labels.js";
-import { verdict } from "pinik/words.js";
+import { tone, verdict } from "pinik/words.js";
 
 const WORDS = 120; // [ms] between two changes of the texts
 const BELOW = 8; // [px] below the lowest point of the base
@@ -18,7 +18,20 @@ export class Captions {
         this._statuses = hello.statuses;
     }
 
-    /** Show each instance's result, but not more often than one can read. */
+    /** Show the results of a state, so that captions, cards and table say the same at any moment. */
+    tell(instances, state) {
+        if (this._told === state && this._count === instances) return;
+        Object.assign(this, { _told: state, _count: instances });
+        const texts = state.instances.slice(0, instances).map((instance) => {
+            const { title, method, status, position_error, orientation_error } = instance;
+            const words = verdict(status, position_error ?? NaN, orientation_error ?? NaN, state);
+            return { title, method, words, tone: tone(status) };
+        });
+        this._labels.set(texts);
+        this.place();
+    }
+
+    /** Show the results of a recorded frame, but not more often than one can read. */
     say(now, frame, state) {
         if (now - this._said < WORDS) return;
         this._said = now;
@@ -29,7 +42,7 @@ export class Captions {
                 title,
                 method,
                 words: state.led?.includes(i) ? "moved by hand" : verdict(name, positionError, orientationError, state),
-                good: name === "CONVERGED",
+                tone: tone(name),
             };
         });
         this._labels.set(texts);

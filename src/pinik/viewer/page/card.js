@@ -2,7 +2,9 @@
 
 import { make, say } from "pinik/elements.js";
 import { offer, write } from "pinik/hands.js";
+import { Levels } from "pinik/levels.js";
 import { parameterWidget } from "pinik/parameter.js";
+import { tone } from "pinik/words.js";
 
 export class Card {
     constructor(index, hello, connection) {
@@ -17,6 +19,7 @@ export class Card {
             hidden: true,
         });
         this._parameters = make("div", { className: "parameters" });
+        this._levels = new Levels(index, () => this._showLevels());
         this._details = make(
             "details",
             { dataset: { testid: `parameters-${index}` } },
@@ -71,12 +74,13 @@ export class Card {
         write(this._method, instance.method);
         say(this._message, instance.message);
         this._message.title = instance.message;
-        const { status } = instance;
-        this._message.dataset.tone = status === "CONVERGED" ? "good" : status === "IDLE" ? "idle" : "missed";
+        this._message.dataset.tone = tone(instance.status);
         this._showParameters(instance, state);
     }
 
-    _showParameters({ method, parameters }, state) {
+    _showParameters({ method, parameters: given }, state) {
+        const parameters = given.toSorted((one, other) => one.level - other.level);
+        this._shown = parameters;
         const drawn = [method, ...parameters.map(({ name, kind }) => name + kind)].join();
         if (drawn !== this._drawn) {
             this._drawn = drawn;
@@ -84,11 +88,24 @@ export class Card {
                 const commit = (value, often) => this._send(description.name, value, often);
                 return parameterWidget(description, `param-${this._index}-${description.name}`, commit);
             });
-            this._parameters.replaceChildren(...this._widgets.map(({ element }) => element), this._defaults);
+            this._parameters.replaceChildren(
+                this._levels.element,
+                ...this._widgets.map(({ element }) => element),
+                this._defaults,
+            );
         }
         parameters.forEach((description, k) => this._widgets[k].show(description, state));
         this._changed.hidden = !parameters.some(differs);
         this._defaults.disabled = this._changed.hidden;
+        this._showLevels();
+    }
+
+    /** Hide the parameters beyond the chosen level, unless they were changed. */
+    _showLevels() {
+        this._levels.offer(this._shown);
+        this._shown.forEach((description, k) => {
+            this._widgets[k].element.hidden = !this._levels.shows(description) && !differs(description);
+        });
     }
 
     _send(name, value, often = false) {

@@ -2,14 +2,16 @@
 
 import { byId, make, say } from "pinik/elements.js";
 import { Asked, offer, scale, typed, write } from "pinik/hands.js";
+import { ANGLES, LENGTHS, measured, outside } from "pinik/units.js";
 import { plain, spaced } from "pinik/words.js";
 
 const DEGREE = Math.PI / 180;
 
 export class Controls {
-    /** @param connection sends the messages */
-    constructor(connection) {
+    /** @param connection sends the messages; notices says what is wrong with an input */
+    constructor(connection, notices) {
         this._connection = connection;
+        this._notices = notices;
         const send = (type, fields) => connection.send({ type, ...fields });
         this._send = send;
         this._asked = new Asked();
@@ -105,13 +107,15 @@ export class Controls {
     }
 
     _bindTolerance() {
-        for (const [id, name, unit] of [
-            ["tolerance", "position", 0.001],
-            ["tolerance-angle", "orientation", DEGREE],
+        for (const [id, name, units, unit] of [
+            ["tolerance", "position", LENGTHS, "mm"],
+            ["tolerance-angle", "orientation", ANGLES, "°"],
         ]) {
             byId(id).addEventListener("change", ({ target }) => {
-                const value = typed(target);
-                if (value !== null) this._sendPart("tolerance", { [name]: value * unit });
+                const value = measured(target.value, units, unit);
+                const fault = outside(value, this.hello.ranges[`${name}_tolerance`], units, unit);
+                if (fault) this._notices.error(`The tolerance must be ${fault}; got "${target.value.trim()}".`);
+                else this._sendPart("tolerance", { [name]: value });
             });
         }
     }

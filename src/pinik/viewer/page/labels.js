@@ -11,15 +11,15 @@ export class Labels {
         this._chips = [];
     }
 
-    /** @param texts {title, method, words, good} of each instance */
+    /** @param texts {title, method, words, tone} of each instance */
     set(texts) {
         while (this._chips.length < texts.length) this._chips.push(this._make(this._chips.length));
         while (this._chips.length > texts.length) this._chips.pop().chip.remove();
-        texts.forEach(({ title, method, words, good }, i) => {
+        texts.forEach(({ title, method, words, tone }, i) => {
             const { chip, name, state } = this._chips[i];
             say(name, this._narrow ? method : title);
             say(state, words);
-            chip.classList.toggle("good", good);
+            state.dataset.tone = tone;
         });
     }
 

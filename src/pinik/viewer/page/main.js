@@ -43,12 +43,12 @@ class Page {
             onOpen: () => this.notices.connected(true),
             onClose: () => this.notices.connected(false),
         });
-        this.controls = new Controls(this.connection);
+        this.controls = new Controls(this.connection, this.notices);
         this.cards = new Cards(byId("cards"), this.connection);
         this.targets = new Targets(this.connection, (k) => this.show.select(k));
         this.surroundings = new Surroundings(byId("surroundings"), this.connection);
         this.answers = new Answers(byId("answers"), this.connection, this.show);
-        this.table = new Table(byId("table"));
+        this.table = new Table(byId("table"), this.connection);
         this.joints = new Joints(this.connection);
         this.undo = new Undo(this.connection);
         this.copying = new Copying(this.connection, this.joints);
@@ -69,7 +69,7 @@ class Page {
     _on = {
         hello: (hello) => {
             this.hello = hello;
-            for (const part of [this.show, this.controls, this.cards]) part.setHello(hello);
+            for (const part of [this.show, this.controls, this.cards, this.table]) part.setHello(hello);
         },
         robot: (robot) => {
             this.show.setRobot(robot);
@@ -206,6 +206,9 @@ const page = new Page();
 window.pinik = {
     get state() {
         return page.state;
+    },
+    get table() {
+        return page.table;
     },
     get viewer() {
         return page.show.stage.viewer;

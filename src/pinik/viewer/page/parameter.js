@@ -13,7 +13,11 @@ export function parameterWidget(description, testid, commit) {
 
 function row(description, control, ...after) {
     const title = make("span", { className: "name" }, spaced(description.name));
-    if (description.unit) title.append(make("small", {}, description.unit));
+    for (const [className, text] of [
+        ["symbol", description.symbol],
+        ["unit", description.unit],
+    ])
+        if (text) title.append(" ", make("small", { className }, text));
     const label = make("label", { className: "head", title: description.help }, title, control);
     return make(
         "div",
@@ -64,7 +68,7 @@ function numberWidget(description, testid, commit) {
         if (word) write(word, value === null);
         if (range) {
             write(range, scaled.position(value ?? likely(description)));
-            range.classList.toggle("unused", value === null);
+            range.hidden = value === null;
         }
     };
     return { element: row(description, input, ...extras), show };

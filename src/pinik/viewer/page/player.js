@@ -9,7 +9,7 @@ const TAIL = 90; // number of earlier frames that a trail shows
 
 class Player {
     constructor(recording) {
-        this._show = new Show({ canvas: byId("canvas"), labels: byId("labels") }, new Theme());
+        this._show = new Show({ canvas: byId("canvas"), labels: byId("labels") }, new Theme(), { played: true });
         this._frames = bytesOf(recording.frames).buffer;
         this._size = recording.frame_bytes;
         this._count = Math.floor(this._frames.byteLength / Math.max(this._size, 1));

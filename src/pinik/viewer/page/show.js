@@ -14,7 +14,9 @@ const BALL = 0.025; // radius, as a fraction of the robot's size
 const BASE = 0.12; // as a fraction of the robot's size: the robot stands on what is lower than this above the ground
 
 export class Show {
-    constructor({ canvas, labels }, theme) {
+    /** @param options played: whether the frames are a recording, whose results no state tells */
+    constructor({ canvas, labels }, theme, { played = false } = {}) {
+        this._played = played;
         this.stage = new Stage(canvas, theme);
         this.camera = new Camera(this.stage);
         this.balls = new Balls();
@@ -79,6 +81,7 @@ export class Show {
         // A stopped session sends no second frame, so the latest one must do, unless it is older than the change.
         this._next = null;
         if (this._latest) this.setFrame(this._latest);
+        if (!this._played) this._captions.tell(this.instances.length, state);
         this.stage.touch();
     }
 
@@ -112,7 +115,8 @@ export class Show {
             this._frame = frame;
             if (moves || frame.instances !== this.instances.length) this._draw(frame);
         }
-        if (this._frame) this._captions.say(now, this._frame, this.state);
+        if (this._frame && this._played) this._captions.say(now, this._frame, this.state);
+        else if (this._frame) this._captions.tell(this._frame.instances, this.state);
         // Between a change and the first frame that shows it, the camera stays.
         const { _frame: frame, state } = this;
         if (frame && frame.instances === state.view && frame.balls === state.balls.length) this._sight.follow(now);

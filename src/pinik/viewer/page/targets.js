@@ -86,7 +86,9 @@ export class Targets {
         say(pick.lastChild, ball.frame);
         pick.ariaPressed = String(k === this.selected);
         mode.ariaLabel = `Mode of the ball of ${ball.frame}`;
-        remove.ariaLabel = remove.title = `Remove the ball of ${ball.frame}`;
+        remove.ariaLabel = `Remove the ball of ${ball.frame}`;
+        remove.disabled = this._rows.length === 1;
+        remove.title = remove.disabled ? "The last ball stays; switch it off instead" : remove.ariaLabel;
         row.dataset.mode = ball.mode;
         write(mode, ball.mode);
     }

@@ -12,7 +12,7 @@ export function length(metres) {
     if (metres === null || !Number.isFinite(metres)) return NOTHING;
     const size = Math.abs(metres);
     if (size >= 1) return `${significant(metres)} m`;
-    if (size >= 0.01) return `${(metres * 100).toFixed(1)} cm`;
+    if (size >= 0.01) return `${significant(metres * 100)} cm`;
     if (size >= 0.0001) return `${significant(metres * 1000, 2)} mm`;
     if (size >= 1e-6) return `${(metres * 1000).toFixed(3)} mm`;
     return "0 mm";
@@ -25,9 +25,11 @@ export function degrees(radians) {
     return `${value.toFixed(size >= 100 ? 0 : size >= 10 ? 1 : 2)}°`;
 }
 
-export function milliseconds(seconds) {
+/** A time [s] in a suitable unit. */
+export function duration(seconds) {
     if (seconds === null || !Number.isFinite(seconds)) return NOTHING;
-    return `${significant(seconds * 1000)} ms`;
+    if (seconds === 0) return "0 µs";
+    return seconds < 0.0009995 ? `${significant(seconds * 1e6)} µs` : `${significant(seconds * 1000)} ms`;
 }
 
 export function count(value) {
@@ -60,6 +62,22 @@ function tightest({ balls, tolerance }) {
     };
 }
 
+/** How a result is marked, whatever its method's colour: "good", "missed" or "idle". */
+export function tone(status) {
+    return status === "CONVERGED" ? "good" : status === "IDLE" ? "idle" : "missed";
+}
+
+/** A length as the session's messages write it. */
+function shortLength(metres) {
+    return length(metres).replace(/(\.\d*?)0+ /, "$1 ").replace(". ", " ");
+}
+
+/** An angle as the session's messages write it. */
+function shortAngle(radians) {
+    const value = (radians * 180) / Math.PI;
+    return `${value >= 10 ? value.toFixed(0) : Number(value.toPrecision(2))}°`;
+}
+
 /** An instance's result, such as "4.1 cm short"; errors in m and rad, not finite if not asked for. */
 export function verdict(status, positionError, orientationError, state) {
     if (status === "FAILED") return "solver failed";
@@ -69,7 +87,7 @@ export function verdict(status, positionError, orientationError, state) {
     const tolerance = tightest(state);
     const away = Number.isFinite(positionError) && positionError > tolerance.position;
     const turned = Number.isFinite(orientationError) && orientationError > tolerance.orientation;
-    if (away) return `${length(positionError)} short`;
-    if (turned) return `${degrees(orientationError)} off`;
+    if (away) return `${shortLength(positionError)} short`;
+    if (turned) return `${shortAngle(orientationError)} off`;
     return "reached";
 }

@@ -220,6 +220,8 @@ _MESSAGES: dict[str, tuple[dict[str, Check], Callable[..., None]]] = {
     "pause_on_miss": ({"on": _truth}, _pause_on_miss),
     "step": ({}, _single_step),
     "reset": ({}, Session.reset),
+    "begin_anew": ({}, lambda s: s.scores.begin_anew(s.view)),
+    "statistics": ({"cover": text}, lambda s, cover: s.scores.cover(cover)),
     "ball": ({**_BALL, "position": _point}, Session.move_ball),
     "free": ({**_BALL, "axes": text}, lambda s, index, axes: s.balls.number(index).release(axes)),
     "orientation": (

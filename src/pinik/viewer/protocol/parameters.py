@@ -42,6 +42,8 @@ def _described(own: Parameter, value: Any) -> dict[str, Any]:
         "whole": own.is_whole,
         "unit": own.unit,
         "help": own.help,
+        "symbol": own.symbol,
+        "level": own.level,
         "choices": list(own.choices),
         "none": own.none_means,
     }

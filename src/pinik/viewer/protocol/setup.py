@@ -16,7 +16,7 @@ from .led import angle_messages, led_angles
 from .messages import apply
 from .parameters import changed_parameters, describe_parameters
 from .reading import read_json
-from .setup_balls import ball_messages, ball_text
+from .setup_balls import ball_messages, balls_text
 from .surroundings import collisions_messages, obstacle_messages, written_collisions, written_obstacles
 
 __all__ = ["Setup", "apply_setup", "read_setup", "write_setup"]
@@ -25,7 +25,7 @@ Setup = dict[str, str]
 _LONGEST = 20_000
 _JSON_NAMES = {list: "array", dict: "object"}
 _KEYS = ("robot", "root", "view", "methods", "parameters", "motion", "curve", "speed", "limits", "polish", "iterations",
-         "tolerance", "balls", "angles", "lead", "pause", "collisions", "obstacles", "run")  # fmt: skip
+         "tolerance", "statistics", "balls", "angles", "lead", "pause", "collisions", "obstacles", "run")  # fmt: skip
 
 
 def write_setup(session: Session) -> str:
@@ -53,7 +53,9 @@ def write_setup(session: Session) -> str:
         setup["iterations"] = str(settings.at_most)
     if settings.tolerance != default.tolerance:
         setup["tolerance"] = ",".join(map(_short, (settings.tolerance.farthest, settings.tolerance.orientation)))
-    setup["balls"] = _compact([ball_text(session, index) for index in range(len(session.balls))])
+    if session.scores.window != "last":
+        setup["statistics"] = session.scores.window
+    setup["balls"] = balls_text(session)
     if angles := led_angles(session):
         setup["angles"] = _compact(angles)
     if session.misses.pause:
@@ -142,6 +144,7 @@ def _messages(session: Session, setup: Setup) -> Iterator[dict[str, Any]]:
     }
     tolerance = _numbers("tolerance", setup["tolerance"], 2) if "tolerance" in setup else Tolerance()
     yield {"type": "tolerance", "position": tolerance[0], "orientation": tolerance[1]}
+    yield {"type": "statistics", "cover": setup.get("statistics", "last")}
     if "curve" in setup:
         yield {"type": "curve", "curve": setup["curve"]}
     yield {"type": "speed", "value": _numbers("speed", setup["speed"], 1)[0] if "speed" in setup else 1.0}

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Iterator
 from typing import Any
 
@@ -10,10 +11,15 @@ from ..simulation.ball import Ball
 from ..simulation.session import Session
 from .parameters import tolerance_of
 
-__all__ = ["ball_messages", "ball_text"]
+__all__ = ["ball_messages", "balls_text"]
 
 
-def ball_text(session: Session, index: int) -> list[Any]:
+def balls_text(session: Session) -> str:
+    """Return what a link says about all balls: a JSON list with one list for each."""
+    return json.dumps([_ball(session, index) for index in range(len(session.balls))], separators=(",", ":"))
+
+
+def _ball(session: Session, index: int) -> list[Any]:
     """Return [frame, mode, position, rpy, extra].
 
     The position is null if the motion or a pose decides it, and rpy is null if it is not asked for. `extra` is an

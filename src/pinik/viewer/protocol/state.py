@@ -11,7 +11,8 @@ from ...solvers.base import Solver
 from ..simulation.instance import STATUSES, Instance
 from ..simulation.motion import MOTIONS
 from ..simulation.session import STEPS_PER_SECOND, VIEWS, Session
-from ..simulation.statistics import Summary
+from ..simulation.statistics import WINDOWS, Summary
+from ..simulation.swinging import LOOKED_AT, swinging
 from .messages import FARTHEST, RANGES
 from .parameters import describe_parameters, tolerance_of
 from .robots import ROOTS
@@ -37,6 +38,7 @@ def hello_message(version: str, methods: dict[str, type[Solver]], own_robots: li
         "motions": [{"name": name, "title": title} for name, title in MOTIONS.items()],
         "curves": [{"name": name, "title": curve.title} for name, curve in CURVES.items()],
         "views": list(VIEWS),
+        "windows": [{"name": name, "title": title} for name, title in WINDOWS.items()],
         "ranges": {**{name: list(ends) for name, ends in RANGES.items()}, "reach": FARTHEST},
         "statuses": list(STATUSES),
         "steps_per_second": STEPS_PER_SECOND,
@@ -64,6 +66,7 @@ def session_state(session: Session) -> dict[str, Any]:
         "missed": session.misses.last,
         "led": sorted(session.leading.among(session.balls.targets)),
         "step": session.steps,
+        "window": session.scores.window,
         "balls": [
             {
                 "frame": ball.frame,
@@ -85,21 +88,24 @@ def session_state(session: Session) -> dict[str, Any]:
         },
         "obstacles": [dataclasses.asdict(obstacle) for obstacle in session.obstacles],
         "instances": [
-            _instance_state(instance, summary)
-            for instance, summary in zip(session.seen, session.summaries, strict=True)
+            _instance_state(session, index, instance, summary)
+            for index, (instance, summary) in enumerate(zip(session.seen, session.summaries, strict=True))
         ],
         "joint_names": list(session.robot.joint_names),
         "methods": session.offered,
     }
 
 
-def _instance_state(instance: Instance, summary: Summary) -> dict[str, Any]:
+def _instance_state(session: Session, index: int, instance: Instance, summary: Summary) -> dict[str, Any]:
     verdict = instance.verdict()
+    swings = swinging(instance.solver, session.scores.newest(index, LOOKED_AT))
     return {
         "method": instance.solver.name,
         "title": instance.solver.title,
         "parameters": describe_parameters(instance.solver),
+        "engine": instance.engine,
         **verdict._asdict(),
+        "message": f"{verdict.message}; {swings}" if swings else verdict.message,
         "active_limits": list(verdict.active_limits),
         "touching": [list(pair) for pair in instance.contacts.touching(instance.q)],
         "angles": instance.robot.angles(instance.q),

@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from ...errors import InputError
 from ...model.limits import Limits
+from ...motion.figures import StepFigures
 from ...problem.targets import Target
 from ...problem.tolerance import Tolerance, largest_of
 from ...robot import Robot
@@ -27,7 +28,6 @@ from ...solving.state import State, Status
 from ...solving.verdict import judge, measure_errors
 from .contacts import Contacts
 from .detour import Detours
-from .statistics import Statistics, StepFigures
 
 __all__ = ["STATUSES", "Instance", "Standing", "StepSettings", "same_objects"]
 
@@ -97,10 +97,9 @@ class Instance:
         robot: The robot.
         q: Its configuration (nq,).
         contacts: What it touches, and whether it avoids that.
-        statistics: Statistics of its last steps.
         last: The figures of the last step; None before the first step and while there are no targets.
         status: One of `STATUSES`.
-        counted: Whether the last step had work to do, and so counts in the statistics.
+        counted: Whether the last step had work to do, and so counts in the statistics, for all instances alike.
     """
 
     def __init__(
@@ -115,7 +114,6 @@ class Instance:
         self.robot = robot
         self.contacts = contacts or Contacts(robot)
         self._detours = Detours(robot)
-        self.statistics = Statistics()
         self._solver = solver
         self._settings = settings
         self._clock = clock
@@ -130,7 +128,6 @@ class Instance:
     @solver.setter
     def solver(self, solver: Solver) -> None:
         self._solver = solver
-        self.statistics.clear()
         self._forget_run()
 
     @property
@@ -144,9 +141,8 @@ class Instance:
         self._forget_run()
 
     def put(self, q: Array) -> None:
-        """Start again from `q` (nq,), with empty statistics."""
+        """Start again from `q` (nq,)."""
         self.q = q
-        self.statistics.clear()
         self._forget_run()
 
     def pose(self, q: Array) -> None:
@@ -186,9 +182,12 @@ class Instance:
             return
         self.counted = moved or self.status != Status.CONVERGED.name
         if not self.counted or (self._blocked and not moved):
-            self.last = self.last._replace(time=0.0, iterations=0, joint_updates=0, jump=0.0) if self.last else None
+            if self.last:
+                self.last = self.last._replace(
+                    time=0.0, iterations=0, joint_updates=0, jump=0.0, idle=True, cut_off=False
+                )
             return
-        began, before, former = self._clock(), self.q, self._state
+        began, before, former = self._clock(), self.q, self._state if self._pursuit else None
         try:
             state = self._kept_free(self._run(asked, began + seconds), asked)
         except _RefusedError as refusal:
@@ -208,8 +207,8 @@ class Instance:
             reached=state.status is Status.CONVERGED,
             error=off.position,
             jump=float(np.abs(pinocchio.difference(self.robot.model, before, state.q)).max(initial=0.0)),
+            cut_off=state.status is None,
         )
-        self.statistics.add(self.last)
 
     def _run(self, targets: tuple[Target, ...], deadline: float) -> State:
         if self._pursuit is None:
@@ -251,7 +250,11 @@ class Instance:
         self._trouble = f"the solver failed: {type(error).__name__}: {error}"
         self.last = StepFigures(spent, 0, 0, reached=False, error=None, jump=0.0)
         self.status, self.counted = "FAILED", True
-        self.statistics.add(self.last)
+
+    @property
+    def engine(self) -> str:
+        """The engine that steps it: "native" or "python"."""
+        return "python" if self._pursuit is None else self._pursuit.engine
 
     @property
     def moves(self) -> bool:

@@ -7,7 +7,9 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
+from ...errors import UnknownNameError
 from ...model.home import home_configuration
+from ...motion.curves import CURVES
 from ...motion.tracks import Track, lay_track, random_configuration
 from ...robot import Robot
 from .ball import Ball
@@ -47,6 +49,16 @@ class Motion:
         self._phase = 0.0
         self._since = np.inf
         self._rng = np.random.default_rng(self._seed)
+
+    def choose_curve(self, name: str) -> None:
+        """Set the curve.
+
+        Raises:
+            UnknownNameError: There is no such curve.
+        """
+        if name not in CURVES:
+            raise UnknownNameError("curve", name, CURVES)
+        self.curve = name
 
     def advance(self, balls: Sequence[Ball], seconds: float) -> None:
         """Move the balls by one step of `seconds`."""

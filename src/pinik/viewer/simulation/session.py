@@ -11,7 +11,6 @@ from numpy.typing import ArrayLike
 
 from ...errors import InputError, UnknownNameError
 from ...model.home import home_configuration
-from ...motion.curves import CURVES
 from ...motion.effectors import principal_frames
 from ...problem.targets import Target
 from ...robot import Robot
@@ -27,6 +26,7 @@ from .method_menu import Methods, check_balls, chosen, filled_up, offered
 from .misses import Misses
 from .motion import MOTIONS, Motion
 from .obstacles import Obstacles
+from .scoreboard import Scoreboard, terms
 from .statistics import Summary
 
 __all__ = ["STEPS_PER_SECOND", "VIEWS", "Session"]
@@ -56,6 +56,7 @@ class Session:
         misses: Whether the session pauses on a miss, and the last one.
         running: Whether `tick` takes a step.
         steps: The number of steps since the last reset.
+        scores: The statistics of the visible instances.
         notes: What else changed with the last change of robot, in words.
         seed: The seed of the random positions.
         clock: A function that returns the time in seconds.
@@ -106,8 +107,8 @@ class Session:
         self.contacts, self.obstacles = Contacts(robot), Obstacles()
         self.instances = [Instance(robot, s, self._home, self.settings, clock, self.contacts) for s in solvers]
         self.balls = Balls(robot)
+        self.scores = Scoreboard(clock)
         self.set_view(view)
-        self._refresh_statistics()
 
     @property
     def seen(self) -> list[Instance]:
@@ -123,8 +124,9 @@ class Session:
 
     @property
     def summaries(self) -> list[Summary]:
-        """The statistics of the visible instances, refreshed once per second."""
-        return self._summaries[: self.view]
+        """The statistics of the visible instances, refreshed once per second, and empty once their terms changed."""
+        self._agree_on_terms()
+        return self.scores.summaries
 
     @property
     def rests(self) -> bool:
@@ -145,6 +147,7 @@ class Session:
 
     def step(self) -> None:
         """Advance the balls by 1/60 s, and let every visible instance chase them."""
+        self._agree_on_terms()
         self.motion.advance(self.balls, 1.0 / STEPS_PER_SECOND)
         share = _SOLVERS_SHARE / STEPS_PER_SECOND / self.view
         targets = self.balls.targets
@@ -153,13 +156,12 @@ class Session:
             if index not in led:
                 instance.step(targets, share)
         self.steps += 1
+        self.scores.count(self.seen, at_once=not self.running)
         is_still = not any([instance.moves for instance in self.seen])
         self._still_steps = self._still_steps + 1 if is_still and same_objects(targets, self._targets) else 0
         self._targets = targets
         if self.misses.look(self.seen, targets, jumped=self.motion.kind == "random"):
             self.running = False
-        if not self.running or self.clock() - self._refreshed >= 1.0:
-            self._refresh_statistics()
 
     def reset(self) -> None:
         """Return the robots and balls to where they began, and clear the statistics."""
@@ -170,7 +172,7 @@ class Session:
         self.motion.restart()
         self.leading.hold((), ())
         self.steps = self._still_steps = 0
-        self._refresh_statistics()
+        self.scores.begin_anew(self.view)
 
     def set_view(self, count: int) -> None:
         """Show 1, 2 or 4 instances."""
@@ -225,9 +227,7 @@ class Session:
 
     def set_curve(self, name: str) -> None:
         """Set the curve that the balls follow."""
-        if name not in CURVES:
-            raise UnknownNameError("curve", name, CURVES)
-        self.motion.curve = name
+        self.motion.choose_curve(name)
 
     def set_contacts(self, on: bool, avoids: bool) -> None:
         """Look for what touches, and let the instances avoid it, which they only do where it is looked for."""
@@ -269,13 +269,11 @@ class Session:
         check_joint_names(self.robot, solver)
         if solver != instance.solver:
             instance.solver = solver
-            self._refresh_statistics()
 
     def _instance(self, index: int) -> Instance:
         if not 0 <= index < len(self.instances):
             raise InputError(f"instances are numbered from 0 to {len(self.instances) - 1}; got {index}")
         return self.instances[index]
 
-    def _refresh_statistics(self) -> None:
-        self._summaries = [instance.statistics.summary() for instance in self.instances]
-        self._refreshed = self.clock()
+    def _agree_on_terms(self) -> None:
+        self.scores.agree(terms(self.seen, self.settings, self.motion, self.balls), self.view)
