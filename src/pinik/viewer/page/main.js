@@ -9,10 +9,13 @@ import { byId } from "pinik/elements.js";
 import { isFrame } from "pinik/frame.js";
 import { Grab } from "pinik/grab.js";
 import { watchHands } from "pinik/hands.js";
+import { makeSearchable } from "pinik/finder.js";
 import { History } from "pinik/history.js";
 import { Keys } from "pinik/keys.js";
+import { LookMenu } from "pinik/look_menu.js";
 import { Notices } from "pinik/notices.js";
 import { Nudge } from "pinik/nudge.js";
+import { Presentation } from "pinik/presentation.js";
 import { addPresets } from "pinik/presets.js";
 import { shortcuts } from "pinik/shortcuts.js";
 import { Show } from "pinik/show.js";
@@ -33,13 +36,20 @@ class Page {
             onText: (message) => this._on[message.type]?.(message),
             onBinary: (buffer) => this._take(buffer),
             onOpen: () => this.notices.connected(true),
-            onClose: () => this.notices.connected(false),
+            onClose: () => this.notices.connected(false, this.state?.robot),
         });
         this.controls = new Controls(this.connection);
         this.cards = new Cards(byId("cards"), this.connection);
         this.targets = new Targets(this.connection, (k) => this.show.select(k));
         this.table = new Table(byId("table"));
-        this.address = new Address((setup) => this.connection.send({ type: "setup", setup }));
+        this.lookMenu = new LookMenu(this.connection);
+        this.presentation = new Presentation((on) => this.address?.showPresenting(on));
+        this.address = new Address(
+            (setup) => this.connection.send({ type: "setup", setup }),
+            (on) => this.presentation.turn(on),
+        );
+        makeSearchable(byId("robot"), "Search robots");
+        makeSearchable(byId("add-effector"), "Search frames");
         this.history = new History();
         this._drawnCharts = 0;
         this._unanswered = [];
@@ -55,13 +65,14 @@ class Page {
     _on = {
         hello: (hello) => {
             this.hello = hello;
-            for (const part of [this.show, this.controls, this.cards]) part.setHello(hello);
+            for (const part of [this.show, this.controls, this.cards, this.lookMenu]) part.setHello(hello);
         },
         robot: (robot) => {
             this.show.setRobot(robot);
             this.targets.setRobot(robot);
             this.notices.warnings(robot.warnings);
             this.robot = robot;
+            this._showLoading();
         },
         state: (state) => {
             this.state = state;
@@ -69,19 +80,35 @@ class Page {
             this._showSettings(state);
             this.table.setState(state);
             this.show.setState(state);
-            this.notices.loading(state.loading);
+            this._showLoading();
             this.address.show(state.setup);
         },
         shapes: (shapes) => {
-            this.show.setShapes(shapes);
+            const notes = this.show.setShapes(shapes);
             if (shapes.generation === this.robot.generation)
-                this.notices.warnings([...this.robot.warnings, ...shapes.warnings]);
+                this.notices.warnings([...this.robot.warnings, ...shapes.warnings, ...notes]);
+            for (const note of notes) this.notices.error(note);
+            this._showLoading();
+        },
+        collisions: (message) => {
+            if (message.generation === this.robot.generation) this.show.look.setCollisions(message);
+            for (const warning of message.warnings) this.notices.error(warning);
+        },
+        reach: (message) => {
+            if (message.generation === this.robot.generation) this.show.look.setReach(message);
         },
         error: ({ message }) => this.notices.error(message),
     };
 
     _showSettings(state) {
-        for (const part of [this.controls, this.cards, this.targets]) part.setState(state);
+        for (const part of [this.controls, this.cards, this.targets, this.lookMenu]) part.setState(state);
+    }
+
+    /** Say which robot, or whose shapes, are being loaded. */
+    _showLoading() {
+        const { loading } = this.state ?? {};
+        if (loading) this.notices.loading(`Loading ${loading} …`);
+        else this.notices.loading(this.show.awaiting ? `Loading the shapes of ${this.robot.name} …` : "");
     }
 
     _take(buffer) {

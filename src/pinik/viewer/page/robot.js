@@ -1,9 +1,13 @@
 /** One instance of the robot in the scene: its shapes or its skeleton. */
 
+import { outermost } from "pinik/extent.js";
 import { LimitMarks } from "pinik/limit_marks.js";
 import { quickMaterial } from "pinik/quick_material.js";
 import { Skeleton } from "pinik/skeleton.js";
 import { THREE } from "pinik/three.js";
+
+const GHOST = 0.5; // opacity of robots that stand in one place
+const SEE_THROUGH = 0.35;
 
 export class Robot {
     /**
@@ -14,25 +18,24 @@ export class Robot {
     constructor(robot, parts, color) {
         this.group = new THREE.Group();
         this._parts = [];
-        this._joints = robot.joints.map(() => new THREE.Group());
+        this.joints = robot.joints.map(() => new THREE.Group());
         this._links = robot.links.map((link) => {
             const group = new THREE.Group();
             place(group, link.placement, 0);
-            this._joints[link.joint].add(group);
+            this.joints[link.joint].add(group);
             return group;
         });
-        const materials = robot.links.map(() => []);
         for (const part of parts ?? []) {
             const fine = part.material.clone();
             const coarse = quickMaterial(fine);
             const mesh = new THREE.Mesh(part.geometry, fine);
             mesh.castShadow = true;
             this._links[part.link].add(mesh);
-            this._parts.push({ mesh, fine, coarse });
-            materials[part.link].push(fine, coarse);
+            const own = { color: fine.color.clone(), opacity: fine.opacity };
+            this._parts.push({ mesh, fine, coarse, own });
         }
-        this._marks = new LimitMarks(robot, carriedBy(robot, materials));
-        this.group.add(...this._joints, this._marks.group);
+        this._marks = new LimitMarks(robot);
+        this.group.add(...this.joints, this._marks.group);
         this._skeleton = parts?.length ? null : new Skeleton(robot, new THREE.Color(color).convertSRGBToLinear());
         if (this._skeleton) this.group.add(this._skeleton.group);
     }
@@ -40,9 +43,20 @@ export class Robot {
     /** Take the pose of instance `i` of a frame; `asked` are the joints whose limits matter. */
     update(frame, i, asked) {
         const placements = frame.placements(i);
-        this._joints.forEach((joint, j) => place(joint, placements, 7 * j));
-        this._skeleton?.update(this._joints);
-        this._marks.update(frame.sides(i), asked, this._joints);
+        this.joints.forEach((joint, j) => place(joint, placements, 7 * j));
+        this._skeleton?.update(this.joints);
+        this._marks.update(frame.sides(i), asked, this.joints);
+    }
+
+    /** Draw see-through, or as a ghost in a colour (CSS, or null), or as the robot is. */
+    look(ghost, seeThrough) {
+        for (const { fine, coarse, own } of this._parts) {
+            if (ghost) fine.color.set(ghost).convertSRGBToLinear();
+            else fine.color.copy(own.color); // the quick material shares this colour
+            const opacity = ghost ? GHOST : seeThrough ? Math.min(own.opacity, SEE_THROUGH) : own.opacity;
+            for (const material of [fine, coarse]) Object.assign(material, { opacity, transparent: opacity < 1 });
+            coarse.uniforms.opacity.value = opacity;
+        }
     }
 
     /** Draw in detail, with shadows on itself, or quickly. */
@@ -53,25 +67,16 @@ export class Robot {
         }
     }
 
-    /** The corners of the boxes around the robot's parts, in its own world: Vector3s. */
+    /** The outermost points of the robot's parts, in its own world: Vector3s. */
     corners() {
         const inverse = new THREE.Matrix4();
         this.group.updateWorldMatrix(true, true);
         inverse.copy(this.group.matrixWorld).invert();
-        const points = this._joints.slice(1).map((joint) => joint.position.clone());
+        const points = this.joints.slice(1).map((joint) => joint.position.clone());
         for (const link of this._links) {
             for (const mesh of link.children) {
-                if (!mesh.geometry.boundingBox) mesh.geometry.computeBoundingBox();
-                const { min, max } = mesh.geometry.boundingBox;
                 const toRobot = inverse.clone().multiply(mesh.matrixWorld);
-                for (let k = 0; k < 8; k++) {
-                    const corner = new THREE.Vector3(
-                        k & 1 ? max.x : min.x,
-                        k & 2 ? max.y : min.y,
-                        k & 4 ? max.z : min.z,
-                    );
-                    points.push(corner.applyMatrix4(toRobot));
-                }
+                for (const point of outermost(mesh.geometry)) points.push(point.clone().applyMatrix4(toRobot));
             }
         }
         return points.length ? points : [new THREE.Vector3()]; // a robot without joints and shapes
@@ -90,15 +95,4 @@ export class Robot {
 function place(object, numbers, k) {
     object.position.set(numbers[k], numbers[k + 1], numbers[k + 2]);
     object.quaternion.set(numbers[k + 3], numbers[k + 4], numbers[k + 5], numbers[k + 6]);
-}
-
-/** For each joint, the materials of its links or, if they have no shapes, of the joints that it carries. */
-function carriedBy(robot, materials) {
-    const own = robot.joints.map((_, j) => robot.links.flatMap((link, k) => (link.joint === j ? materials[k] : [])));
-    const carried = [...own];
-    for (let j = robot.joints.length - 1; j > 0; j--) {
-        const children = robot.joints.map((joint, k) => (k > j && joint.parent === j ? k : null)).filter(Boolean);
-        if (!carried[j].length) carried[j] = children.flatMap((k) => carried[k]);
-    }
-    return carried;
 }

@@ -216,6 +216,7 @@ _MESSAGES: dict[str, tuple[dict[str, Check], Callable[..., None]]] = {
         _set_tolerance,
     ),
     "run": ({"on": _truth}, _run),
+    "look": ({"name": text, "on": _truth}, lambda s, name, on: s.looks.switch(name, on)),
     "step": ({}, _single_step),
     "reset": ({}, Session.reset),
     "ball": ({**_BALL, "position": _point}, Session.move_ball),

@@ -22,7 +22,7 @@ Setup = dict[str, str]
 _LONGEST = 20_000
 _JSON_NAMES = {list: "array", dict: "object"}
 _KEYS = ("robot", "root", "view", "methods", "parameters", "motion", "curve", "speed", "limits", "polish", "iterations",
-         "tolerance", "balls", "run")  # fmt: skip
+         "tolerance", "balls", "looks", "run")  # fmt: skip
 
 
 def write_setup(session: Session) -> str:
@@ -51,6 +51,8 @@ def write_setup(session: Session) -> str:
     if settings.tolerance != default.tolerance:
         setup["tolerance"] = ",".join(map(_short, (settings.tolerance.farthest, settings.tolerance.orientation)))
     setup["balls"] = _compact([_ball(session, index) for index in range(len(session.balls))])
+    if looks := ",".join(session.looks):
+        setup["looks"] = looks
     setup["run"] = "on" if session.running else "off"
     return urlencode(setup, quote_via=quote, safe=",:[]{}")
 
@@ -149,6 +151,11 @@ def _messages(session: Session, setup: Setup) -> Iterator[dict[str, Any]]:
     yield {"type": "speed", "value": _numbers("speed", setup["speed"], 1)[0] if "speed" in setup else 1.0}
     if "motion" in setup:
         yield {"type": "motion", "motion": setup["motion"]}
+    wanted = setup.get("looks", "").split(",") if setup.get("looks") else []
+    for name in {*session.looks} - {*wanted}:
+        yield {"type": "look", "name": name, "on": False}
+    for name in wanted:
+        yield {"type": "look", "name": name, "on": True}
     if "run" in setup:
         yield {"type": "run", "on": _on("run", setup["run"])}
 

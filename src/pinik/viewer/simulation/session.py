@@ -20,6 +20,7 @@ from ...solving.question import check_joint_names
 from .ball import MODES
 from .balls import Balls
 from .instance import Instance, StepSettings
+from .looks import Looks
 from .method_menu import Methods, check_balls, chosen, filled_up, fitting, offered
 from .motion import MOTIONS, Motion
 from .statistics import Summary
@@ -44,6 +45,7 @@ class Session:
         instances: All four instances.
         balls: The balls, each with the frame that chases it.
         motion: The automatic motion of the balls.
+        looks: What the picture shows besides robots and balls.
         running: Whether `tick` takes a step.
         steps: The number of steps since the last reset.
         notes: What else changed with the last change of robot, in words.
@@ -81,14 +83,13 @@ class Session:
         for solver in solvers:
             check_joint_names(robot, solver)
         self.robot = robot
-        self.running = False
+        self.looks, self.running = Looks(), False
         self.steps = 0
         self.notes: list[str] = []
         self._offered: tuple[list[str], list[str]] = ([], [])  # for which frames, what
         self.settings = StepSettings()
         self.motion = Motion(robot, seed)
-        self._seed = seed
-        self._clock = clock
+        self._seed, self._clock = seed, clock
         self._home = home_configuration(robot)
         self.instances = [Instance(robot, s, self._home, self.settings, clock) for s in solvers]
         self.balls = Balls(robot)
@@ -101,12 +102,11 @@ class Session:
             [instance.solver for instance in self.instances], self.methods, robot, principal_frames(robot)
         )
         other = Session(robot, solvers, view=self.view, seed=self._seed, clock=self._clock)
-        other.methods = self.methods
-        other.notes = notes
-        other.running = self.running
+        other.methods, other.notes = self.methods, notes
+        other.looks, other.running = self.looks, self.running
         other.apply_settings(self.settings)
-        other.motion.kind, other.motion.curve = self.motion.kind, self.motion.curve
-        other.motion.speed = self.motion.speed
+        now = self.motion
+        other.motion.kind, other.motion.curve, other.motion.speed = now.kind, now.curve, now.speed
         return other
 
     @property

@@ -18,6 +18,7 @@ from ..protocol.robots import RobotMenu
 from ..protocol.setup import Setup, apply_setup, read_setup, write_setup
 from ..protocol.state import hello_message, session_state
 from ..simulation.session import Session
+from .additions import Additions
 from .animation import animation_page
 from .later import Later
 from .pace import Pace
@@ -51,8 +52,7 @@ class Show:
         self.recording = Recording()
         menu = RobotMenu(session.robot)
         self._loader = RobotLoader(menu, later)
-        self._later, self._clock = later, clock
-        self._seats = Seats()
+        self._later, self._clock, self._seats = later, clock, Seats()
         self._hello = hello_message(version, session.methods, menu.own_names)
         self._generation = 0
         self._pace = Pace(clock)
@@ -69,10 +69,12 @@ class Show:
         self._shapes = None
         self._waits_for_shapes = True
         self._maker = FrameMaker(session.robot, generation)
+        self._additions = Additions(generation, self._later, self._seats.send)
         self._start_anew()
         self._seats.send(json.dumps(self._robot))
         self._send_state()
         self._later(lambda: shapes_of(session.robot), lambda shapes: self._take_shapes(generation, shapes))
+        self._additions.ask(session)
 
     def _start_anew(self) -> None:
         """Discard the recording, whose frames show other instances or balls."""
@@ -88,13 +90,8 @@ class Show:
         if generation == self._generation:
             self._shapes = shapes
             self._waits_for_shapes = False
-            for message in self._shape_messages():
+            for message in shapes.messages(generation):
                 self._seats.send(message)
-
-    def _shape_messages(self) -> list[str | bytes]:
-        if self._shapes is None:
-            return []
-        return [*self._shapes.commands, json.dumps(self._shapes.message(self._generation))]
 
     # Tabs
 
@@ -106,8 +103,10 @@ class Show:
         """Add a tab and send it everything."""
         for message in (self._hello, self._robot, self.state()):
             tab.send(json.dumps(message))
-        for shape in self._shape_messages():
+        for shape in self._shapes.messages(self._generation) if self._shapes else ():
             tab.send(shape)
+        for addition in self._additions.messages:
+            tab.send(addition)
         self._seats.add(tab, self._frame)
 
     def leave(self, tab: Tab) -> None:
@@ -189,6 +188,7 @@ class Show:
             act(self.session)
         finally:
             self._frame_due = True
+            self._additions.ask(self.session)
             if self._cast() != before:
                 self._start_anew()
 
