@@ -51,9 +51,7 @@ MESSAGES = st.one_of(
     ),
     st.builds(lambda on: {"type": "limits", "on": on}, st.booleans()),
     st.builds(lambda on: {"type": "polish", "on": on}, st.booleans()),
-    st.builds(
-        lambda name, on: {"type": "look", "name": name, "on": on}, st.sampled_from(list(LOOKS)), st.booleans()
-    ),
+    st.builds(lambda name, on: {"type": "look", "name": name, "on": on}, st.sampled_from(list(LOOKS)), st.booleans()),
     st.builds(lambda m: {"type": "motion", "motion": m}, st.sampled_from(["hand", "curve", "random"])),
     st.builds(lambda c: {"type": "curve", "curve": c}, st.sampled_from(["circle", "square"])),
     st.builds(lambda v: {"type": "speed", "value": v}, st.floats(0.1, 10)),

@@ -21,7 +21,7 @@ export class Captions {
     /** Read how large the captions are; returns their height [px]. */
     measure() {
         this._labels.measure();
-        return 44 * this._labels.scale;
+        return this._labels.height;
     }
 
     /** Show each instance's result, but not more often than one can read. */

@@ -114,10 +114,10 @@ export class Decor {
         return clouds.map(({ joint, geometry }) => {
             const material = new THREE.PointsMaterial({
                 color: new THREE.Color(this._color),
-                size: 2,
+                size: 2.5,
                 sizeAttenuation: false,
                 transparent: true,
-                opacity: 0.4,
+                opacity: 0.6,
                 depthWrite: false,
             });
             const points = new THREE.Points(geometry, material);

@@ -27,7 +27,7 @@ export class Extent {
     }
 
     get points() {
-        return this._farthest.flatMap(({ point }) => point ?? []);
+        return [...new Set(this._farthest.flatMap(({ point }) => point ?? []))];
     }
 }
 

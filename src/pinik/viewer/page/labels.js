@@ -6,6 +6,7 @@ import { make, say } from "pinik/elements.js";
 const GAP = 6; // [px]
 const NARROW = 165; // [px] a label with less room than this shows the method's short name
 const WIDEST = 230; // [px]
+const [HEIGHT, NARROW_HEIGHT] = [44, 34]; // [px]
 const LEAST = 84; // [px]
 const WEIGHTS = { caption: 1000, ball: 4 }; // of covering other captions and balls, compared with robots
 
@@ -20,6 +21,11 @@ export class Labels {
     /** Read how large the captions are, which depends on the size of the page. */
     measure() {
         this.scale = Number(getComputedStyle(this._element).getPropertyValue("--caption-scale")) || 1;
+    }
+
+    /** The height of a caption [px]. */
+    get height() {
+        return (this._narrow ? NARROW_HEIGHT : HEIGHT) * this.scale;
     }
 
     /** @param texts {title, method, words, note, tone} of each instance */

@@ -192,6 +192,9 @@ window.pinik = {
     get viewer() {
         return page.show.stage.viewer;
     },
+    get show() {
+        return page.show;
+    },
     get frames() {
         return page.show.stage.frames;
     },

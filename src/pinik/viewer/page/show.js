@@ -3,9 +3,11 @@
 import { Balls } from "pinik/balls.js";
 import { Camera } from "pinik/camera.js";
 import { Captions } from "pinik/captions.js";
+import { Extent } from "pinik/extent.js";
 import { Frame } from "pinik/frame.js";
 import { Instance } from "pinik/instance.js";
 import { Look } from "pinik/look.js";
+import { ballsOnScreen } from "pinik/on_screen.js";
 import { Pointers } from "pinik/pointers.js";
 import { lighten, Shapes } from "pinik/shapes.js";
 import { Sight } from "pinik/sight.js";
@@ -160,7 +162,9 @@ export class Show {
     _findGround() {
         const corners = this.instances[0].robot.corners();
         this.ground = Math.min(...corners.map((corner) => corner.z));
-        this.base = corners.filter((corner) => corner.z < this.ground + BASE * this.robot.size);
+        const standing = new Extent();
+        standing.add(corners.filter((corner) => corner.z < this.ground + BASE * this.robot.size));
+        this.base = standing.points;
         this._moveInstances();
     }
 
@@ -250,19 +254,8 @@ export class Show {
         return this.balls.places[k].position.clone().add(this.offset(instance));
     }
 
-    /** Every visible copy of every ball: {k, instance, at, radius}, in pixels of the canvas. */
+    /** Every visible copy of every ball, as `ballsOnScreen` finds them. */
     ballsOnScreen() {
-        if (!this.state || !this.robot) return [];
-        const { camera, controls } = this.stage.viewer;
-        const pixel =
-            (2 * camera.position.distanceTo(controls.target) * Math.tan((camera.fov * Math.PI) / 360)) /
-            this.stage.height;
-        const radius = this.ballRadius / pixel;
-        return this.instances.slice(0, this.overlaid ? 1 : undefined).flatMap((_, instance) =>
-            this.balls.places.flatMap((_place, k) => {
-                if (this.state.balls[k]?.mode === "off") return [];
-                return [{ k, instance, radius, at: this.stage.project(this.ballInWorld(k, instance)) }];
-            }),
-        );
+        return ballsOnScreen(this);
     }
 }

@@ -12,6 +12,7 @@ export class Sight {
     constructor(show) {
         this._show = show;
         this._extent = new Extent();
+        this._curves = new Extent();
         this._looked = 0;
         this._pending = false;
     }
@@ -29,8 +30,12 @@ export class Sight {
     /** The outermost points that robots have visited, and the balls' curves, in an instance's own world. */
     get visited() {
         const { state } = this._show;
-        const curves = (state?.balls ?? []).filter(({ mode }) => mode !== "off").map(({ curve }) => curve);
-        return [...this._extent.points, ...curves.flatMap(sparse)];
+        if (this._curvesOf !== state) {
+            this._curvesOf = state;
+            this._curves.clear();
+            for (const { mode, curve } of state.balls) if (mode !== "off") this._curves.add(sparse(curve));
+        }
+        return [...this._extent.points, ...this._curves.points];
     }
 
     get pending() {
