@@ -41,6 +41,8 @@ export class Instance {
             looks.includes("transparent") || looks.includes("collisions"),
         );
         this._decor.set(looks, extras);
+        // A stopped session sends no frame that would show it.
+        if (this._points?.length === 3 * this._balls?.length) this._decor.update(this._balls, this._points);
         this._targets.visible = !overlaid || this._index === 0;
     }
 
@@ -104,7 +106,7 @@ export class Instance {
     /** @param places {position: Vector3, quaternion: Quaternion} of each ball */
     update(frame, places) {
         this.robot.update(frame, this._index, this._asked);
-        const points = frame.points(this._index);
+        const points = (this._points = frame.points(this._index));
         this._decor.update(this._balls, points);
         this._sets.forEach(({ ball, gap, trail, mode, free, tolerance }, k) => {
             const { position, quaternion } = places[k];
