@@ -109,6 +109,13 @@ def test_the_presentation_shows_the_stage_alone_and_is_in_the_link(open_panel):
     desk.visit(desk.view, desk.page.url.partition("#")[2], until="window.pinik?.ready")
     desk.expect("start").to_be_hidden()
     assert desk.toasts.count() == 0, "the session was told of the presentation"
+    desk.page.keyboard.press("w")
+    desk.shows("document.fullscreenElement === document.documentElement")
+    desk.page.keyboard.press("w")
+    desk.shows("document.fullscreenElement === null")
+    desk.page.keyboard.press("?")
+    desk.page.keyboard.press("Escape")
+    desk.expect("start").to_be_hidden()
     desk.page.keyboard.press("Escape")
     desk.expect("start").to_be_visible()
     assert "present" not in desk.address()

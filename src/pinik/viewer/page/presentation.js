@@ -9,8 +9,8 @@ export class Presentation {
         byId("present").addEventListener("click", () => this.turn());
         byId("whole-screen").addEventListener("click", () => this.turnWholeScreen());
         byId("whole-screen").hidden = !document.fullscreenEnabled;
-        document.addEventListener("keydown", ({ key, defaultPrevented }) => {
-            if (key === "Escape" && this.on && !defaultPrevented) this.turn(false);
+        document.addEventListener("keydown", ({ key }) => {
+            if (key === "Escape" && !document.querySelector("dialog[open]")) this.turn(false);
         });
         document.addEventListener("fullscreenchange", () => {
             byId("whole-screen").ariaPressed = String(Boolean(document.fullscreenElement));
