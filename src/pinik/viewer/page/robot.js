@@ -73,6 +73,7 @@ export class Robot {
         this.group.updateWorldMatrix(true, true);
         inverse.copy(this.group.matrixWorld).invert();
         const points = this.joints.slice(1).map((joint) => joint.position.clone());
+        if (this._skeleton) points.push(...points.map(({ x, y, z }) => new THREE.Vector3(x, y, z - this._skeleton.depth)));
         for (const link of this._links) {
             for (const mesh of link.children) {
                 const toRobot = inverse.clone().multiply(mesh.matrixWorld);
