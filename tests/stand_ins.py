@@ -36,6 +36,7 @@ GOOD = {
     "iterations": ({"until_reached": False, "at_most": 3}, {"until_reached": "truth", "at_most": "count"}),
     "tolerance": ({"position": 0.01, "orientation": 0.1}, {"position": "number", "orientation": "number"}),
     "run": ({"on": True}, {"on": "truth"}),
+    "look": ({"name": "axes", "on": True}, {"name": "name", "on": "truth"}),
     "step": ({}, {}),
     "reset": ({}, {}),
     "begin_anew": ({}, {}),

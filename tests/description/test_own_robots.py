@@ -164,3 +164,20 @@ def test_elbows_and_knees_bend_only_the_right_way():
             signs = {np.sign(interior(*joint, angle)) for angle in limits[joint[0]]}
             assert len(signs) == 1, joint
             assert abs(interior(*joint, math.radians(straight))) > 155
+
+
+def ends_across(path):
+    """The heights y [mm] of the faces of a mesh that lie across its own y axis, as a segment's ends do."""
+    lines = [line.split() for line in path.read_text().splitlines()]
+    corners = np.array([[float(number) for number in parts[1:]] for parts in lines if parts[0] == "v"])
+    faces = np.array([[int(index) - 1 for index in parts[1:]] for parts in lines if parts[0] == "f"])
+    heights = corners[faces][:, :, 1]
+    return set(heights[np.ptp(heights, axis=1) == 0][:, 0].tolist())
+
+
+@pytest.mark.parametrize("number", range(1, 6))
+def test_the_arms_collars_have_no_two_colours_in_one_plane(number):
+    """Two surfaces in one place flicker."""
+    blue, silver = (ends_across(URDF / "meshes" / "arm" / f"bone{number}_{color}.obj") for color in ("blue", "silver"))
+    assert len(blue) >= 2
+    assert not blue & silver

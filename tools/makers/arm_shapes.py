@@ -53,9 +53,10 @@ def segment(length: float, near: tuple[float, float], far: tuple[float, float]) 
     """An arm's segment from its own joint's fork (about z) to the next joint's (about x); ends are (joint, rim)."""
     (radius, wide), (next_radius, narrow) = near, far
     start, end = FOOT * radius, length - FOOT * next_radius
+    first, last = start + 0.04 * wide, end - 0.06 * narrow  # inside the flanges: no two faces lie in one place
     body = lathe([
-        (0, start), (0.90 * wide, start), (0.90 * wide, start + 0.14 * wide), (0.97 * wide, start + 0.19 * wide),
-        (0.97 * narrow, end - 0.19 * narrow), (0.90 * narrow, end - 0.14 * narrow), (0.90 * narrow, end), (0, end),
+        (0, first), (0.90 * wide, first), (0.90 * wide, start + 0.14 * wide), (0.97 * wide, start + 0.19 * wide),
+        (0.97 * narrow, end - 0.19 * narrow), (0.90 * narrow, end - 0.14 * narrow), (0.90 * narrow, last), (0, last),
     ]).facing("y")  # fmt: skip
     flanges = [_flange(wide, start, 0.10 * wide), _flange(narrow, end, -0.10 * narrow)]
     forks = [fork("z", 1, radius), fork("x", -1, next_radius).moved((0, length, 0))]

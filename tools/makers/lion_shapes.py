@@ -102,7 +102,7 @@ SKULL = blend(
     limb((1.30, 0, 1.150), (1.465, 0, 1.085), 0.066, 0.051),  # bridge of the nose
     ellipsoid((1.39, 0, 1.060), (0.115, 0.082, 0.070)),  # muzzle
     *both(lambda s: ellipsoid((1.27, s * 0.080, 1.070), (0.085, 0.065, 0.082))),  # cheekbones
-    *both(lambda s: limb((1.28, s * 0.050, 1.186), (1.350, s * 0.064, 1.160), 0.034, 0.018)),  # brows
+    *both(lambda s: limb((1.275, s * 0.066, 1.190), (1.355, s * 0.044, 1.160), 0.034, 0.018)),  # brows
 )
 MOUTH = half_space((-0.06, 0, 1), 1.008 - 0.06 * 1.2)  # below it is the jaw's
 LIPS: Field = lambda x, y, z: np.maximum(MOUTH(x, y, z) - 0.001, 1.325 - x)  # noqa: E731
@@ -120,7 +120,7 @@ def head() -> Surfaces:
     eye = surface_point(solid, (1.27, 0.038, 1.128), (0.975, 0.22, 0.0))
     liner = blend(
         1e-3,
-        *both(lambda s: ellipsoid((eye[0], s * eye[1], eye[2]), (0.05, 0.027, 0.0165), (s * 16, 0, s * 24))),
+        *both(lambda s: ellipsoid((eye[0], s * eye[1], eye[2]), (0.050, 0.030, 0.0225), (s * 10, 14, s * 24))),
         *both(lambda s: limb((eye[0] + 0.02, s * (eye[1] - 0.026), eye[2] - 0.008),
                              (eye[0] + 0.06, s * (eye[1] - 0.036), eye[2] - 0.032), 0.007, 0.003)),
     )  # fmt: skip
@@ -129,15 +129,15 @@ def head() -> Surfaces:
     surfaces = painted(skin, "tawny", black=liner.field, nose=LIPS, pale=pale.field)
 
     normal = outward(solid, eye)
-    gaze = (normal[0] + 0.25, normal[1], normal[2])
+    gaze = (normal[0] + 0.5, normal[1], normal[2])
     length = math.sqrt(sum(c * c for c in gaze))
 
     def on_eye(s: float, radius: float, towards_gaze: float) -> Mesh:
-        at = [e - 0.0185 * n + (0.0030 + towards_gaze) * g / length for e, n, g in zip(eye, normal, gaze, strict=True)]
+        at = [e - 0.0232 * n + (0.0030 + towards_gaze) * g / length for e, n, g in zip(eye, normal, gaze, strict=True)]
         return mesh(ball((at[0], s * at[1], at[2]), radius), radius / 2.6)
 
-    surfaces["amber"] = joined(on_eye(s, 0.0240, 0.0) for s in (1, -1))
-    surfaces["black"] = joined([surfaces["black"], *(on_eye(s, 0.0110, 0.0146) for s in (1, -1))])
+    surfaces["amber"] = joined(on_eye(s, 0.0300, 0.0) for s in (1, -1))
+    surfaces["black"] = joined([surfaces["black"], *(on_eye(s, 0.0140, 0.0182) for s in (1, -1))])
     tip = blend(
         0.014,
         ellipsoid((1.500, 0, 1.098), (0.024, 0.041, 0.019), (0, 12, 0)),
@@ -169,13 +169,12 @@ def _fang(root: Point, along: Point, radius: float) -> Mesh:
 def jaw() -> Surfaces:
     bone = blend(
         0.02,
-        *both(lambda s: limb((1.21, s * 0.075, 1.022), (1.42, s * 0.034, 1.004), 0.038, 0.030)),
+        *both(lambda s: limb((1.21, s * 0.078, 1.022), (1.42, s * 0.040, 1.004), 0.042, 0.036)),
         ellipsoid((1.440, 0, 1.000), (0.052, 0.047, 0.043)),  # chin
         ellipsoid((1.32, 0, 0.998), (0.12, 0.060, 0.034)),
-        ellipsoid((1.425, 0, 0.964), (0.024, 0.022, 0.020), (0, 15, 0)),  # a short beard
     )
     solid = carve(bone, lambda x, y, z: MOUTH(x, y, z) - 0.002, width=0.006)
-    chin = ellipsoid((1.44, 0, 0.975), (0.11, 0.08, 0.055)).field
+    chin = ellipsoid((1.475, 0, 0.985), (0.062, 0.055, 0.045)).field
     surfaces = painted(mesh(solid, HEAD_CELL), "tawny", pale=chin)
     surfaces["mouth"] = mesh(ellipsoid((1.34, 0, 1.005), (0.105, 0.032, 0.026), (0, 1, 0)), 0.0145)
     surfaces["white"] = joined(_fang((1.464, s * 0.022, 0.992), (0.004, s * 0.002, 0.034), 0.008) for s in (1, -1))

@@ -25,7 +25,7 @@ from ..model.robot_model import RobotModel
 from . import triangles
 from .mesh_files import MeshFiles, flaw_of, placement_of
 
-__all__ = ["Color", "Shape", "load_shapes"]
+__all__ = ["Color", "Shape", "load_collision_shapes", "load_shapes"]
 
 GREY: Color = (0.7, 0.7, 0.7, 1.0)
 
@@ -81,24 +81,38 @@ def load_shapes(
         )
     known = isinstance(robot_or_urdf, RobotModel)
     warnings = [] if known else [flaw for flaw in description.warnings if flaw.code == "dropped-shape"]
-    shapes: list[Shape] = []
-    files = MeshFiles(Surroundings(description.path, folders, allow_outside))
-    for link in description.link_tags:
-        for visual in link.visuals:
-            try:
-                parts = _parts(visual, files)
-            except Exception as fault:  # a shape never stops kinematics, and trimesh may raise anything
-                warnings.append(flaw_of(f"link {link.name!r}", visual.line, fault))
-                continue
-            for part, (mesh, own) in enumerate(parts):
-                name = f"{link.name}/{visual.index}" + (f"/{part}" if len(parts) > 1 else "")
-                shapes.append(Shape(link.name, name, placement_of(visual), mesh, visual.color or own or GREY))
+    tags = [(link.name, visual) for link in description.link_tags for visual in link.visuals]
+    shapes, faults = _read(tags, MeshFiles(Surroundings(description.path, folders, allow_outside)))
+    warnings += faults
     return shapes, [flaw.of_expansion() for flaw in warnings] if description.expanded else warnings
 
 
-def _parts(visual: ShapeTag, files: MeshFiles) -> list[triangles.Part]:
-    """The meshes of one visual shape, each with its own colour if it has one."""
-    match visual.kind, visual.size:
+def load_collision_shapes(robot: RobotModel) -> tuple[list[Shape], list[Flaw]]:
+    """Read the collision shapes of a robot: in the order of the file, and one warning for each that cannot be read."""
+    tags = [(link.name, tag) for link in robot.description.link_tags for tag in link.collisions]
+    shapes, warnings = _read(tags, MeshFiles(robot.surroundings))
+    return shapes, [flaw.of_expansion() for flaw in warnings] if robot.description.expanded else warnings
+
+
+def _read(tags: Iterable[tuple[str, ShapeTag]], files: MeshFiles) -> tuple[list[Shape], list[Flaw]]:
+    """Read shapes, each given with the name of its link."""
+    shapes: list[Shape] = []
+    warnings = []
+    for link, tag in tags:
+        try:
+            parts = _parts(tag, files)
+        except Exception as fault:  # a shape never stops kinematics, and trimesh may raise anything
+            warnings.append(flaw_of(f"link {link!r}", tag.line, fault))
+            continue
+        for part, (mesh, own) in enumerate(parts):
+            name = f"{link}/{tag.index}" + (f"/{part}" if len(parts) > 1 else "")
+            shapes.append(Shape(link, name, placement_of(tag), mesh, tag.color or own or GREY))
+    return shapes, warnings
+
+
+def _parts(tag: ShapeTag, files: MeshFiles) -> list[triangles.Part]:
+    """The meshes of one shape, each with its own colour if it has one."""
+    match tag.kind, tag.size:
         case "box", size:
             mesh = triangles.box(np.array(size))
         case "sphere", (radius,):
@@ -108,6 +122,6 @@ def _parts(visual: ShapeTag, files: MeshFiles) -> list[triangles.Part]:
         case "capsule", (radius, length):
             mesh = triangles.capsule(radius, length)
         case _:
-            return files.parts(visual.filename, np.array(visual.size))
+            return files.parts(tag.filename, np.array(tag.size))
     files.count([mesh])
     return [(mesh, None)]

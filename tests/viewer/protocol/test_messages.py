@@ -294,6 +294,8 @@ def test_what_all_instances_share(arm):
     assert not after(arm, "limits", on=False).settings.limits
     assert not after(arm, "polish", on=False).settings.polish
     assert after(arm, "polish", on=True).settings.polish
+    assert list(after(arm, "look", name="reach", on=True).looks) == ["reach"]
+    assert list(after(arm, "look", name="reach", on=False).looks) == []
     settings = after(arm, "iterations", until_reached=False, at_most=7).settings
     assert (settings.until_reached, settings.at_most) == (False, 7)
     shown = after(arm, "tolerance", position=0.25, orientation=1)

@@ -6,6 +6,7 @@ import json
 import math
 
 import numpy as np
+import pinocchio
 import pytest
 
 import by_hand
@@ -22,6 +23,8 @@ ROBOTS = [
     ("hector", "fixed"),  # nothing moves: nq = 0
     (by_hand.ZOO, "fixed"),
 ]
+NO_AXIS = {"axis": None, "follows": None, "multiplier": 1.0}
+ABOUT_Z = {"axis": [0, 0, 1], "follows": None, "multiplier": 1.0}
 
 
 def matrix(seven):
@@ -81,6 +84,29 @@ def test_with_every_angle_zero_joints_hang_together_by_their_placements(name):
         assert each["parent"] < index
 
 
+@pytest.mark.parametrize(("source", "root"), ROBOTS)
+def test_axes_and_leaders_move_the_joints_as_pinocchio_moves_them(source, root):
+    model = load_quietly(source, root=root)
+    joints = robot_message(model, 1)["joints"]
+    placements, step = JointPlacements(model), 1e-6
+    q = model.random(7)
+    for j, each in enumerate(joints):
+        known = next((one for one in model.joints if one.id == j), None)
+        if each["axis"] is None:
+            assert known is None or known.kind in ("floating", "planar")
+            continue
+        moves = each["follows"] or j
+        (leader,) = (one for one in model.joints if one.id == moves)
+        tangent = np.zeros(model.model.nv)
+        tangent[leader.idx_v] = step
+        before, after = (placements.at(at).copy() for at in (q, pinocchio.integrate(model.model, q, tangent)))
+        own = [np.linalg.inv(matrix(at[each["parent"]])) @ matrix(at[j]) for at in (before, after)]
+        change = np.linalg.inv(own[0]) @ own[1]
+        turned = np.array([change[2, 1], change[0, 2], change[1, 0]])
+        moved = change[:3, 3] if each["kind"] == "prismatic" else turned
+        np.testing.assert_allclose(moved / step, each["multiplier"] * np.array(each["axis"]), atol=1e-5)
+
+
 def test_the_message_of_a_small_robot():
     message = robot_message(pinik.load("two_link"), 4)
     reach = pytest.approx([-math.pi, math.pi])
@@ -91,9 +117,9 @@ def test_the_message_of_a_small_robot():
         "name": "two_link",
         "root": "fixed",
         "joints": [
-            {**fixed, "name": "universe", "parent": 0, "kind": "fixed", "placement": [0, 0, 0, 0, 0, 0, 1]},
-            {**hinge, "name": "joint1", "parent": 0, "kind": "revolute", "placement": [0, 0, 0, 0, 0, 0, 1]},
-            {**hinge, "name": "joint2", "parent": 1, "kind": "revolute", "placement": [0.5, 0, 0, 0, 0, 0, 1]},
+            {"name": "universe", "parent": 0, "kind": "fixed", "placement": [0, 0, 0, 0, 0, 0, 1]} | NO_AXIS | fixed,
+            {"name": "joint1", "parent": 0, "kind": "revolute", "placement": [0, 0, 0, 0, 0, 0, 1]} | ABOUT_Z | hinge,
+            {"name": "joint2", "parent": 1, "kind": "revolute", "placement": [0.5, 0, 0, 0, 0, 0, 1]} | ABOUT_Z | hinge,
         ],
         "links": [
             {"name": "base", "joint": 0, "placement": [0, 0, 0, 0, 0, 0, 1]},

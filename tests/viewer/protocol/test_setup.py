@@ -16,6 +16,7 @@ from hypothesis import strategies as st
 import pinik
 from pinik.viewer.protocol.messages import apply
 from pinik.viewer.protocol.setup import apply_setup, read_setup, write_setup
+from pinik.viewer.simulation.looks import LOOKS
 from pinik.viewer.simulation.session import Session
 from robots import load_quietly
 from stand_ins import Clock, snapshot
@@ -50,6 +51,7 @@ MESSAGES = st.one_of(
     ),
     st.builds(lambda on: {"type": "limits", "on": on}, st.booleans()),
     st.builds(lambda on: {"type": "polish", "on": on}, st.booleans()),
+    st.builds(lambda name, on: {"type": "look", "name": name, "on": on}, st.sampled_from(list(LOOKS)), st.booleans()),
     st.builds(lambda m: {"type": "motion", "motion": m}, st.sampled_from(["hand", "curve", "random"])),
     st.builds(lambda c: {"type": "curve", "curve": c}, st.sampled_from(["circle", "square"])),
     st.builds(lambda v: {"type": "speed", "value": v}, st.floats(0.1, 10)),
@@ -154,6 +156,8 @@ def test_a_set_up_says_what_differs_from_the_beginning_in_plain_words(arm):
     shown.change_settings(limits=False)
     shown.apply_settings(shown.settings.__class__(limits=False, until_reached=False, at_most=9))
     shown.change_settings(polish=True)
+    shown.looks.switch("reach", True)
+    shown.looks.switch("axes", True)
     shown.change_settings(tolerance=pinik.Tolerance(0.001, 0.01))
     shown.balls[0].orient(True, [0.1, 0.2, 0.3])
     shown.scores.cover("all")
@@ -171,6 +175,7 @@ def test_a_set_up_says_what_differs_from_the_beginning_in_plain_words(arm):
         "speed": "2.5",
         "limits": "off",
         "polish": "on",
+        "looks": "axes,reach",
         "iterations": "9",
         "tolerance": "0.001,0.01",
         "statistics": "all",
@@ -288,6 +293,7 @@ def test_parameters_that_are_not_said_are_the_defaults():
         ("limits=banana", "limits must be on or off; got 'banana'"),
         ("limits=", "limits must be on or off"),
         ("polish=1", "polish must be on or off; got '1'"),
+        ("looks=axes,x-ray", "no look 'x-ray'"),
         ("run=yes", "run must be on or off"),
         ("iterations=0", "number from 1 to 1000"),
         ("iterations=many", "iterations must be a whole number"),

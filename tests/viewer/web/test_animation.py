@@ -66,6 +66,7 @@ def page(tmp_path):
         "player.html": PLAYER_HTML,
         "player.js": PLAYER_JS,
         "words.js": WORDS_JS,
+        "stage.css": ".stage { color: red }",
         "style.css": "body > p::after { content: '{{meshcat}}'; }",
         "index.html": "<p>another page</p>",
     }.items():
@@ -129,7 +130,8 @@ def test_the_page_holds_all_that_is_played(two_link, page):
         "frames_per_second": 30,
     }
     assert content(html, "title") == f"{AWKWARD} – pinik"
-    assert content(html, "style") == (page / "style.css").read_text()
+    sheets = sorted(page.glob("*.css"))
+    assert content(html, "style") == "".join(sheet.read_text() for sheet in sheets)
     modules = json.loads(content(html, "script", type="importmap"))["imports"]
     kind = "data:text/javascript;base64,"
     assert {name: base64.b64decode(url.removeprefix(kind)).decode() for name, url in modules.items()} == {

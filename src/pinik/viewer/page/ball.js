@@ -6,6 +6,7 @@ import { THREE } from "pinik/three.js";
 const SPHERE = new THREE.SphereGeometry(1, 40, 28);
 const NEEDLE = new THREE.ConeGeometry(0.22, 2, 20).rotateX(-Math.PI / 2).translate(0, 0, 1); // tip at the origin
 const HEAD = new THREE.SphereGeometry(0.8, 32, 20).translate(0, 0, 2.3);
+const HIDDEN = 0.22; // the opacity of the ring where parts of the robot hide it
 const AXIS = new THREE.CylinderGeometry(0.13, 0.13, 3, 12).translate(0, 1.5, 0);
 const ARROW = new THREE.ConeGeometry(0.34, 0.8, 16).translate(0, 3.2, 0);
 // The arms are drawn along y; these rotations about z and x [rad] turn two of them to x and z.
@@ -28,9 +29,9 @@ export class Ball {
         this._pin = new THREE.Group();
         this._pin.add(mesh(NEEDLE, this._pinSkin), mesh(HEAD, this._pinSkin));
         this._triad = triad();
-        this._halo = halo();
+        [this._halo, this._glow] = [halo(true), halo(false)];
         this._freedom = new Freedom();
-        this.group.add(this._sphere, this._pin, this._triad, this._halo, this._freedom.group);
+        this.group.add(this._sphere, this._pin, this._triad, this._halo, this._glow, this._freedom.group);
     }
 
     /** @param ball from the state; `selected` and `near` (under the pointer) change its look */
@@ -40,15 +41,17 @@ export class Ball {
         this._pin.visible = mode === "pinned";
         this._triad.visible = oriented;
         this._freedom.show(free);
-        this._halo.visible = selected || near;
+        this._halo.visible = this._glow.visible = selected || near;
         this._halo.material.opacity = near ? 1 : 0.75;
+        this._glow.material.opacity = HIDDEN;
     }
 
     paint(theme) {
         this._skin.color.set(theme.color("ball")).convertSRGBToLinear();
         this._freedom.paint(theme);
         this._pinSkin.color.set(theme.color("pin")).convertSRGBToLinear();
-        this._halo.material.color.set(theme.color("halo")).convertSRGBToLinear();
+        for (const ring of [this._halo, this._glow])
+            ring.material.color.set(theme.color("halo")).convertSRGBToLinear();
     }
 
     place(x, y, z, quaternion) {
@@ -61,7 +64,7 @@ export class Ball {
         this._freedom.dispose();
         this._skin.dispose();
         this._pinSkin.dispose();
-        this._halo.material.dispose();
+        for (const ring of [this._halo, this._glow]) ring.material.dispose();
     }
 }
 
@@ -84,7 +87,8 @@ function triad() {
 
 let ringMap = null;
 
-function halo() {
+/** The ring around a ball; parts of the robot hide it, except for the one that is not `deep`. */
+function halo(deep) {
     if (!ringMap) {
         const canvas = Object.assign(document.createElement("canvas"), { width: 128, height: 128 });
         const pen = canvas.getContext("2d");
@@ -96,7 +100,7 @@ function halo() {
         ringMap = new THREE.CanvasTexture(canvas);
     }
     const sprite = new THREE.Sprite(
-        new THREE.SpriteMaterial({ map: ringMap, depthTest: false, depthWrite: false, transparent: true }),
+        new THREE.SpriteMaterial({ map: ringMap, depthTest: deep, depthWrite: false, transparent: true }),
     );
     sprite.scale.setScalar(3.4);
     sprite.renderOrder = 6;

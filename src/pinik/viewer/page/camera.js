@@ -6,13 +6,16 @@ import { THREE } from "pinik/three.js";
 
 export const PRESETS = {
     iso: { title: "Angle", azimuth: -0.6, elevation: 0.28 },
-    front: { title: "Front", azimuth: 0, elevation: 0.12 },
-    side: { title: "Side", azimuth: -Math.PI / 2, elevation: 0.12 },
+    // Two rows need a camera that looks down on them, and would be no view from the front or the side.
+    front: { title: "Front", azimuth: 0, elevation: 0.12, oneRow: true },
+    side: { title: "Side", azimuth: -Math.PI / 2, elevation: 0.12, oneRow: true },
     top: { title: "Top", azimuth: 0, elevation: Math.PI / 2 - 0.01 },
 };
 
 const GLIDE = 480; // [ms]
-const MARGIN = { left: 20, right: 20, top: 52, bottom: 64 }; // [px] for buttons and labels
+const DRAG = 4; // [px] that a pressed pointer moves before it counts as a drag
+const SIDES = 16; // [px] left and right of the robots
+const BUTTONS = 48; // [px] for the buttons at the upper edge
 
 export class Camera extends EventTarget {
     constructor(stage) {
@@ -22,24 +25,45 @@ export class Camera extends EventTarget {
         this.preset = "iso";
         this.moved = false;
         this.offsets = [];
+        this.captionHeight = 44; // [px]
+        this.together = false; // whether all instances stand in one place
         this._calm = matchMedia("(prefers-reduced-motion: reduce)");
-        stage.viewer.controls.addEventListener("start", () => {
-            this._glide = null;
-            this.moved = true;
-        });
+        this._watchHand(stage.canvas);
         stage.onTick((now) => this._advance(now));
     }
 
-    get _lens() {
+    /** Notice a drag or a zoom by hand, after which the camera stays where it was put. A click alone is neither. */
+    _watchHand(canvas) {
+        let pressed = null;
+        canvas.addEventListener("pointerdown", ({ clientX: x, clientY: y }) => {
+            pressed = { x, y };
+        });
+        addEventListener("pointermove", ({ clientX: x, clientY: y, buttons }) => {
+            if (!buttons) pressed = null;
+            if (pressed && Math.hypot(x - pressed.x, y - pressed.y) > DRAG) this._take();
+        });
+        canvas.addEventListener("wheel", () => this._take());
+    }
+
+    _take() {
+        if (this.moved) return;
+        this._glide = null;
+        this.moved = true;
+        this.dispatchEvent(new Event("taken"));
+    }
+
+    /** Tangents of the half angles that the robots may fill; captions hang below them, and above a second row. */
+    _lens(rows) {
         const { width, height, viewer } = this._stage;
         const half = Math.tan((viewer.camera.fov * Math.PI) / 360);
         const scale = (2 * half) / height; // tangent per pixel
-        const part = (size, margin) => Math.max(size / 2 - Math.min(margin, size / 5), 10) * scale;
+        const part = (size, margin) => Math.max(size / 2 - Math.min(margin, size / 4), 10) * scale;
+        const caption = this.captionHeight + 14;
         return {
-            left: part(width, MARGIN.left),
-            right: part(width, MARGIN.right),
-            top: part(height, MARGIN.top),
-            bottom: part(height, MARGIN.bottom),
+            left: part(width, SIDES),
+            right: part(width, SIDES),
+            top: part(height, BUTTONS + (rows > 1 ? caption : 0)),
+            bottom: part(height, caption),
         };
     }
 
@@ -48,7 +72,7 @@ export class Camera extends EventTarget {
         if (!points.length || !this._stage.width) return;
         this.preset = preset;
         this.moved = false;
-        const arranged = arrange(points, count, PRESETS[preset], this._lens);
+        const arranged = arrange(points, this.together ? 1 : count, PRESETS[preset], (rows) => this._lens(rows));
         const sphere = new THREE.Sphere().setFromPoints(arranged.everything);
         this._stage.lights.aim(sphere.center, 1.05 * sphere.radius, arranged.view.azimuth);
         this.sphere = sphere;
@@ -56,7 +80,7 @@ export class Camera extends EventTarget {
             ...arranged.view,
             target: arranged.camera.target,
             distance: arranged.camera.distance,
-            offsets: arranged.offsets,
+            offsets: this.together ? Array(count).fill(arranged.offsets[0]) : arranged.offsets,
         };
         const began = smoothly && !this._calm.matches && this.offsets.length === count ? performance.now() : -Infinity;
         this._glide = { from: this._now(), to: goal, began };

@@ -1,17 +1,18 @@
-/** The texts and positions of the labels below the robots. */
+/** The texts of the captions, and what they must not cover. */
 
 import { Labels } from "pinik/labels.js";
 import { tone, verdict } from "pinik/words.js";
 
+const AWAITING = "loading its shapes …";
 const WORDS = 120; // [ms] between two changes of the texts
-const BELOW = 8; // [px] below the lowest point of the base
 
 export class Captions {
-    constructor(element, stage) {
+    /** @param show the scene */
+    constructor(element, show) {
         this._labels = new Labels(element);
-        this._stage = stage;
-        this._bases = [];
+        this._show = show;
         this._said = 0;
+        this._toolbar = element.parentElement.querySelector(".views");
     }
 
     setHello(hello) {
@@ -20,51 +21,81 @@ export class Captions {
 
     /** Show the results of a state, so that captions, cards and table say the same at any moment. */
     tell(instances, state) {
-        if (this._told === state && this._count === instances) return;
-        Object.assign(this, { _told: state, _count: instances });
-        const texts = state.instances.slice(0, instances).map((instance) => {
+        const { awaiting } = this._show;
+        if (this._told === state && this._count === instances && this._awaited === awaiting) return;
+        Object.assign(this, { _told: state, _count: instances, _awaited: awaiting });
+        const texts = state.instances.slice(0, instances).map((instance, i) => {
             const { title, method, status, position_error, orientation_error } = instance;
-            const words = verdict(status, position_error ?? NaN, orientation_error ?? NaN, state);
-            return { title, method, words, tone: tone(status) };
+            const led = state.led?.includes(i);
+            const words = led ? "moved by hand" : verdict(status, position_error ?? NaN, orientation_error ?? NaN, state);
+            const note = this._show.instances[i]?.note ?? "";
+            return { title, method, words: awaiting ? AWAITING : words, tone: tone(status), note };
         });
         this._labels.set(texts);
         this.place();
+    }
+
+    /** Read how large the captions are; returns their height [px]. */
+    measure() {
+        this._labels.measure();
+        return this._labels.height;
     }
 
     /** Show the results of a recorded frame, but not more often than one can read. */
     say(now, frame, state) {
         if (now - this._said < WORDS) return;
         this._said = now;
+        const { awaiting, instances } = this._show;
         const texts = state.instances.slice(0, frame.instances).map(({ title, method }, i) => {
             const { status, positionError, orientationError } = frame.figures(i);
             const name = this._statuses[status];
-            return {
-                title,
-                method,
-                words: state.led?.includes(i) ? "moved by hand" : verdict(name, positionError, orientationError, state),
-                tone: tone(name),
-            };
+            const led = state.led?.includes(i);
+            const words = led ? "moved by hand" : verdict(name, positionError, orientationError, state);
+            return { title, method, words: awaiting ? AWAITING : words, tone: tone(name), note: instances[i]?.note ?? "" };
         });
         this._labels.set(texts);
         this.place();
     }
 
-    /** @param bases for each instance, the points that its robot stands on, in the scene; Vector3s */
-    hang(bases) {
-        this._bases = bases;
+    place() {
+        const { stage, instances } = this._show;
+        const room = { width: stage.width, height: stage.height };
+        const spots = instances.map((_, i) => this._spot(i)).filter(Boolean);
+        if (spots.length !== instances.length) return;
+        if (this._show.overlaid) {
+            this._labels.stack(spots, room);
+            return;
+        }
+        const balls = this._show.ballsOnScreen().map(({ at, radius }) => ({
+            ...{ x: at.x - radius, y: at.y - radius },
+            ...{ w: 2 * radius, h: 2 * radius },
+        }));
+        this._labels.place(spots, balls, room, this._taken());
     }
 
-    place() {
-        const anchors = this._bases.map((points) => {
-            const seen = points.map((point) => this._stage.project(point));
-            const xs = seen.map(({ x }) => x);
-            const lowest = Math.max(...seen.map(({ y }) => y));
-            return {
-                x: (Math.min(...xs) + Math.max(...xs)) / 2,
-                y: lowest + BELOW,
-                behind: seen.some(({ behind }) => behind),
-            };
-        });
-        if (anchors.length) this._labels.place(anchors, this._stage.width, this._stage.height);
+    /** The rectangle that an instance has covered so far, and the middle of what it stands on [px]. */
+    _spot(i) {
+        const { stage, visited, base } = this._show;
+        const offset = this._show.offset(i);
+        const seen = visited.map((point) => stage.project(point.clone().add(offset)));
+        const standing = base.map((point) => stage.project(point.clone().add(offset)));
+        if (!seen.length || !standing.length) return null;
+        const box = around(seen);
+        const { x, y, w, h } = around(standing);
+        const behind = [...seen, ...standing].some((point) => point.behind);
+        return { box, foot: { x: x + w / 2, y: y + h }, behind };
     }
+
+    _taken() {
+        if (!this._toolbar) return [];
+        const stage = this._show.stage.element.getBoundingClientRect();
+        const { left, top, width: w, height: h } = this._toolbar.getBoundingClientRect();
+        return [{ x: left - stage.left, y: top - stage.top, w, h }];
+    }
+}
+
+function around(points) {
+    const [xs, ys] = [points.map(({ x }) => x), points.map(({ y }) => y)];
+    const [x, y] = [Math.min(...xs), Math.min(...ys)];
+    return { x, y, w: Math.max(...xs) - x, h: Math.max(...ys) - y };
 }

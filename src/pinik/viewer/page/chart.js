@@ -39,7 +39,7 @@ export class Chart {
     _begin() {
         const { clientWidth: width, clientHeight: height } = this._canvas;
         if (!width || !height) return null;
-        const ratio = devicePixelRatio;
+        const ratio = devicePixelRatio * (this._canvas.currentCSSZoom ?? 1);
         const [w, h] = [Math.round(width * ratio), Math.round(height * ratio)];
         if (this._canvas.width !== w || this._canvas.height !== h) Object.assign(this._canvas, { width: w, height: h });
         Object.assign(this, { _width: width, _height: height });

@@ -1,9 +1,12 @@
-/** The extent of all points that the robots have visited: the farthest one in each of a few directions. */
+/** The extent of points: the farthest one in each of a few directions. */
+
+import { THREE } from "pinik/three.js";
 
 const DIRECTIONS = [-1, 0, 1]
     .flatMap((x) => [-1, 0, 1].flatMap((y) => [-1, 0, 1].map((z) => [x, y, z])))
     .filter((way) => way.some(Boolean));
 
+/** The extent of all points that the robots have visited. */
 export class Extent {
     constructor() {
         this.clear();
@@ -24,6 +27,28 @@ export class Extent {
     }
 
     get points() {
-        return this._farthest.flatMap(({ point }) => point ?? []);
+        return [...new Set(this._farthest.flatMap(({ point }) => point ?? []))];
     }
+}
+
+const kept = new WeakMap();
+
+/** The outermost vertices of a geometry: Vector3s, found once and then kept. */
+export function outermost(geometry) {
+    if (!kept.has(geometry)) {
+        const { position } = geometry.attributes;
+        const points = DIRECTIONS.map(([x, y, z]) => {
+            let [best, most] = [0, -Infinity];
+            for (let k = 0; k < position.count; k++) {
+                const along = x * position.getX(k) + y * position.getY(k) + z * position.getZ(k);
+                if (along > most) [best, most] = [k, along];
+            }
+            return best;
+        });
+        kept.set(
+            geometry,
+            [...new Set(points)].map((k) => new THREE.Vector3().fromBufferAttribute(position, k)),
+        );
+    }
+    return kept.get(geometry);
 }

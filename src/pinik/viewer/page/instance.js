@@ -1,6 +1,7 @@
 /** One of the robots side by side, with its own copies of the balls and curves and its effectors' trails. */
 
 import { Ball } from "pinik/ball.js";
+import { Decor } from "pinik/decor.js";
 import { askedJoints } from "pinik/limit_marks.js";
 import { Ribbon } from "pinik/ribbon.js";
 import { Robot } from "pinik/robot.js";
@@ -12,6 +13,8 @@ const CURVE_POINTS = 129;
 export class Instance {
     constructor(scene, index, theme) {
         this.group = new THREE.Group();
+        this._targets = new THREE.Group(); // balls and curves, which robots in one place share
+        this.group.add(this._targets);
         this._index = index;
         this._theme = theme;
         this._sets = [];
@@ -22,21 +25,41 @@ export class Instance {
 
     /** Show another robot, or the same one once its shapes have arrived. */
     setRobot(robot, parts, fine) {
+        this._decor?.dispose();
         this.robot?.dispose();
         this.robot = new Robot(robot, parts, this._theme.color(`instance-${this._index}`));
         this.robot.refine(fine);
         this._message = robot;
         this.group.add(this.robot.group);
+        this._decor = new Decor(robot, this.robot, this._theme.color(`instance-${this._index}`));
+    }
+
+    /** Show the looks that are on; `overlaid` if all instances stand in one place. */
+    setLook(looks, extras, overlaid) {
+        this.robot.look(
+            overlaid ? this._theme.color(`instance-${this._index}`) : null,
+            looks.includes("transparent") || looks.includes("collisions"),
+        );
+        this._decor.set(looks, extras);
+        // A stopped session sends no frame that would show it.
+        if (this._points?.length === 3 * this._balls?.length) this._decor.update(this._balls, this._points);
+        this._targets.visible = !overlaid || this._index === 0;
+    }
+
+    /** What its caption says besides the result. */
+    get note() {
+        return this._decor?.note ?? "";
     }
 
     /** Show the balls of a state. */
     setState(state, radius, selected, near) {
         const { balls } = state;
+        this._balls = balls;
         this._asked = askedJoints(this._message, state);
         if (this._sets.length !== balls.length || this._radius !== radius) {
             this._clearBalls();
             this._radius = radius;
-            this._sets = balls.map(() => this._makeSet(radius));
+            this._sets = balls.map(() => this._makeSet(radius, balls.length));
             this.paint();
         }
         balls.forEach((ball, k) => {
@@ -49,15 +72,16 @@ export class Instance {
         });
     }
 
-    _makeSet(radius) {
+    _makeSet(radius, count) {
         const set = {
             ball: new Ball(radius),
             curve: new Ribbon({ capacity: CURVE_POINTS, width: 2.6, opacity: 0.75 }),
             gap: new Ribbon({ capacity: 2, width: 2.2, opacity: 0.8 }),
-            trail: new Trail(),
+            trail: new Trail(count),
             laid: "",
         };
-        this.group.add(set.ball.group, set.curve.mesh, set.gap.mesh, set.trail.mesh);
+        this._targets.add(set.ball.group, set.curve.mesh);
+        this.group.add(set.gap.mesh, set.trail.mesh);
         return set;
     }
 
@@ -82,7 +106,8 @@ export class Instance {
     /** @param places {position: Vector3, quaternion: Quaternion} of each ball */
     update(frame, places) {
         this.robot.update(frame, this._index, this._asked);
-        const points = frame.points(this._index);
+        const points = (this._points = frame.points(this._index));
+        this._decor.update(this._balls, points);
         this._sets.forEach(({ ball, gap, trail, mode, free, tolerance }, k) => {
             const { position, quaternion } = places[k];
             const [x, y, z] = points.subarray(3 * k, 3 * k + 3);
@@ -123,6 +148,7 @@ export class Instance {
 
     dispose() {
         this._clearBalls();
+        this._decor?.dispose();
         this.robot?.dispose();
         this.group.parent.remove(this.group);
     }

@@ -1,68 +1,129 @@
-/** The labels below the robots: method and result. They never overlap. */
+/** The captions of the robots: method and result. They never overlap each other, and cover as little as they can. */
 
+import { beside, shared } from "pinik/beside.js";
 import { make, say } from "pinik/elements.js";
 
 const GAP = 6; // [px]
 const NARROW = 165; // [px] a label with less room than this shows the method's short name
+const WIDEST = 230; // [px]
+const [HEIGHT, NARROW_HEIGHT] = [44, 34]; // [px]
+const LEAST = 84; // [px]
+const WEIGHTS = { caption: 1000, ball: 4 }; // of covering other captions and balls, compared with robots
 
 export class Labels {
     constructor(element) {
         this._element = element;
         this._chips = [];
+        this._ways = [];
+        this.measure();
     }
 
-    /** @param texts {title, method, words, tone} of each instance */
+    /** Read how large the captions are, which depends on the size of the page. */
+    measure() {
+        this.scale = Number(getComputedStyle(this._element).getPropertyValue("--caption-scale")) || 1;
+    }
+
+    /** The height of a caption [px]. */
+    get height() {
+        return (this._narrow ? NARROW_HEIGHT : HEIGHT) * this.scale;
+    }
+
+    /** @param texts {title, method, words, note, tone} of each instance */
     set(texts) {
         while (this._chips.length < texts.length) this._chips.push(this._make(this._chips.length));
         while (this._chips.length > texts.length) this._chips.pop().chip.remove();
-        texts.forEach(({ title, method, words, tone }, i) => {
-            const { chip, name, state } = this._chips[i];
+        texts.forEach(({ title, method, words, note, tone }, i) => {
+            const { chip, name, state, extra } = this._chips[i];
             say(name, this._narrow ? method : title);
             say(state, words);
+            say(extra, note);
             state.dataset.tone = tone;
+            chip.dataset.tone = tone;
         });
     }
 
     _make(i) {
-        const [name, state] = ["name", "words"].map((className) => make("span", { className }));
-        const chip = make("div", { className: "chip", dataset: { testid: `label-${i}` } }, name, state);
+        const [name, state, extra] = ["name", "words", "note"].map((className) => make("span", { className }));
+        const chip = make("div", { className: "chip", dataset: { testid: `label-${i}` } }, name, state, extra);
         chip.style.setProperty("--own", `var(--instance-${i})`);
         this._element.append(chip);
-        return { chip, name, state };
+        return { chip, name, state, extra };
     }
 
-    /** @param anchors {x, y, behind} [px] of each instance: the middle of the label's upper edge */
-    place(anchors, width, height) {
-        const room = Math.max(84, Math.min(230, narrowest(anchors) - GAP, width - 2 * GAP));
-        this._narrow = room < NARROW;
-        this._element.classList.toggle("narrow", this._narrow);
-        this._element.style.setProperty("--most", `${room}px`);
+    /**
+     * @param spots {box, foot, behind} of each robot, as for `beside`
+     * @param balls rectangles around all balls
+     * @param room {width, height} of the picture
+     * @param taken rectangles of what else stands in the picture
+     */
+    place(spots, balls, room, taken) {
+        this._fit(narrowest(spots.map(({ foot }) => foot)), room);
+        const covers = [
+            ...spots.map(({ box }) => ({ ...box, weight: 1 })),
+            ...balls.map((ball) => ({ ...ball, weight: WEIGHTS.ball })),
+            ...taken.map((part) => ({ ...part, weight: WEIGHTS.caption })),
+        ];
         const placed = [];
+        this._each(spots, (spot, chip, i) => {
+            const place = beside(spot, sizeOf(chip), covers, room, this._ways[i]);
+            this._ways[i] = place.way;
+            placed.push(apart(place, placed, room));
+            covers.push({ ...placed.at(-1), weight: WEIGHTS.caption });
+            move(chip, placed.at(-1));
+        });
+    }
+
+    /** Stack the captions in the lower left corner, as the legend of robots in one place. */
+    stack(spots, room) {
+        this._fit(Infinity, room);
+        let bottom = room.height - 2 * GAP;
+        for (const { chip } of [...this._chips].reverse()) {
+            chip.hidden = !spots.length;
+            bottom -= chip.offsetHeight + GAP;
+            move(chip, { x: 2 * GAP, y: bottom });
+        }
+    }
+
+    _fit(space, { width }) {
+        const most = Math.max(
+            LEAST * this.scale,
+            Math.min(WIDEST * this.scale, space - GAP, width - 2 * GAP),
+        );
+        this._narrow = most < NARROW * this.scale;
+        this._element.classList.toggle("narrow", this._narrow);
+        this._element.style.setProperty("--most", `${most}px`);
+    }
+
+    _each(spots, act) {
         this._chips.forEach(({ chip }, i) => {
-            const anchor = anchors[i];
-            chip.hidden = !anchor || anchor.behind;
-            if (chip.hidden) return;
-            const [w, h] = [chip.offsetWidth, chip.offsetHeight];
-            const fits = (left) => Math.min(Math.max(left, GAP), width - w - GAP);
-            let x = fits(anchor.x - w / 2);
-            let y = Math.min(Math.max(anchor.y, GAP), height - h - GAP);
-            for (const other of placed) {
-                if (overlap(other, { x, y, w, h })) x = fits(other.x + other.w + GAP);
-                if (overlap(other, { x, y, w, h })) y = other.y - h - GAP;
-            }
-            placed.push({ x, y, w, h });
-            chip.style.transform = `translate(${Math.round(x)}px, ${Math.round(y)}px)`;
+            chip.hidden = !spots[i] || spots[i].behind;
+            if (!chip.hidden) act(spots[i], chip, i);
         });
     }
 }
 
-function overlap(a, b) {
-    return a.x < b.x + b.w + GAP && b.x < a.x + a.w + GAP && a.y < b.y + b.h + GAP && b.y < a.y + a.h + GAP;
+function sizeOf({ offsetWidth: w, offsetHeight: h }) {
+    return { w, h };
+}
+
+function move(chip, { x, y }) {
+    chip.style.transform = `translate(${Math.round(x)}px, ${Math.round(y)}px)`;
+}
+
+/** The place moved aside, or up, until it overlaps none of the others. */
+function apart(place, others, { width }) {
+    const moved = { ...place };
+    const hits = (other) => shared({ ...moved, w: moved.w + GAP, h: moved.h + GAP }, { ...other, w: other.w + GAP, h: other.h + GAP }) > 0;
+    for (const other of others) {
+        if (hits(other)) moved.x = Math.min(Math.max(other.x + other.w + GAP, GAP), width - moved.w - GAP);
+        if (hits(other)) moved.y = other.y - moved.h - GAP;
+    }
+    return moved;
 }
 
 /** The smallest distance between neighbours in the first row. */
-function narrowest(anchors) {
-    const row = anchors.filter((anchor) => Math.abs(anchor.y - anchors[0].y) < 60).map((anchor) => anchor.x);
+function narrowest(feet) {
+    const row = feet.filter((foot) => Math.abs(foot.y - feet[0].y) < 60).map((foot) => foot.x);
     row.sort((a, b) => a - b);
     const gaps = row.slice(1).map((x, k) => x - row[k]);
     return gaps.length ? Math.min(...gaps) : Infinity;

@@ -3,17 +3,24 @@
 import { axesOf, fit } from "pinik/framing.js";
 import { THREE } from "pinik/three.js";
 
-const GAP = 0.06; // between neighbours, as a fraction of their width
-const WORTH = 1.5; // how much nearer two rows must bring the camera, because one row is easier to compare
+const GAP = 0; // between neighbours, as a fraction of the width that they have ever covered
+const WORTH = 1.25; // how much nearer two rows must bring the camera, because one row is easier to compare
+const WORTH_TILTING = 2.2; // the same where two rows would tilt a view from the front or the side
 const STEEP = 0.5; // [rad] the least elevation of the camera for two rows
 const STEP_BACK = 0.85; // between two rows, as a fraction of what would separate them completely
+const FROM_ABOVE = 0.9; // the sine of the elevation from which rows are separated completely
 
-/** Arrange `count` copies of points (Vector3s) in a view. Returns {offsets, view, camera}, with camera from `fit`. */
+/**
+ * Arrange `count` copies of points (Vector3s) in a view.
+ *
+ * @param lens the lens for `fit`, a function of the number of rows
+ * @returns {offsets, view, camera, everything}, with camera from `fit`
+ */
 export function arrange(points, count, view, lens) {
-    const row = candidate(points, count, count, view, lens);
+    const row = candidate(points, count, count, view, lens(1));
     if (count === 1) return row;
-    const rows = candidate(points, count, count / 2, { ...view, elevation: Math.max(view.elevation, STEEP) }, lens);
-    return row.camera.distance > WORTH * rows.camera.distance ? rows : row;
+    const rows = candidate(points, count, count / 2, { ...view, elevation: Math.max(view.elevation, STEEP) }, lens(2));
+    return row.camera.distance > (view.oneRow ? WORTH_TILTING : WORTH) * rows.camera.distance ? rows : row;
 }
 
 function candidate(points, count, columns, view, lens) {
@@ -28,7 +35,8 @@ function grid(points, count, columns, view) {
     const column = (1 + GAP) * extent(points, right);
     // Seen from above, a row farther back appears higher, because the ground rises in the picture.
     const rise = Math.max(level.dot(up), 0.2);
-    const row = Math.max(STEP_BACK * (extent(points, up) / rise), 0.8 * extent(points, level));
+    const part = rise > FROM_ABOVE ? 1 : STEP_BACK;
+    const row = Math.max(part * (extent(points, up) / rise), 0.8 * extent(points, level));
     const rows = Math.ceil(count / columns);
     return Array.from({ length: count }, (_, k) => {
         const [i, j] = [k % columns, Math.floor(k / columns)];

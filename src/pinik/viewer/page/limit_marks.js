@@ -1,19 +1,13 @@
-/** The marks of a joint at its limit: an amber ring, and an amber tint on the parts that it moves. */
+/** The marks of joints at their limits: amber rings. */
 
 import { THREE } from "pinik/three.js";
 
-const AMBER = new THREE.Color(0xffb000).convertSRGBToLinear();
-const GLOW = 0.22;
 const SIZE = 0.07; // as a fraction of the robot's size
 
 export class LimitMarks {
-    /**
-     * @param robot the `robot` message
-     * @param carried for each joint, the materials of the parts that it moves first
-     */
-    constructor(robot, carried) {
+    /** @param robot the `robot` message */
+    constructor(robot) {
         this.group = new THREE.Group();
-        this._carried = carried;
         this._size = SIZE * robot.size;
         this._rings = new Map();
     }
@@ -24,19 +18,13 @@ export class LimitMarks {
      * @param joints Object3Ds at the joints
      */
     update(sides, asked, joints) {
-        const tinted = new Set();
         joints.forEach((joint, j) => {
             const marked = Math.abs(sides[j]) === 1 && asked.has(j);
             const ring = this._rings.get(j) ?? (marked ? this._addRing(j) : null);
             if (!ring) return;
             ring.visible = marked;
             ring.position.copy(joint.position);
-            for (const material of this._carried[j]) {
-                if (marked) tinted.add(material);
-                else if (!tinted.has(material)) material.emissive.setRGB(0, 0, 0);
-            }
         });
-        for (const material of tinted) material.emissive.copy(AMBER).multiplyScalar(GLOW);
     }
 
     _addRing(j) {

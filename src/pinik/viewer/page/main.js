@@ -11,13 +11,16 @@ import { byId } from "pinik/elements.js";
 import { isFrame } from "pinik/frame.js";
 import { Grab } from "pinik/grab.js";
 import { watchHands } from "pinik/hands.js";
+import { makeSearchable } from "pinik/finder.js";
 import { History } from "pinik/history.js";
 import { Joints } from "pinik/joints.js";
 import { Keys } from "pinik/keys.js";
+import { LookMenu } from "pinik/look_menu.js";
 import { Notices } from "pinik/notices.js";
 import { Nudge } from "pinik/nudge.js";
 import { Obstacles } from "pinik/obstacles.js";
 import { PictureDialog } from "pinik/picture.js";
+import { Presentation } from "pinik/presentation.js";
 import { addPresets } from "pinik/presets.js";
 import { Rings } from "pinik/rings.js";
 import { shortcuts } from "pinik/shortcuts.js";
@@ -41,7 +44,7 @@ class Page {
             onText: (message) => this._on[message.type]?.(message),
             onBinary: (buffer) => this._take(buffer),
             onOpen: () => this.notices.connected(true),
-            onClose: () => this.notices.connected(false),
+            onClose: () => this.notices.connected(false, this.state?.robot),
         });
         this.controls = new Controls(this.connection, this.notices);
         this.cards = new Cards(byId("cards"), this.connection);
@@ -53,7 +56,14 @@ class Page {
         this.undo = new Undo(this.connection);
         this.copying = new Copying(this.connection, this.joints);
         this.picture = new PictureDialog(this.show, this.theme);
-        this.address = new Address((setup) => this.connection.send({ type: "setup", setup }));
+        this.lookMenu = new LookMenu(this.connection);
+        this.presentation = new Presentation((on) => this.address?.showPresenting(on));
+        this.address = new Address(
+            (setup) => this.connection.send({ type: "setup", setup }),
+            (on) => this.presentation.turn(on),
+        );
+        makeSearchable(byId("robot"), "Search robots");
+        makeSearchable(byId("add-effector"), "Search frames");
         this.history = new History();
         this._drawnCharts = 0;
         this._unanswered = [];
@@ -69,7 +79,7 @@ class Page {
     _on = {
         hello: (hello) => {
             this.hello = hello;
-            for (const part of [this.show, this.controls, this.cards, this.table]) part.setHello(hello);
+            for (const part of [this.show, this.controls, this.cards, this.table, this.lookMenu]) part.setHello(hello);
         },
         robot: (robot) => {
             this.show.setRobot(robot);
@@ -77,6 +87,7 @@ class Page {
             this.answers.clear();
             this.notices.warnings(robot.warnings);
             this.robot = robot;
+            this._showLoading();
         },
         state: (state) => {
             this.state = state;
@@ -87,14 +98,23 @@ class Page {
             this.show.setState(state);
             this.obstacles.setState(state);
             this.answers.setState(state);
-            this.notices.loading(state.loading);
+            this._showLoading();
             this.notices.watched(state.watched);
             this.address.show(state.setup);
         },
         shapes: (shapes) => {
-            this.show.setShapes(shapes);
+            const notes = this.show.setShapes(shapes);
             if (shapes.generation === this.robot.generation)
-                this.notices.warnings([...this.robot.warnings, ...shapes.warnings]);
+                this.notices.warnings([...this.robot.warnings, ...shapes.warnings, ...notes]);
+            for (const note of notes) this.notices.error(note);
+            this._showLoading();
+        },
+        collisions: (message) => {
+            if (message.generation === this.robot.generation) this.show.look.setCollisions(message);
+            for (const warning of message.warnings) this.notices.error(warning);
+        },
+        reach: (message) => {
+            if (message.generation === this.robot.generation) this.show.look.setReach(message);
         },
         answers: (answers) => answers.generation === this.robot.generation && this.answers.showAll(answers),
         self_motion: (motion) => motion.generation === this.robot.generation && this.answers.showMotion(motion),
@@ -102,8 +122,15 @@ class Page {
     };
 
     _showSettings(state) {
-        const parts = [this.controls, this.cards, this.targets, this.joints, this.surroundings];
+        const parts = [this.controls, this.cards, this.targets, this.joints, this.surroundings, this.lookMenu];
         for (const part of parts) part.setState(state);
+    }
+
+    /** Say which robot, or whose shapes, are being loaded. */
+    _showLoading() {
+        const { loading } = this.state ?? {};
+        if (loading) this.notices.loading(`Loading ${loading} …`);
+        else this.notices.loading(this.show.awaiting ? `Loading the shapes of ${this.robot.name} …` : "");
     }
 
     _take(buffer) {
@@ -212,6 +239,9 @@ window.pinik = {
     },
     get viewer() {
         return page.show.stage.viewer;
+    },
+    get show() {
+        return page.show;
     },
     get frames() {
         return page.show.stage.frames;

@@ -18,8 +18,14 @@ export class Notices {
         while (toasts.children.length > 3) toasts.firstChild.remove();
     }
 
-    connected(on) {
+    /** @param robot the name of the robot on show, for the command that starts the server again */
+    connected(on, robot = "") {
         byId("banner").hidden = on;
+        const command = `pinik live ${robot} --port ${location.port}`.replace("  ", " ");
+        say(
+            byId("banner"),
+            `Connection lost. Trying again … If the server has ended, start it again in a terminal: ${command}`,
+        );
         document.documentElement.classList.toggle("offline", !on);
     }
 
@@ -41,9 +47,10 @@ export class Notices {
         this._fault = fault;
     }
 
-    loading(name) {
-        byId("loading").hidden = !name;
-        if (name) say(byId("loading-words"), `Loading ${name} …`);
+    /** @param words what is being loaded, or "" */
+    loading(words) {
+        byId("loading").hidden = !words;
+        if (words) say(byId("loading-words"), words);
     }
 
     warnings(list) {

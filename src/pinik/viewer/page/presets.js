@@ -15,5 +15,5 @@ export function addPresets(element, show) {
         }
     };
     show.camera.addEventListener("framed", mark);
-    show.stage.viewer.controls.addEventListener("start", mark);
+    show.camera.addEventListener("taken", mark);
 }

@@ -3,7 +3,7 @@
 import { THREE } from "pinik/three.js";
 
 const VERTEX = `
-uniform vec3 color, emissive, keyWay, fillWay;
+uniform vec3 color, keyWay, fillWay;
 uniform vec3 strengths;
 varying vec3 skin;
 void main() {
@@ -13,7 +13,7 @@ void main() {
     if (dot(n, cameraPosition - place.xyz) < 0.0) n = -n;
     vec3 facing = vec3(0.78 + 0.22 * n.y, max(dot(n, keyWay), 0.0), max(dot(n, fillWay), 0.0));
     float light = dot(strengths, facing);
-    skin = pow(color * light + emissive, vec3(1.0 / 2.2));
+    skin = pow(color * light, vec3(1.0 / 2.2));
     gl_Position = projectionMatrix * viewMatrix * place;
 }`;
 
@@ -38,18 +38,15 @@ export function lightQuickMaterials(strengths, keyWay, fillWay) {
 
 /** A material that resembles a MeshStandardMaterial. */
 export function quickMaterial({ color, opacity, transparent }) {
-    const material = new THREE.ShaderMaterial({
+    return new THREE.ShaderMaterial({
         vertexShader: VERTEX,
         fragmentShader: FRAGMENT,
         uniforms: {
             color: { value: color },
-            emissive: { value: new THREE.Color(0) },
             opacity: { value: opacity },
             ...lights,
         },
         side: THREE.DoubleSide,
         transparent,
     });
-    material.emissive = material.uniforms.emissive.value;
-    return material;
 }

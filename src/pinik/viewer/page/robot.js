@@ -1,11 +1,14 @@
 /** One instance of the robot in the scene: its shapes or its skeleton. */
 
+import { outermost } from "pinik/extent.js";
 import { LimitMarks } from "pinik/limit_marks.js";
 import { quickMaterial } from "pinik/quick_material.js";
 import { Skeleton } from "pinik/skeleton.js";
 import { THREE } from "pinik/three.js";
 
 const RED = new THREE.Color(0xe02f44).convertSRGBToLinear();
+const GHOST = 0.5; // opacity of robots that stand in one place
+const SEE_THROUGH = 0.35;
 
 export class Robot {
     /**
@@ -16,25 +19,26 @@ export class Robot {
     constructor(robot, parts, color) {
         this.group = new THREE.Group();
         this._parts = [];
-        this._joints = robot.joints.map(() => new THREE.Group());
+        this._red = new Set();
+        this._ghost = null;
+        this.joints = robot.joints.map(() => new THREE.Group());
         this._links = robot.links.map((link) => {
             const group = new THREE.Group();
             place(group, link.placement, 0);
-            this._joints[link.joint].add(group);
+            this.joints[link.joint].add(group);
             return group;
         });
-        const materials = robot.links.map(() => []);
         for (const part of parts ?? []) {
             const fine = part.material.clone();
             const coarse = quickMaterial(fine);
             const mesh = new THREE.Mesh(part.geometry, fine);
             mesh.castShadow = true;
             this._links[part.link].add(mesh);
-            this._parts.push({ mesh, fine, coarse, own: fine.color.clone(), link: robot.links[part.link].name });
-            materials[part.link].push(fine, coarse);
+            const own = { color: fine.color.clone(), opacity: fine.opacity };
+            this._parts.push({ mesh, fine, coarse, own, link: robot.links[part.link].name });
         }
-        this._marks = new LimitMarks(robot, carriedBy(robot, materials));
-        this.group.add(...this._joints, this._marks.group);
+        this._marks = new LimitMarks(robot);
+        this.group.add(...this.joints, this._marks.group);
         this._skeleton = parts?.length ? null : new Skeleton(robot, new THREE.Color(color).convertSRGBToLinear());
         if (this._skeleton) this.group.add(this._skeleton.group);
     }
@@ -42,9 +46,20 @@ export class Robot {
     /** Take the pose of instance `i` of a frame; `asked` are the joints whose limits matter. */
     update(frame, i, asked) {
         const placements = frame.placements(i);
-        this._joints.forEach((joint, j) => place(joint, placements, 7 * j));
-        this._skeleton?.update(this._joints);
-        this._marks.update(frame.sides(i), asked, this._joints);
+        this.joints.forEach((joint, j) => place(joint, placements, 7 * j));
+        this._skeleton?.update(this.joints);
+        this._marks.update(frame.sides(i), asked, this.joints);
+    }
+
+    /** Draw see-through, or as a ghost in a colour (CSS, or null), or as the robot is. */
+    look(ghost, seeThrough) {
+        this._ghost = ghost;
+        this._paint();
+        for (const { fine, coarse, own } of this._parts) {
+            const opacity = ghost ? GHOST : seeThrough ? Math.min(own.opacity, SEE_THROUGH) : own.opacity;
+            for (const material of [fine, coarse]) Object.assign(material, { opacity, transparent: opacity < 1 });
+            coarse.uniforms.opacity.value = opacity;
+        }
     }
 
     /** Draw in detail, with shadows on itself, or quickly. */
@@ -55,7 +70,7 @@ export class Robot {
         }
     }
 
-    /** Draw the robot as a ghost. */
+    /** Draw one of the other answers, see-through and without a shadow. */
     fade(opacity) {
         for (const { mesh, fine } of this._parts) {
             Object.assign(fine, { transparent: true, opacity, depthWrite: false });
@@ -65,30 +80,32 @@ export class Robot {
         this._skeleton?.fade(opacity);
     }
 
-    /** Paint the links with these names red, and only them. The quick materials share the colours. */
+    /** Paint the links with these names red, and only them. */
     redden(names) {
-        for (const { fine, own, link } of this._parts) fine.color.copy(names.has(link) ? RED : own);
+        this._red = names;
+        this._paint();
     }
 
-    /** The corners of the boxes around the robot's parts, in its own world: Vector3s. */
+    /** The quick materials share the colours. */
+    _paint() {
+        for (const { fine, own, link } of this._parts) {
+            if (this._red.has(link)) fine.color.copy(RED);
+            else if (this._ghost) fine.color.set(this._ghost).convertSRGBToLinear();
+            else fine.color.copy(own.color);
+        }
+    }
+
+    /** The outermost points of the robot's parts, in its own world: Vector3s. */
     corners() {
         const inverse = new THREE.Matrix4();
         this.group.updateWorldMatrix(true, true);
         inverse.copy(this.group.matrixWorld).invert();
-        const points = this._joints.slice(1).map((joint) => joint.position.clone());
+        const points = this.joints.slice(1).map((joint) => joint.position.clone());
+        if (this._skeleton) points.push(...points.map(({ x, y, z }) => new THREE.Vector3(x, y, z - this._skeleton.depth)));
         for (const link of this._links) {
             for (const mesh of link.children) {
-                if (!mesh.geometry.boundingBox) mesh.geometry.computeBoundingBox();
-                const { min, max } = mesh.geometry.boundingBox;
                 const toRobot = inverse.clone().multiply(mesh.matrixWorld);
-                for (let k = 0; k < 8; k++) {
-                    const corner = new THREE.Vector3(
-                        k & 1 ? max.x : min.x,
-                        k & 2 ? max.y : min.y,
-                        k & 4 ? max.z : min.z,
-                    );
-                    points.push(corner.applyMatrix4(toRobot));
-                }
+                for (const point of outermost(mesh.geometry)) points.push(point.clone().applyMatrix4(toRobot));
             }
         }
         return points.length ? points : [new THREE.Vector3()]; // a robot without joints and shapes
@@ -107,15 +124,4 @@ export class Robot {
 function place(object, numbers, k) {
     object.position.set(numbers[k], numbers[k + 1], numbers[k + 2]);
     object.quaternion.set(numbers[k + 3], numbers[k + 4], numbers[k + 5], numbers[k + 6]);
-}
-
-/** For each joint, the materials of its links or, if they have no shapes, of the joints that it carries. */
-function carriedBy(robot, materials) {
-    const own = robot.joints.map((_, j) => robot.links.flatMap((link, k) => (link.joint === j ? materials[k] : [])));
-    const carried = [...own];
-    for (let j = robot.joints.length - 1; j > 0; j--) {
-        const children = robot.joints.map((joint, k) => (k > j && joint.parent === j ? k : null)).filter(Boolean);
-        if (!carried[j].length) carried[j] = children.flatMap((k) => carried[k]);
-    }
-    return carried;
 }

@@ -2,26 +2,30 @@
 
 import { THREE } from "pinik/three.js";
 
-const ROOT = ["pinik", "shapes"];
+const ROOT = "pinik";
+const BLACK = 0.02; // linear; nothing can be seen of parts that are darker
+const GREYS = ["#8b95a1", "#a9b1bb", "#737d8a"];
 const WHITEST = 0.8; // linear; a whiter robot would look flat in the light
 
 export class Shapes {
-    constructor(viewer) {
+    /** @param kind of shapes: "shapes" or "collisions" */
+    constructor(viewer, kind) {
         this._viewer = viewer;
+        this._path = [ROOT, kind];
     }
 
     /** Remove the shapes of the last robot. */
     clear() {
-        this._viewer.delete_path(ROOT);
+        this._viewer.delete_path(this._path);
     }
 
     /** Execute one of meshcat's commands, a Uint8Array. */
     command(bytes) {
         this._viewer.handle_command_bytearray(bytes);
-        this._viewer.set_property(ROOT, "visible", false);
+        this._viewer.set_property([ROOT], "visible", false);
     }
 
-    /** The parts of a `shapes` message: [{link, geometry, material}]. Every instance copies the material. */
+    /** The parts of a `shapes` or `collisions` message: [{link, geometry, material}]. Every instance copies the material. */
     parts(message) {
         return message.parts.flatMap(({ link, path }) => {
             const found = [];
@@ -31,6 +35,17 @@ export class Shapes {
             return found;
         });
     }
+}
+
+/**
+ * Paint a robot grey whose file paints everything black, because nothing of it could be seen. Returns what was done, in
+ * words, or nothing.
+ */
+export function lighten(parts) {
+    const black = ({ material: { color } }) => Math.max(color.r, color.g, color.b) < BLACK;
+    if (!parts.length || !parts.every(black)) return [];
+    parts.forEach(({ material }, k) => material.color.set(GREYS[k % GREYS.length]).convertSRGBToLinear());
+    return ["Its file paints every part black. It is drawn in greys here, so that it can be seen."];
 }
 
 /** Convert a material's colour from sRGB, as robot files have it, to linear light, as three.js needs it. */

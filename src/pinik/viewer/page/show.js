@@ -3,9 +3,13 @@
 import { Balls } from "pinik/balls.js";
 import { Camera } from "pinik/camera.js";
 import { Captions } from "pinik/captions.js";
+import { Extent } from "pinik/extent.js";
 import { Frame } from "pinik/frame.js";
 import { Instance } from "pinik/instance.js";
-import { Shapes } from "pinik/shapes.js";
+import { Look } from "pinik/look.js";
+import { ballsOnScreen } from "pinik/on_screen.js";
+import { Pointers } from "pinik/pointers.js";
+import { lighten, Shapes } from "pinik/shapes.js";
 import { Sight } from "pinik/sight.js";
 import { Stage } from "pinik/stage.js";
 import { THREE } from "pinik/three.js";
@@ -21,9 +25,11 @@ export class Show {
         this.camera = new Camera(this.stage);
         this.balls = new Balls();
         this._theme = theme;
-        this._shapes = new Shapes(this.stage.viewer);
-        this._captions = new Captions(labels, this.stage);
-        this.instances = [];
+        this._shapes = new Shapes(this.stage.viewer, "shapes");
+        [this.instances, this.base] = [[], []];
+        this._captions = new Captions(labels, this);
+        this._pointers = new Pointers(labels, this);
+        this.look = new Look(labels, this);
         this._selected = 0;
         this._near = null;
         this._sight = new Sight(this);
@@ -31,7 +37,10 @@ export class Show {
         theme.addEventListener("change", () => this._paint());
         this.camera.addEventListener("offsets", () => this._moveInstances());
         this.stage.onTick((now) => this._tick(now));
-        this.stage.onResize = () => this.camera.moved || this.frameAll(false);
+        this.stage.onResize = () => {
+            this.camera.captionHeight = this._captions.measure();
+            if (!this.camera.moved) this.frameAll(false);
+        };
         this.stage.onRefine = (fine) => this.instances.forEach(({ robot }) => robot.refine(fine));
         this.stage.onDrawn = () => this._afterDrawing();
     }
@@ -44,36 +53,57 @@ export class Show {
         for (const instance of this.instances) instance.dispose();
         this.instances = [];
         this._shapes.clear();
+        this.look.forget();
         this.balls.forget();
         this._sight.forget();
         Object.assign(this, { robot, drawn: "", _parts: null, _frame: null, _next: null });
         if (robot.keeps_view) this.camera.moved = true;
         else Object.assign(this, { ground: null, _framed: 0 });
-        this.stage.touch();
+        Object.assign(this, { awaiting: true, base: [] }); // its shapes
+        this.stage.recast();
     }
 
     command(bytes) {
         this._shapes.command(bytes);
     }
 
+    /** Take the robot's shapes; returns what was changed about them, in sentences. */
     setShapes(message) {
-        if (message.generation !== this.robot?.generation || !message.parts.length) return;
+        if (message.generation !== this.robot?.generation) return [];
+        this.awaiting = false;
+        if (!message.parts.length) return [];
         this._parts = this._shapes.parts(message);
+        const notes = lighten(this._parts);
         for (const instance of this.instances) instance.setRobot(this.robot, this._parts, this.stage.fine);
+        this.look.apply();
+        this.stage.recast();
         this.ground = null;
         this.drawn = "";
         if (this._frame && this._fits(this._frame)) this._draw(this._frame);
         if (!this.camera.moved) this.frameAll(this._framed > 0);
+        return notes;
+    }
+
+    /** Whether all robots stand in one place. */
+    get overlaid() {
+        return this.state?.view > 1 && Boolean(this.state.looks?.includes("overlay"));
+    }
+
+    /** The outermost points that robots have visited, in an instance's own world. */
+    get visited() {
+        return this._sight.visited;
     }
 
     setState(state) {
         const before = this.state;
         this.state = state;
         this._selected = Math.min(this._selected, Math.max(0, state.balls.length - 1));
+        this.camera.together = this.overlaid;
         this._showBalls();
+        this.look.setState(state);
         this.instances.forEach((instance, i) => instance.robot.redden(touched(state, i)));
-        const asked = ({ balls, motion, curve, view }) =>
-            [motion, curve, view, balls.map((ball) => ball.mode + ball.frame)].join();
+        const asked = ({ balls, motion, curve, view, looks }) =>
+            [motion, curve, view, looks?.includes("overlay"), balls.map((ball) => ball.mode + ball.frame)].join();
         if (before && this._framed && asked(before) !== asked(state)) {
             this._sight.ask();
             this._sight.forget();
@@ -139,7 +169,9 @@ export class Show {
     _findGround() {
         const corners = this.instances[0].robot.corners();
         this.ground = Math.min(...corners.map((corner) => corner.z));
-        this._base = corners.filter((corner) => corner.z < this.ground + BASE * this.robot.size);
+        const standing = new Extent();
+        standing.add(corners.filter((corner) => corner.z < this.ground + BASE * this.robot.size));
+        this.base = standing.points;
         this._moveInstances();
     }
 
@@ -148,14 +180,13 @@ export class Show {
         instance.setRobot(this.robot, this._parts, this.stage.fine);
         this.instances.push(instance);
         this._showBalls();
+        this.look.apply();
         this._moveInstances();
     }
 
     _moveInstances() {
         this.instances.forEach((instance, i) => instance.group.position.copy(this.offset(i)));
-        this._captions.hang(
-            this.instances.map((_, i) => (this._base ?? []).map((corner) => corner.clone().add(this.offset(i)))),
-        );
+        this.stage.recast();
     }
 
     /** The position of instance `i`: a Vector3. */
@@ -189,11 +220,12 @@ export class Show {
 
     _afterDrawing() {
         if (this.instances.length && this._frame && !this.drawn) this.drawn = this._parts ? "shapes" : "skeleton";
-        this._captions.place();
+        for (const part of [this._captions, this._pointers, this.look]) part.place();
     }
 
     _paint() {
         for (const instance of this.instances) instance.paint();
+        this.look.apply();
         this.stage.touch();
     }
 
@@ -241,16 +273,9 @@ export class Show {
         return (2 * distance * Math.tan((camera.fov * Math.PI) / 360)) / this.stage.height;
     }
 
-    /** Every visible copy of every ball: {k, instance, at, radius}, in pixels of the canvas. */
+    /** Every visible copy of every ball, as `ballsOnScreen` finds them. */
     ballsOnScreen() {
-        if (!this.state || !this.robot) return [];
-        const radius = this.ballRadius / this.pixel;
-        return this.instances.flatMap((_, instance) =>
-            this.balls.places.flatMap((_place, k) => {
-                if (this.state.balls[k]?.mode === "off") return [];
-                return [{ k, instance, radius, at: this.stage.project(this.ballInWorld(k, instance)) }];
-            }),
-        );
+        return ballsOnScreen(this);
     }
 }
 

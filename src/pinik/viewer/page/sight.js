@@ -5,12 +5,14 @@ import { THREE } from "pinik/three.js";
 
 const LOOK = 300; // [ms] between two checks for something that left the picture
 const EDGE = 4; // [px] from the edge that something may come
+const HALO = 1.7; // the ring around a selected ball, in radii of the ball
 
 export class Sight {
     /** @param show the scene */
     constructor(show) {
         this._show = show;
         this._extent = new Extent();
+        this._curves = new Extent();
         this._looked = 0;
         this._pending = false;
     }
@@ -23,6 +25,17 @@ export class Sight {
     /** Look at everything as soon as nothing is being dragged. */
     ask() {
         this._pending = true;
+    }
+
+    /** The outermost points that robots have visited, and the balls' curves, in an instance's own world. */
+    get visited() {
+        const { state } = this._show;
+        if (this._curvesOf !== state) {
+            this._curvesOf = state;
+            this._curves.clear();
+            for (const { mode, curve } of state.balls) if (mode !== "off") this._curves.add(sparse(curve));
+        }
+        return [...this._extent.points, ...this._curves.points];
     }
 
     get pending() {
@@ -70,9 +83,17 @@ export class Sight {
         state.balls.forEach((ball, k) => {
             const position = balls.places[k]?.position;
             if (ball.mode === "off" || !position) return;
-            for (const side of [-ballRadius, ballRadius]) points.push(position.clone().addScalar(side));
-            for (let j = 0; j < ball.curve.length; j += 4) points.push(new THREE.Vector3(...ball.curve[j]));
+            for (let way = 0; way < 6; way++) {
+                const out = (way < 3 ? 1 : -1) * HALO * ballRadius;
+                points.push(position.clone().setComponent(way % 3, position.getComponent(way % 3) + out));
+            }
+            points.push(...sparse(ball.curve));
         });
         return points;
     }
+}
+
+/** Every fourth point of a curve, as Vector3s. */
+function sparse(curve) {
+    return curve.filter((_, j) => j % 4 === 0).map((point) => new THREE.Vector3(...point));
 }

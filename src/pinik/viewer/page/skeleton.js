@@ -22,6 +22,11 @@ export class Skeleton {
         ].map((rod) => ({ ...rod, mesh: this._add(ROD, this._bone) }));
     }
 
+    /** How far a skeleton, with a ball at its end, reaches below its joints [m]. */
+    get depth() {
+        return 1.5 * this._radius;
+    }
+
     _add(geometry, material) {
         const mesh = new THREE.Mesh(geometry, material);
         mesh.castShadow = true;

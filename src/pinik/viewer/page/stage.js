@@ -83,6 +83,12 @@ export class Stage {
         this.viewer.set_dirty();
     }
 
+    /** Draw the shadows again in the next picture, because what casts them has changed. */
+    recast() {
+        this._recast = true;
+        this.touch();
+    }
+
     _paint() {
         this.ground.paint(this.theme);
         this.lights.paint(this.theme);
@@ -106,7 +112,8 @@ export class Stage {
             this._last = now;
             this._idle = 0;
             const level = this._quality.now;
-            this._render(level, this.frames % level.shadowEvery === 0);
+            this._render(level, this._recast || this.frames % level.shadowEvery === 0);
+            this._recast = false;
             return;
         }
         this._idle += 1;

@@ -4,10 +4,13 @@ import { Ribbon } from "pinik/ribbon.js";
 
 const STEPS = 90; // of the session, 60 per second
 const POINTS = 90;
+const MANY = 2; // effectors of one robot, beyond which trails are thin, so that they do not look like limbs
 
 export class Trail {
-    constructor() {
-        this._ribbon = new Ribbon({ capacity: POINTS, width: 7, opacity: 0.85, taper: 1 });
+    /** @param count the number of trails of one robot */
+    constructor(count) {
+        const look = count > MANY ? { width: 2.6, opacity: 0.5 } : { width: 4.5, opacity: 0.75 };
+        this._ribbon = new Ribbon({ capacity: POINTS, ...look, taper: 1 });
         this._points = [];
     }
 

@@ -2,7 +2,7 @@
 
 const NOTHING = "–";
 
-function significant(value, digits = 3) {
+export function significant(value, digits = 3) {
     const decimals = Math.max(0, digits - 1 - Math.floor(Math.log10(Math.max(Math.abs(value), 1e-9))));
     return value.toFixed(Math.min(decimals, 3));
 }

@@ -218,6 +218,7 @@ _MESSAGES: dict[str, tuple[dict[str, Check], Callable[..., None]]] = {
     ),
     "run": ({"on": _truth}, _run),
     "pause_on_miss": ({"on": _truth}, _pause_on_miss),
+    "look": ({"name": text, "on": _truth}, lambda s, name, on: s.looks.switch(name, on)),
     "step": ({}, _single_step),
     "reset": ({}, Session.reset),
     "begin_anew": ({}, lambda s: s.scores.begin_anew(s.view)),

@@ -7,6 +7,7 @@ from typing import Any
 import pinocchio
 
 from ...model.home import robot_size
+from ...model.joint import Joint
 from ...robot import Robot
 from ..simulation.by_hand import angle_range
 
@@ -37,6 +38,7 @@ def robot_message(robot: Robot, generation: int) -> dict[str, Any]:
                 "placement": _seven(model.jointPlacements[joint_id]),
                 "leader": by_id[joint_id].leader if joint_id else None,
                 "range": list(reach) if (reach := joint_id and angle_range(robot, by_id[joint_id])) else None,
+                **_axis(robot, by_id.get(joint_id)),
             }
             for joint_id, name in enumerate(model.names)
         ],
@@ -47,6 +49,14 @@ def robot_message(robot: Robot, generation: int) -> dict[str, Any]:
         "size": robot_size(robot),
         "warnings": list(robot.warnings),
     }
+
+
+def _axis(robot: Robot, joint: Joint | None) -> dict[str, Any]:
+    """The unit axis in the joint's frame, and the joint that it follows with how many times that one's angle."""
+    if joint is None or not joint.has_one_axis:
+        return {"axis": None, "follows": None, "multiplier": 1.0}
+    leader = None if joint.leader is None else robot.model.getJointId(joint.leader)
+    return {"axis": list(joint.axis), "follows": leader, "multiplier": joint.multiplier}
 
 
 def _seven(placement: pinocchio.SE3) -> list[float]:

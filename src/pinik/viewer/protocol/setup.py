@@ -25,7 +25,8 @@ Setup = dict[str, str]
 _LONGEST = 20_000
 _JSON_NAMES = {list: "array", dict: "object"}
 _KEYS = ("robot", "root", "view", "methods", "parameters", "motion", "curve", "speed", "limits", "polish", "iterations",
-         "tolerance", "statistics", "balls", "angles", "lead", "pause", "collisions", "obstacles", "run")  # fmt: skip
+         "tolerance", "statistics", "balls", "angles", "lead", "pause", "collisions", "obstacles", "looks",
+         "run")  # fmt: skip
 
 
 def write_setup(session: Session) -> str:
@@ -64,6 +65,8 @@ def write_setup(session: Session) -> str:
         setup["collisions"] = written_collisions(session)
     if session.obstacles:
         setup["obstacles"] = _compact(written_obstacles(session))
+    if looks := ",".join(session.looks):
+        setup["looks"] = looks
     setup["run"] = "on" if session.running else "off"
     return urlencode(setup, quote_via=quote, safe=",:[]{}")
 
@@ -153,6 +156,11 @@ def _messages(session: Session, setup: Setup) -> Iterator[dict[str, Any]]:
     if not starts:
         yield from angle_messages(session, angles)
     yield {"type": "pause_on_miss", "on": _on("pause", setup.get("pause", "off"))}
+    wanted = setup.get("looks", "").split(",") if setup.get("looks") else []
+    for name in {*session.looks} - {*wanted}:
+        yield {"type": "look", "name": name, "on": False}
+    for name in wanted:
+        yield {"type": "look", "name": name, "on": True}
     if "run" in setup:
         yield {"type": "run", "on": _on("run", setup["run"])}
 

@@ -9,6 +9,7 @@ from ...description.catalog import catalog
 from ...motion.curves import CURVES
 from ...solvers.base import Solver
 from ..simulation.instance import STATUSES, Instance
+from ..simulation.looks import LOOKS
 from ..simulation.motion import MOTIONS
 from ..simulation.session import STEPS_PER_SECOND, VIEWS, Session
 from ..simulation.statistics import WINDOWS, Summary
@@ -39,6 +40,7 @@ def hello_message(version: str, methods: dict[str, type[Solver]], own_robots: li
         "curves": [{"name": name, "title": curve.title} for name, curve in CURVES.items()],
         "views": list(VIEWS),
         "windows": [{"name": name, "title": title} for name, title in WINDOWS.items()],
+        "looks": [{"name": name, **look._asdict()} for name, look in LOOKS.items()],
         "ranges": {**{name: list(ends) for name, ends in RANGES.items()}, "reach": FARTHEST},
         "statuses": list(STATUSES),
         "steps_per_second": STEPS_PER_SECOND,
@@ -54,6 +56,7 @@ def session_state(session: Session) -> dict[str, Any]:
         "robot": session.robot.name,
         "root": session.robot.root,
         "view": session.view,
+        "looks": list(session.looks),
         "running": session.running,
         "motion": motion.kind,
         "curve": motion.curve,

@@ -22,6 +22,7 @@ def with_robot(session: Session, robot: Robot) -> Session:
     other.apply_settings(session.settings)
     other.motion.kind, other.motion.curve = session.motion.kind, session.motion.curve
     other.motion.speed = session.motion.speed
+    other.looks = session.looks
     other.scores.cover(session.scores.window)
     other.set_contacts(session.contacts.on, session.contacts.avoids)
     other.set_obstacles(session.obstacles)

@@ -22,6 +22,7 @@ from .balls import Balls
 from .contacts import Contacts
 from .instance import Instance, StepSettings, same_objects
 from .leading import Leading
+from .looks import Looks
 from .method_menu import Methods, check_balls, chosen, filled_up, offered
 from .misses import Misses
 from .motion import MOTIONS, Motion
@@ -54,6 +55,7 @@ class Session:
         obstacles: What stands around them.
         leading: The instances whose joints lead instead of the balls.
         misses: Whether the session pauses on a miss, and the last one.
+        looks: What the picture shows besides robots and balls.
         running: Whether `tick` takes a step.
         steps: The number of steps since the last reset.
         scores: The statistics of the visible instances.
@@ -94,7 +96,7 @@ class Session:
         for solver in solvers:
             check_joint_names(robot, solver)
         self.robot = robot
-        self.running = False
+        self.looks, self.running = Looks(), False
         self.steps = self._still_steps = 0
         self.notes: list[str] = []
         self._targets: list[Target] = []  # of the last step

@@ -33,7 +33,7 @@ def animation_page(
         hello, robot, state: The current messages of these types.
         shapes: The robot's shapes.
         recording: The frames to play.
-        page: The folder with `player.html`, `style.css` and the modules.
+        page: The folder with `player.html`, the style sheets and the modules.
 
     Raises:
         ValueError: A message contains a number that is not finite.
@@ -66,7 +66,7 @@ def _player(page: Path, changed: int) -> list[bytes | str]:
         for module in sorted(page.glob("*.js"))
     }
     pieces = {
-        "style": (page / "style.css").read_bytes(),
+        "style": b"".join(sheet.read_bytes() for sheet in sorted(page.glob("*.css"))),
         "importmap": _json_in_html({"imports": modules}),
         "meshcat": _script_in_html(meshcat_script().read_text("utf-8")),
     }

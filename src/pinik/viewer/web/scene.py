@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import importlib.util
+import json
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -19,7 +20,7 @@ from ...robot import Robot
 if TYPE_CHECKING:
     from ...shapes.meshes import Color, Shape
 
-__all__ = ["Shapes", "make_shapes", "meshcat_script"]
+__all__ = ["Shapes", "collision_shapes", "make_shapes", "meshcat_script"]
 
 # dtype → three.js's name, and the msgpack extension type that msgpack-lite gives this typed array.
 _TYPED_ARRAYS = {"<f4": ("Float32Array", 0x17), "<u4": ("Uint32Array", 0x16)}
@@ -64,20 +65,36 @@ class Shapes:
             "parts": [{"link": link, "path": path} for link, path in self.parts],
         }
 
+    def messages(self, generation: int) -> list[str | bytes]:
+        """The commands, and the message that follows them."""
+        return [*self.commands, json.dumps(self.message(generation))]
+
 
 def make_shapes(robot: Robot) -> Shapes:
     """Read and convert a robot's visual shapes. This imports trimesh and takes seconds for a large robot."""
     with needed_by("the robot's shape", "live"):
         from ...shapes.meshes import load_shapes  # over a second to import
 
-    shapes, warnings = load_shapes(robot)
+    return _converted(robot, *load_shapes(robot), "/pinik/shapes")
+
+
+def collision_shapes(robot: Robot) -> Shapes:
+    """Read and convert a robot's collision shapes, likewise."""
+    with needed_by("the robot's collision shapes", "live"):
+        from ...shapes.meshes import load_collision_shapes
+
+    return _converted(robot, *load_collision_shapes(robot), "/pinik/collisions")
+
+
+def _converted(robot: Robot, shapes: Sequence[Shape], warnings: Sequence[str], root: str) -> Shapes:
+    """Convert shapes into commands for parts below `root` in meshcat's tree."""
     by_link: dict[str, dict[Color, list[Shape]]] = {}
     for shape in shapes:
         by_link.setdefault(shape.link, {}).setdefault(shape.color, []).append(shape)
     parts, commands = [], []
     for index, link in enumerate(robot.description.links):
         for part, (color, same) in enumerate(by_link.get(link, {}).items()):
-            path = f"/pinik/shapes/{index}/{part}"
+            path = f"{root}/{index}/{part}"
             parts.append((index, path))
             commands.append(_set_object(path, *_merged(same), color))
     return Shapes(tuple(parts), tuple(commands), tuple(warnings))

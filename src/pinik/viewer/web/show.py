@@ -22,6 +22,7 @@ from ..protocol.state import hello_message, session_state
 from ..simulation.another_robot import with_robot
 from ..simulation.contacts import Contacts
 from ..simulation.session import Session
+from .additions import Additions
 from .animation import animation_page
 from .answers import Answers
 from .later import Later
@@ -59,8 +60,7 @@ class Show:
         self.recording = Recording()
         menu = RobotMenu(session.robot)
         self._loader = RobotLoader(menu, later)
-        self._later, self._clock = later, clock
-        self._seats = Seats()
+        self._later, self._clock, self._seats = later, clock, Seats()
         self._hello = hello_message(version, session.methods, menu.own_names)
         self._generation = 0
         self._pace = Pace(clock)
@@ -82,11 +82,13 @@ class Show:
         self._shapes = None
         self._waits_for_shapes = True
         self._maker = FrameMaker(session.robot, generation)
+        self._additions = Additions(generation, self._later, self._seats.send)
         self._start_anew()
         self._seats.send(json.dumps(self._robot))
         self._send_state()
         self._later(lambda: shapes_of(session.robot), lambda shapes: self._take_shapes(generation, shapes))
         self._look_for_contacts()
+        self._additions.ask(session)
 
     def _start_anew(self) -> None:
         """Discard the recording, whose frames show other instances or balls."""
@@ -102,13 +104,8 @@ class Show:
         if generation == self._generation:
             self._shapes = shapes
             self._waits_for_shapes = False
-            for message in self._shape_messages():
+            for message in shapes.messages(generation):
                 self._seats.send(message)
-
-    def _shape_messages(self) -> list[str | bytes]:
-        if self._shapes is None:
-            return []
-        return [*self._shapes.commands, json.dumps(self._shapes.message(self._generation))]
 
     # Tabs
 
@@ -126,8 +123,10 @@ class Show:
         """Add a tab and send it everything."""
         for message in (self._hello, self._robot, self.state()):
             tab.send(json.dumps(message))
-        for shape in self._shape_messages():
+        for shape in self._shapes.messages(self._generation) if self._shapes else ():
             tab.send(shape)
+        for addition in self._additions.messages:
+            tab.send(addition)
         self._seats.add(tab, self._frame)
 
     def leave(self, tab: Tab) -> None:
@@ -244,6 +243,7 @@ class Show:
         finally:
             self._frame_due = True
             self._look_for_contacts()
+            self._additions.ask(self.session)
             if self._cast() != before:
                 self._start_anew()
 

@@ -1,0 +1,18 @@
+/** Where the balls are in the picture. */
+
+/** Every visible copy of every ball: {k, instance, at, radius}, in pixels of the canvas. */
+export function ballsOnScreen(show) {
+    if (!show.state || !show.robot) return [];
+    const { camera, controls } = show.stage.viewer;
+    const pixel =
+        (2 * camera.position.distanceTo(controls.target) * Math.tan((camera.fov * Math.PI) / 360)) / show.stage.height;
+    const radius = show.ballRadius / pixel;
+    const copies = show.overlaid ? 1 : show.instances.length; // robots in one place share one
+    return Array.from({ length: Math.min(copies, show.instances.length) }, (_, instance) => instance).flatMap(
+        (instance) =>
+            show.balls.places.flatMap((_place, k) => {
+                if (show.state.balls[k]?.mode === "off") return [];
+                return [{ k, instance, radius, at: show.stage.project(show.ballInWorld(k, instance)) }];
+            }),
+    );
+}
