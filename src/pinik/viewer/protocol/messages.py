@@ -12,7 +12,7 @@ from ...errors import InputError, UnknownNameError
 from ...problem.tolerance import Tolerance
 from ..simulation.session import Session
 
-__all__ = ["FARTHEST", "RANGES", "any_text", "apply", "checked", "parse", "read_json", "text", "whole_number"]
+__all__ = ["FARTHEST", "RANGES", "any_text", "apply", "checked", "number_or_none", "parse", "read_json", "text", "whole_number"]
 
 RANGES: dict[str, tuple[float, float]] = {
     "speed": (0.1, 100.0),
@@ -127,6 +127,14 @@ def whole_number(what: str, value: Any) -> int:
     return value
 
 
+def number_or_none(what: str, value: Any) -> int | None:
+    """Check that a value is a whole number that is not negative, or null."""
+    number = None if value is None else whole_number(what, value)
+    if number is not None and number < 0:
+        raise InputError(f"{what} must not be negative; got {number}")
+    return number
+
+
 def _in_range(name: str, *, whole: bool = False) -> Check:
     def check(what: str, value: Any) -> float:
         low, high = RANGES[name]
@@ -217,6 +225,7 @@ _MESSAGES: dict[str, tuple[dict[str, Check], Callable[..., None]]] = {
     ),
     "run": ({"on": _truth}, _run),
     "step": ({}, _single_step),
+    "step_iteration": (_INSTANCE, lambda s, instance: s.step_iteration(instance)),
     "reset": ({}, Session.reset),
     "ball": ({**_BALL, "position": _point}, Session.move_ball),
     "free": ({**_BALL, "axes": text}, lambda s, index, axes: s.balls.number(index).release(axes)),

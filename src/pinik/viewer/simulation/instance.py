@@ -144,6 +144,7 @@ class Instance:
         self._question: Question | None = None
         self._targets: tuple[Target, ...] = ()
         self._trouble = ""
+        self._paused = False
 
     def step(self, targets: Sequence[Target], seconds: float = math.inf) -> None:
         """Follow the targets for one simulation step, for about `seconds` at most.
@@ -165,6 +166,7 @@ class Instance:
         if not self.counted:
             self.last = self.last._replace(time=0.0, iterations=0, joint_updates=0, jump=0.0) if self.last else None
             return
+        self._paused = False
         began, before, former = self._clock(), self.q, self._state
         try:
             state = self._run(asked, began + seconds)
@@ -187,6 +189,21 @@ class Instance:
             jump=float(np.abs(pinocchio.difference(self.robot.model, before, state.q)).max(initial=0.0)),
         )
         self.statistics.add(self.last)
+
+    def step_iteration(self, targets: Sequence[Target]) -> None:
+        """Take one iteration instead of a whole step; the statistics do not count it.
+
+        Nothing happens if all targets are reached, or if the method cannot solve for them.
+        """
+        kept, self.statistics = self.statistics, Statistics()
+        try:
+            for _ in range(2):  # the first one only begins a run, if none is under way
+                self.step(targets, 0.0)
+                if self.status != Status.TIME_LIMIT.name or (self.last and self.last.iterations > 0):
+                    break
+        finally:
+            self.statistics, self.counted = kept, False
+        self._paused = self.status == Status.TIME_LIMIT.name
 
     def _run(self, targets: tuple[Target, ...], deadline: float) -> State:
         if self._states is None:
@@ -236,5 +253,7 @@ class Instance:
         verdict = judge(question, self._targets, self.q, Status[self.status])
         active = question.active_limits(self.q) if question.options.limits else {}
         words = explain(question, self._targets, verdict, active)
+        if self._paused and self._state is not None:
+            words = words.replace("out of time,", f"between two iterations, {self._state.iteration} taken,", 1)
         off = largest_of(verdict.errors)
         return Standing(verdict.status.name, words, off.position, off.orientation, tuple(active))

@@ -142,6 +142,16 @@ class Session:
         if not self.running or self._clock() - self._refreshed >= 1.0:
             self._refresh_statistics()
 
+    def step_iteration(self, index: int) -> None:
+        """Stop, and let one instance take one iteration towards the balls, which stay where they are.
+
+        Raises:
+            InputError: There is no such instance.
+        """
+        instance = self._instance(index)
+        self.running = False
+        instance.step_iteration(self.balls.targets)
+
     def reset(self) -> None:
         """Return the robots and balls to where they began, and clear the statistics."""
         for instance in self.instances:

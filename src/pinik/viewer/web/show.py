@@ -11,7 +11,7 @@ from ...echoes import shortened
 from ...errors import InputError, PinikError
 from ...robot import Robot
 from ..protocol.frames import FrameMaker
-from ..protocol.messages import any_text, apply, checked, parse, text, whole_number
+from ..protocol.messages import any_text, apply, checked, number_or_none, parse, text, whole_number
 from ..protocol.recording import Recording
 from ..protocol.robot_message import robot_message
 from ..protocol.robots import RobotMenu
@@ -21,6 +21,7 @@ from ..simulation.session import Session
 from .animation import animation_page
 from .later import Later
 from .pace import Pace
+from .readers import Readers
 from .robot_loader import RobotLoader
 from .scene import Shapes
 from .seats import Seats, Tab
@@ -53,6 +54,7 @@ class Show:
         self._loader = RobotLoader(menu, later)
         self._later, self._clock = later, clock
         self._seats = Seats()
+        self._readers = Readers(self._seats.is_late)
         self._hello = hello_message(version, session.methods, menu.own_names)
         self._generation = 0
         self._pace = Pace(clock)
@@ -113,6 +115,7 @@ class Show:
     def leave(self, tab: Tab) -> None:
         """Remove a tab."""
         self._seats.remove(tab)
+        self._readers.open(tab, None)
 
     def receive(self, tab: Tab, message_text: str) -> None:
         """Do what a tab asks, or send it the reason why that is impossible."""
@@ -121,6 +124,10 @@ class Show:
             if message["type"] == "drawn":
                 checked("drawn", message, {"step": whole_number})
                 self._seats.drawn(tab, lambda: self._frame, lambda: json.dumps(self.state()))
+                self._readers.catch_up(tab, self.session, self._generation)
+            elif message["type"] == "explain":
+                self._readers.open(tab, checked("explain", message, {"instance": number_or_none})["instance"])
+                self._state_due = True
             else:
                 self.do(message)
         except PinikError as error:
@@ -158,6 +165,7 @@ class Show:
         self._state_sent = self._clock()
         if self._seats:
             self._seats.offer_state(json.dumps(self.state()))
+        self._readers.send(self.session, self._generation)
 
     # Requests
 
