@@ -6,6 +6,7 @@ import { Chart } from "pinik/chart.js";
 import { Connection } from "pinik/connection.js";
 import { Controls } from "pinik/controls.js";
 import { byId } from "pinik/elements.js";
+import { Lectern } from "pinik/lectern.js";
 import { isFrame } from "pinik/frame.js";
 import { Grab } from "pinik/grab.js";
 import { watchHands } from "pinik/hands.js";
@@ -43,6 +44,7 @@ class Page {
         this.history = new History();
         this._drawnCharts = 0;
         this._unanswered = [];
+        this.lectern = new Lectern(this);
         this._makeCharts();
         this._makeHands();
         this._makeButtons();
@@ -55,7 +57,7 @@ class Page {
     _on = {
         hello: (hello) => {
             this.hello = hello;
-            for (const part of [this.show, this.controls, this.cards]) part.setHello(hello);
+            for (const part of [this.show, this.controls, this.cards, this.lectern]) part.setHello(hello);
         },
         robot: (robot) => {
             this.show.setRobot(robot);
@@ -69,6 +71,7 @@ class Page {
             this._showSettings(state);
             this.table.setState(state);
             this.show.setState(state);
+            this.lectern.setState(state);
             this.notices.loading(state.loading);
             this.address.show(state.setup);
         },
@@ -77,6 +80,7 @@ class Page {
             if (shapes.generation === this.robot.generation)
                 this.notices.warnings([...this.robot.warnings, ...shapes.warnings]);
         },
+        explanation: (explained) => this.lectern.explain(explained),
         error: ({ message }) => this.notices.error(message),
     };
 
