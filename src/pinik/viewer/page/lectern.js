@@ -1,7 +1,10 @@
 /** Everything to teach with: connects the drawer's tabs with the session's messages and the picture. */
 
 import { Explain } from "pinik/explain.js";
+import { Lessons } from "pinik/lessons.js";
+import { RaceTab } from "pinik/race.js";
 import { Teach } from "pinik/teach.js";
+import { ThesisTable } from "pinik/thesis_table.js";
 import { TurnMarks } from "pinik/turn_marks.js";
 
 export class Lectern {
@@ -15,30 +18,65 @@ export class Lectern {
             showTurn: (instance, turn, part) => this._showTurn(instance, turn, part),
         });
         this._marks = new TurnMarks(page.theme);
-        this._teach = new Teach([{ name: "explain", title: "Explain", element: this._explain.element }]);
+        const send = (type, fields) => page.connection.send({ type, ...fields });
+        this._race = new RaceTab({
+            race: (places, seed) => send("race", { places, seed }),
+            lineUp: (position) => send("line_up", { position }),
+            iterate: () => send("step_iteration", { instance: null }),
+        });
+        this._lessons = new Lessons((name) => send("lesson", { name }));
+        this._thesis = new ThesisTable((number, preset) => {
+            send("comparison", { number, preset });
+            send("bones", { number, preset });
+        });
+        this._teach = new Teach([
+            { name: "explain", title: "Explain", element: this._explain.element },
+            { name: "race", title: "Race", element: this._race.element },
+            { name: "lessons", title: "Lessons", element: this._lessons.element },
+            { name: "thesis", title: "Table 4.1", element: this._thesis.element },
+        ]);
         this._teach.addEventListener("change", () => this._ask());
     }
 
-    setHello() {
+    setHello(hello) {
         this._asked = null; // a new connection knows nothing of the old one's requests
+        this._lessons.setHello(hello);
+        this._thesis.setHello(hello);
+        this._race.fail();
         this._ask();
     }
 
     setState(state) {
         this._running = state.running;
         this._explain.setState(state);
+        this._thesis.setState(state);
+    }
+
+    /** The session's messages that concern the drawer alone. */
+    get handlers() {
+        return {
+            explanation: (explained) => this._show(explained),
+            race: (race) => this._race.setResult(race),
+            bones: (bones) => this._thesis.setBones(bones),
+        };
+    }
+
+    /** An error may concern a race. */
+    fail() {
+        this._race.fail();
     }
 
     /** Ask for explanations while their tab can be seen. */
     _ask() {
         const instance = this._teach.shows("explain") ? this._explain.index : null;
         if (instance === null) this._showTurn(0, null);
+        if (!this._teach.shows("race")) this._race.stop();
         if (instance === this._asked) return;
         this._asked = instance;
         this._page.connection.send({ type: "explain", instance });
     }
 
-    explain(explained) {
+    _show(explained) {
         if (!this._teach.shows("explain") || explained.generation !== this._page.robot?.generation) return;
         this._explain.show(explained, this._running);
     }

@@ -45,6 +45,7 @@ class Page {
         this._drawnCharts = 0;
         this._unanswered = [];
         this.lectern = new Lectern(this);
+        Object.assign(this._on, this.lectern.handlers);
         this._makeCharts();
         this._makeHands();
         this._makeButtons();
@@ -80,8 +81,10 @@ class Page {
             if (shapes.generation === this.robot.generation)
                 this.notices.warnings([...this.robot.warnings, ...shapes.warnings]);
         },
-        explanation: (explained) => this.lectern.explain(explained),
-        error: ({ message }) => this.notices.error(message),
+        error: ({ message }) => {
+            this.notices.error(message);
+            this.lectern.fail();
+        },
     };
 
     _showSettings(state) {

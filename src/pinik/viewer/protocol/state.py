@@ -11,9 +11,11 @@ from ..simulation.instance import STATUSES, Instance
 from ..simulation.motion import MOTIONS
 from ..simulation.session import STEPS_PER_SECOND, VIEWS, Session
 from ..simulation.statistics import Summary
+from .lessons import LESSONS
 from .messages import FARTHEST, RANGES
 from .parameters import describe_parameters, tolerance_of
 from .robots import ROOTS
+from .thesis_walk import published_table
 
 __all__ = ["hello_message", "session_state"]
 
@@ -37,6 +39,8 @@ def hello_message(version: str, methods: dict[str, type[Solver]], own_robots: li
         "curves": [{"name": name, "title": curve.title} for name, curve in CURVES.items()],
         "views": list(VIEWS),
         "ranges": {**{name: list(ends) for name, ends in RANGES.items()}, "reach": FARTHEST},
+        "lessons": [{"name": name, **lesson._asdict()} for name, lesson in LESSONS.items()],
+        "thesis": published_table(),
         "statuses": list(STATUSES),
         "steps_per_second": STEPS_PER_SECOND,
     }

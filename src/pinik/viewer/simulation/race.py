@@ -137,7 +137,8 @@ def enter(
     ] or [moved.position]
     number = asked.index(moved)
     fixed = [ball.target for ball in asked]
-    turned = np.eye(3) if fixed[number].rotation is None else fixed[number].rotation
+    rotation = fixed[number].rotation
+    turned: Array = np.eye(3) if rotation is None else rotation
     targets = []
     for place in places:
         own = fixed[number].with_numbers(place, turned)

@@ -44,6 +44,7 @@ class Session:
         instances: All four instances.
         balls: The balls, each with the frame that chases it.
         motion: The automatic motion of the balls.
+        home: The pose in which the robots begin (nq,).
         running: Whether `tick` takes a step.
         steps: The number of steps since the last reset.
         notes: What else changed with the last change of robot, in words.
@@ -89,8 +90,8 @@ class Session:
         self.motion = Motion(robot, seed)
         self._seed = seed
         self._clock = clock
-        self._home = home_configuration(robot)
-        self.instances = [Instance(robot, s, self._home, self.settings, clock) for s in solvers]
+        self.home = home_configuration(robot)
+        self.instances = [Instance(robot, s, self.home, self.settings, clock) for s in solvers]
         self.balls = Balls(robot)
         self.set_view(view)
         self._refresh_statistics()
@@ -142,20 +143,36 @@ class Session:
         if not self.running or self._clock() - self._refreshed >= 1.0:
             self._refresh_statistics()
 
-    def step_iteration(self, index: int) -> None:
-        """Stop, and let one instance take one iteration towards the balls, which stay where they are.
+    def step_iteration(self, index: int | None = None) -> None:
+        """Stop, and let one visible instance, or all, take one iteration towards the balls, which stay where they are.
 
         Raises:
             InputError: There is no such instance.
         """
-        instance = self._instance(index)
+        chosen = self.seen if index is None else [self._instance(index)]
         self.running = False
-        instance.step_iteration(self.balls.targets)
+        for instance in chosen:
+            instance.step_iteration(self.balls.targets)
+
+    def line_up(self, position: ArrayLike) -> None:
+        """Stop, with all robots in the pose in which they begin, and the first ball that is on at a position (3,) [m].
+
+        Raises:
+            InputError: The position is not three finite numbers, or no ball is on.
+        """
+        index = next((k for k, ball in enumerate(self.balls) if ball.mode == "on"), None)
+        if index is None:
+            raise InputError("no ball is on")
+        self.move_ball(index, position)
+        self.running = False
+        for instance in self.instances:
+            instance.put(self.home)
+        self._refresh_statistics()
 
     def reset(self) -> None:
         """Return the robots and balls to where they began, and clear the statistics."""
         for instance in self.instances:
-            instance.put(self._home)
+            instance.put(self.home)
         for ball in self.balls:
             ball.go_home()
         self.motion.restart()

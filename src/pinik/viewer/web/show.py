@@ -8,18 +8,21 @@ from collections.abc import Callable
 from typing import Any
 
 from ...echoes import shortened
-from ...errors import InputError, PinikError
+from ...errors import InputError, PinikError, UnknownNameError
 from ...robot import Robot
 from ..protocol.frames import FrameMaker
-from ..protocol.messages import any_text, apply, checked, number_or_none, parse, text, whole_number
+from ..protocol.lessons import LESSONS
+from ..protocol.messages import any_text, apply, checked, parse, text, whole_number
 from ..protocol.recording import Recording
 from ..protocol.robot_message import robot_message
 from ..protocol.robots import RobotMenu
 from ..protocol.setup import Setup, apply_setup, read_setup, write_setup
 from ..protocol.state import hello_message, session_state
+from ..protocol.thesis_walk import walk_to
 from ..simulation.session import Session
 from .animation import animation_page
 from .later import Later
+from .lectern import Lectern
 from .pace import Pace
 from .readers import Readers
 from .robot_loader import RobotLoader
@@ -55,6 +58,7 @@ class Show:
         self._later, self._clock = later, clock
         self._seats = Seats()
         self._readers = Readers(self._seats.is_late)
+        self._lectern = Lectern(self._readers, later, _notice)
         self._hello = hello_message(version, session.methods, menu.own_names)
         self._generation = 0
         self._pace = Pace(clock)
@@ -115,7 +119,7 @@ class Show:
     def leave(self, tab: Tab) -> None:
         """Remove a tab."""
         self._seats.remove(tab)
-        self._readers.open(tab, None)
+        self._lectern.leave(tab)
 
     def receive(self, tab: Tab, message_text: str) -> None:
         """Do what a tab asks, or send it the reason why that is impossible."""
@@ -125,8 +129,7 @@ class Show:
                 checked("drawn", message, {"step": whole_number})
                 self._seats.drawn(tab, lambda: self._frame, lambda: json.dumps(self.state()))
                 self._readers.catch_up(tab, self.session, self._generation)
-            elif message["type"] == "explain":
-                self._readers.open(tab, checked("explain", message, {"instance": number_or_none})["instance"])
+            elif self._lectern.receive(tab, message, self.session):
                 self._state_due = True
             else:
                 self.do(message)
@@ -183,6 +186,14 @@ class Show:
                 self._load(fields["name"], fields["root"], {})
             case "setup":
                 self._set_up(read_setup(checked("setup", message, {"setup": any_text})["setup"]))
+            case "lesson":
+                name = checked("lesson", message, {"name": text})["name"]
+                if name not in LESSONS:
+                    raise UnknownNameError("lesson", name, LESSONS)
+                self._begin_anew(read_setup(LESSONS[name].setup))
+            case "comparison":
+                fields = checked("comparison", message, {"number": text, "preset": text})
+                self._begin_anew(walk_to(self.session, **fields).setup)
             case kind:
                 motion = self.session.motion.kind
                 self._change(lambda session: apply(session, message))
@@ -203,6 +214,11 @@ class Show:
     def _cast(self) -> tuple[int, list[str]]:
         """Return what the layout of a frame depends on: the number of instances and the balls."""
         return self.session.view, [ball.frame for ball in self.session.balls]
+
+    def _begin_anew(self, setup: Setup) -> None:
+        """Set up a scene with robots and balls where they begin."""
+        self._change(Session.reset)
+        self._set_up(setup)
 
     def _set_up(self, setup: Setup) -> None:
         robot = self.session.robot
