@@ -37,6 +37,8 @@ GOOD = {
     "tolerance": ({"position": 0.01, "orientation": 0.1}, {"position": "number", "orientation": "number"}),
     "run": ({"on": True}, {"on": "truth"}),
     "step": ({}, {}),
+    "step_iteration": ({"instance": 0}, {"instance": "index or null"}),
+    "line_up": ({"position": [0.3, 0.1, 0.8]}, {"position": "point"}),
     "reset": ({}, {}),
     "ball": ({"index": 0, "position": [0.1, 0.2, 0.3]}, {"index": "index", "position": "point"}),
     "orientation": (

@@ -92,13 +92,14 @@ def test_the_pseudo_inverse_jitters_out_of_reach_and_damping_rests():
     assert lecture.each("error")[1][-1] == pytest.approx(0.24, abs=0.01)
 
 
-def test_a_larger_lambda_jumps_less_and_arrives_later():
+def test_a_larger_lambda_jumps_less_and_takes_more_iterations():
     lecture = Lecture("damping").watch(900)
     jumps = [own.max() for own in lecture.each("jump")]
-    assert jumps[0] >= jumps[1] >= jumps[2] > 2 * jumps[3]
-    errors = [own.mean() for own in lecture.each("error")]
-    assert errors == sorted(errors)
-    assert errors[3] > 3 * errors[0]
+    assert min(jumps[:2]) > math.pi
+    assert math.pi > jumps[2] > 2 * jumps[3]
+    taken = [own.sum() for own in lecture.each("iterations")]
+    assert taken == sorted(taken)
+    assert taken[3] > 3 * taken[0]
 
 
 def test_ccd_curls_at_the_end():
@@ -146,5 +147,6 @@ def test_two_bones_need_one_step_and_the_iteration_several():
     bones, iteration = lecture.each("iterations")
     assert bones.max() == 1
     assert iteration.max() >= 3
-    print(lecture.each("reached")[0].mean(), lecture.each("reached")[1].mean())
-    assert lecture.each("reached")[0].all()
+    exact, approached = lecture.each("reached")
+    assert exact.all()
+    assert not approached.all()

@@ -38,6 +38,7 @@ NO_VECTOR = [
 ]
 NO_VECTOR += [[[1, 2, 3]], [[1], [2], [3]], [1, 2, math.inf], [1, 2, 10**400], [[1, 2], 3, 4], [[]] * 3, [1, 2, {}]]
 WRONG = {
+    "index or null": [*(wrong for wrong in NO_NUMBER if wrong is not None), 1.0, 0.5, -1, 12, 10**30],
     "index": [*NO_NUMBER, 1.0, 0.5, -1, 12, 10**30, 10**400],
     "count": [*NO_NUMBER, 3.0, 0, -1, 1001, 10**400],
     "number": [*NO_NUMBER, 0, -1, 0.9e-6, 101, 10**400, math.inf, -math.inf],
@@ -106,7 +107,7 @@ MALFORMED = list(malformed())
 def test_every_type_of_the_documentation_is_tried_here():
     table = PROTOCOL.read_text("utf-8").split("## From the page")[1]
     rows = dict(re.findall(r"^\| `(\w+)` \| (.*?) \|", table, re.MULTILINE))
-    elsewhere = {"type", "robot", "setup", "drawn"}  # the table's head, and what the show answers
+    elsewhere = {"type", "robot", "setup", "drawn", "lesson", "comparison", "explain", "race", "bones"}  # the table's head, and what the show answers
     assert set(rows) - elsewhere == set(GOOD)
     for kind, (fields, _) in GOOD.items():
         assert set(re.findall(r"`(\w+)`", rows[kind])) == set(fields)

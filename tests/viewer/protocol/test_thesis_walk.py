@@ -19,7 +19,9 @@ UNIT = 1.2 / 7  # a seventh of the arm's length [m]
 
 def walked(robot, number, preset):
     session = Session(robot, clock=Clock())
-    apply_setup(session, walk_to(session, number, preset).setup)
+    walk = walk_to(session, number, preset)
+    apply_setup(session, walk.setup)
+    session.motion.start_at(walk.phase)
     return session
 
 
@@ -60,11 +62,7 @@ def test_a_random_ball_jumps_in_every_step(arm):
 def test_the_walk_fills_the_figures_of_the_study(arm):
     """The first comparison with the thesis's parameters: N / η of `docs/thesis.md`, reading "literal"."""
     session = walked(arm, "1", "thesis")
-    for _ in range(120):  # the ball begins away from the frame
-        session.step()
-    for instance in session.seen:
-        instance.statistics.clear()
-    for _ in range(360):
+    for _ in range(480):
         session.step()
     figures = {instance.solver.name: instance.statistics.summary() for instance in session.seen}
     assert all(one.efficiency == 1.0 for one in figures.values())

@@ -65,12 +65,19 @@ export class Explain {
 
     choose(index) {
         this.index = index;
+        this.forget();
         this._markPick();
         this._choose(index);
     }
 
     _markPick() {
         [...this._pick.children].forEach((button, i) => { button.ariaPressed = String(i === this.index); });
+    }
+
+    /** Show nothing until the next explanation, because what is shown is of another robot or instance. */
+    forget() {
+        this._body.hidden = this._errors.hidden = this._reason.hidden = true;
+        this._turns.show([], false);
     }
 
     /** @param explained the `explanation` message @param running whether the session runs */

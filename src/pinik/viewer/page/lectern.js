@@ -46,6 +46,10 @@ export class Lectern {
         this._ask();
     }
 
+    setRobot() {
+        this._explain.forget();
+    }
+
     setState(state) {
         this._running = state.running;
         this._explain.setState(state);

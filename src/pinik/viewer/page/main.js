@@ -63,6 +63,7 @@ class Page {
         robot: (robot) => {
             this.show.setRobot(robot);
             this.targets.setRobot(robot);
+            this.lectern.setRobot();
             this.notices.warnings(robot.warnings);
             this.robot = robot;
         },

@@ -60,9 +60,17 @@ LESSONS: Mapping[str, Lesson] = {
     ),
     "damping": Lesson(
         "λ from 0 to large",
-        "The four robots have λ = 0.001, 0.05, 0.3 and 2 m, and three iterations for every step. The larger λ is, the "
-        "smaller is the largest jump, and the later does the tip arrive.",
-        _scene("arm", "dls,dls,dls,dls", parameters=_damped(0.001, 0.05, 0.3, 2.0), motion="random", iterations=3),
+        "The four robots have λ = 0.001, 0.05, 0.3 and 2 m, and one iteration in every step. With almost no damping an arm "
+        "that passes a singular pose swings by whole turns; the larger λ is, the smaller are the jumps, and the more "
+        "iterations it takes.",
+        _scene(
+            "arm",
+            "dls,dls,dls,dls",
+            parameters=_damped(0.001, 0.05, 0.3, 2.0),
+            motion="random",
+            iterations=1,
+            limits="off",
+        ),
     ),
     "curl": Lesson(
         "Why CCD curls",
@@ -96,7 +104,7 @@ LESSONS: Mapping[str, Lesson] = {
     "two-bones": Lesson(
         "Two bones in closed form",
         "For two bones the law of cosines gives the elbow's angle, so one step suffices wherever the ball is. The "
-        "iteration beside it needs several after every jump of the ball.",
+        "iteration beside it needs several after every jump of the ball, and now and then stalls at a limit.",
         _scene("two_link", "two_bone,dls", motion="random"),
     ),
 }

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any, NamedTuple
 
 from ...errors import InputError, UnknownNameError
-from ...studies.comparison import COMPARISONS, CURVE
+from ...studies.comparison import COMPARISONS, CURVE, HOME_PHASE
 from ...studies.readings import PRESETS
 from ...studies.thesis import ITERATIONS, TABLE, Contest, contest
 from ..simulation.session import Session
@@ -24,10 +24,12 @@ class Walk(NamedTuple):
 
     Attributes:
         setup: The set-up.
+        phase: The part of the lap at which the ball begins: where the frame is, so that no step begins with a leap.
         joints_per_bone: How many of the robot's joints one of the thesis's bones has; it counts bones for CCD.
     """
 
     setup: Setup
+    phase: float
     joints_per_bone: float
 
 
@@ -74,7 +76,7 @@ def walk_to(session: Session, number: str, preset: str) -> Walk:
     )
     if asked.bones == 0:
         raise InputError(f"no joint moves {frame!r}")
-    return Walk(read_setup(text), asked.joints / asked.bones)
+    return Walk(read_setup(text), HOME_PHASE, asked.joints / asked.bones)
 
 
 def _parameters(asked: Contest) -> dict[str, dict[str, Any]]:

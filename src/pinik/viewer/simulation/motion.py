@@ -48,6 +48,10 @@ class Motion:
         self._since = np.inf
         self._rng = np.random.default_rng(self._seed)
 
+    def start_at(self, phase: float) -> None:
+        """Go on along the curve after this part of its lap, from 0 to 1."""
+        self._phase = phase % 1.0
+
     def advance(self, balls: Sequence[Ball], seconds: float) -> None:
         """Move the balls by one step of `seconds`."""
         moving = [ball for ball in balls if ball.mode == "on"]

@@ -36,8 +36,8 @@ class Readers:
         self._send([tab for tab in self._open if tab not in late], session, generation)
 
     def catch_up(self, tab: Tab, session: Session, generation: int) -> None:
-        """Send a tab the explanation that it was too late for."""
-        if tab in self._waiting and not self._is_late(tab):
+        """Send a tab that has just answered the explanation that it was too late for."""
+        if tab in self._waiting:
             self._send([tab], session, generation)
 
     def _send(self, tabs: list[Tab], session: Session, generation: int) -> None:

@@ -193,7 +193,9 @@ class Show:
                 self._begin_anew(read_setup(LESSONS[name].setup))
             case "comparison":
                 fields = checked("comparison", message, {"number": text, "preset": text})
-                self._begin_anew(walk_to(self.session, **fields).setup)
+                walk = walk_to(self.session, **fields)
+                self._begin_anew(walk.setup)
+                self.session.motion.start_at(walk.phase)
             case kind:
                 motion = self.session.motion.kind
                 self._change(lambda session: apply(session, message))
