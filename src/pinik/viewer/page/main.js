@@ -21,6 +21,7 @@ import { Table } from "pinik/table.js";
 import { Targets } from "pinik/targets.js";
 import { Theme } from "pinik/theme.js";
 import { THREE } from "pinik/three.js";
+import { length, microseconds } from "pinik/words.js";
 
 const CHARTS = 100; // [ms] between two drawings of the charts
 
@@ -71,7 +72,7 @@ class Page {
             this.state = state;
             document.title = `${state.robot} – pinik`;
             this._showSettings(state);
-            this.table.setState(state);
+            for (const part of [this.table, this._errorChart, this._timeChart]) part.setState(state);
             this.show.setState(state);
             this.lectern.setState(state);
             this.notices.loading(state.loading);
@@ -121,12 +122,13 @@ class Page {
     _makeCharts() {
         this._errorChart = new Chart(byId("error-chart"), this.theme, {
             value: ({ error }) => error * 1000,
-            logarithmic: true,
+            words: (millimetres) => length(millimetres / 1000),
+            decades: 4,
         });
         this._timeChart = new Chart(byId("time-chart"), this.theme, {
-            value: ({ seconds }) => seconds * 1000,
-            logarithmic: false,
-            least: 0.2,
+            value: ({ seconds }) => seconds * 1e6,
+            words: (micros) => microseconds(micros / 1e6),
+            decades: 2,
         });
     }
 

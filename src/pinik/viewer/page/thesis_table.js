@@ -34,11 +34,11 @@ export class ThesisTable {
     _make() {
         const { comparisons, methods } = this._thesis;
         this._cells = new Map();
-        this._body.replaceChildren(...comparisons.map(({ number, title }) => {
+        this._body.replaceChildren(...comparisons.map(({ number, title }, k) => {
             const button = make("button", { type: "button", className: "soft", dataset: { testid: `comparison-${number}` } }, `${number}: ${title}`);
             button.addEventListener("click", () => this._go(number));
             const head = make("tr", {}, ...["", "time", "iterations", "efficiency"].map((word) => make("th", { scope: "col" }, word)));
-            const rows = Object.entries(methods).map(([method, cells]) => this._row(number, method, cells[number]));
+            const rows = methods.map(({ name, published }) => this._row(number, name, published[k]));
             return make("section", {}, button, make("table", {}, make("thead", {}, head), make("tbody", {}, ...rows)));
         }));
         this._fill();

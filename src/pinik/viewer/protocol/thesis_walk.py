@@ -37,7 +37,10 @@ def published_table() -> dict[str, Any]:
     """Table 4.1 for the page: the comparisons with their titles, and the published figures of each method."""
     return {
         "comparisons": [{"number": number, "title": title} for number, title in _TITLES.items()],
-        "methods": {method: {k: cell._asdict() for k, cell in cells.items()} for method, cells in TABLE.items()},
+        "methods": [
+            {"name": method, "published": [cells[number]._asdict() for number in _TITLES]}
+            for method, cells in TABLE.items()
+        ],
         "presets": list(PRESETS),
     }
 
