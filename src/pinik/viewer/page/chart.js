@@ -5,7 +5,7 @@ import { ChartReadout } from "pinik/chart_readout.js";
 
 const SMALL = { left: 36, right: 6, top: 6, bottom: 16, font: 10 }; // [px]
 const LARGE = { left: 62, right: 18, top: 12, bottom: 30, font: 14 };
-const WIDTHS = [5, 3.6, 2.4, 1.3]; // [px] of the four lines: where they coincide, each still shows beside the next
+const WIDTHS = [6, 4.4, 2.9, 1.2]; // [px] of the four lines: where they coincide, each still shows beside the next
 
 export class Chart {
     /** @param options value(sample) in the chart's unit, words(value) with its unit, decades (the fewest on the axis) */

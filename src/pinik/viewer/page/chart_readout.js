@@ -68,7 +68,7 @@ export class ChartReadout {
     }
 }
 
-/** The sample nearest to a time; null if there is none within half a second. */
+/** The sample nearest to a time; null if there is none within 1.5 s. */
 function nearest(samples, time) {
     let [low, high] = [0, samples.length - 1];
     while (high - low > 1) {
@@ -77,5 +77,5 @@ function nearest(samples, time) {
         else high = middle;
     }
     const best = [samples[low], samples[high]].filter(Boolean).sort((a, b) => Math.abs(a.time - time) - Math.abs(b.time - time))[0];
-    return best && Math.abs(best.time - time) < 0.5 ? best : null;
+    return best && Math.abs(best.time - time) < 1.5 ? best : null;
 }

@@ -9,6 +9,7 @@ const LONGEST_CHAIN = 60;
 export class TurnMarks {
     constructor(theme) {
         this.group = new THREE.Group();
+        this.group.name = "turn marks";
         this._theme = theme;
         this._ribbons = {
             circle: new Ribbon({ capacity: CIRCLE, width: 2.4, opacity: 0.8 }),
