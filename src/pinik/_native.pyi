@@ -11,7 +11,7 @@ pinocchio_version: str = "4.1.0"
 
 coal_version: str = "3.0.3"
 
-abi: str = "02e4b751847afb40"
+abi: str = "d06a6684f1616356"
 
 class JointKind(enum.Enum):
     revolute = 0
@@ -612,6 +612,31 @@ class Track:
     def tick_at(
         self, start: NDArray[numpy.float64], most: NDArray[numpy.float64], place: object
     ) -> tuple[NDArray[numpy.float64], bool, bool, float, float] | None: ...
+
+class Pursuit:
+    def __init__(
+        self,
+        engine: Engine,
+        start: Annotated[NDArray[numpy.float64], dict(shape=(None,), order="C", writable=False)],
+        goals: Annotated[NDArray[numpy.float64], dict(shape=(None, 18), order="C", writable=False)],
+        max_iterations: int,
+        patience: Patience,
+    ) -> None: ...
+    def state(
+        self,
+    ) -> tuple[
+        NDArray[numpy.float64],
+        int,
+        int,
+        tuple[tuple[float | None, float | None, tuple[float, float, float] | None], ...],
+        float,
+        int,
+        Status,
+    ]: ...
+    def advance(self, most: int) -> None: ...
+    def aim_at(
+        self, goals: Annotated[NDArray[numpy.float64], dict(shape=(None, 18), order="C", writable=False)]
+    ) -> None: ...
 
 class Searcher:
     def __init__(self, engine: Engine) -> None: ...

@@ -12,7 +12,7 @@ import pinocchio
 
 __all__ = ["ABI", "load"]
 
-ABI = "02e4b751847afb40"
+ABI = "d06a6684f1616356"
 """The digest of the module's stub, which identifies its signatures; the module contains the same digest
 (src/native/bindings/abi.hpp)."""
 

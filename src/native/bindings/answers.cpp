@@ -2,6 +2,7 @@
 #include <cmath>
 
 #include "../solving/outcome.hpp"
+#include "answers.hpp"
 #include "interface.hpp"
 #include "numbers.hpp"
 
@@ -23,26 +24,30 @@ nb::tuple as_tuple(const std::vector<TargetError>& errors) {
   return nb::tuple(list);
 }
 
-nb::tuple as_tuple(const State& state) {
-  return nb::make_tuple(as_array(state.q), state.iteration, state.joint_updates, as_tuple(state.errors), state.residual,
-                        state.attempt, state.status);
-}
-
 nb::object proof_of(const Answer& answer) {
   if (!answer.proof) return nb::none();
   return nb::make_tuple(answer.proof->target, answer.proof->distance, answer.proof->bound, answer.proof->inner);
-}
-
-nb::tuple states_of(const Answer& answer) {
-  nb::list states;
-  for (const State& state : answer.states) states.append(as_tuple(state));
-  return nb::tuple(states);
 }
 
 nb::object goals_of(const Answer& answer) {
   nb::list rows;
   for (const Goal& goal : answer.goals) rows.append(as_array(goal));
   return rows;
+}
+
+}  // namespace
+
+nb::tuple as_tuple(const State& state) {
+  return nb::make_tuple(as_array(state.q), state.iteration, state.joint_updates, as_tuple(state.errors), state.residual,
+                        state.attempt, state.status);
+}
+
+namespace {
+
+nb::tuple states_of(const Answer& answer) {
+  nb::list states;
+  for (const State& state : answer.states) states.append(as_tuple(state));
+  return nb::tuple(states);
 }
 
 }  // namespace

@@ -8,6 +8,7 @@
 #include "numbers.hpp"
 
 NB_MODULE(_native, m) {
+  pinik::nb::set_leak_warnings(false);  // what the thread of a live view holds lives until the process ends
   pinik::import_numpy();
   pinik::prepare_to_throw();
   m.doc() = "pinik's compiled engine; use it through pinik.solve, engine=\"native\".";
@@ -22,6 +23,7 @@ NB_MODULE(_native, m) {
   pinik::register_places(m);
   pinik::register_kinematics(m);
   pinik::register_track(m);
+  pinik::register_pursuit(m);
   pinik::register_search(m);
   pinik::register_collisions(m);
 }

@@ -43,6 +43,10 @@ struct Goal {
   Mat3 rotation = Mat3::Identity();
   Vec3 direction = Vec3::UnitX();
   Vec3 at = Vec3::Zero();
+
+  bool operator==(const Goal& other) const {
+    return position == other.position && rotation == other.rotation && direction == other.direction && at == other.at;
+  }
 };
 
 }  // namespace pinik

@@ -18,6 +18,7 @@ __all__ = [
     "new_attribute",
     "new_value",
     "overlap",
+    "quoted",
     "removed",
     "renamed_attribute",
     "renamed_element",
@@ -207,3 +208,8 @@ def escaped(text: str) -> str:
     for character, entity in _ENTITIES.items():
         text = text.replace(character, entity)
     return text
+
+
+def quoted(text: str) -> str:
+    """A text as the value of an attribute, with its quotes."""
+    return f'"{escaped(text)}"'

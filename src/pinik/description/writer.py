@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-from .edits import escaped
+from .edits import quoted
 from .joints import ENDLESS, JointTag
 from .links import INERTIA_ATTRIBUTES, Inertial, LinkTag
 from .part import Vector
@@ -18,7 +18,7 @@ UNLIMITED = 1.7976931348623157e308
 
 def written(name: str, links: Iterable[LinkTag], joints: Iterable[JointTag]) -> str:
     """The URDF text of a robot; every number is written exactly."""
-    lines = [f"<robot name={_quoted(name)}>"]
+    lines = [f"<robot name={quoted(name)}>"]
     lines.extend(_link(link) for link in links)
     lines.extend(_joint(joint) for joint in joints)
     lines.append("</robot>")
@@ -26,7 +26,7 @@ def written(name: str, links: Iterable[LinkTag], joints: Iterable[JointTag]) -> 
 
 
 def _link(link: LinkTag) -> str:
-    start = f"<link name={_quoted(link.name)}"
+    start = f"<link name={quoted(link.name)}"
     return f"{start}/>" if link.inertial is None else f"{start}>{_inertial(link.inertial)}</link>"
 
 
@@ -39,14 +39,14 @@ def _inertial(inertial: Inertial) -> str:
 
 def _joint(joint: JointTag) -> str:
     parts = [
-        f'<joint name={_quoted(joint.name)} type="{joint.kind}">',
+        f'<joint name={quoted(joint.name)} type="{joint.kind}">',
         _origin(joint.xyz, joint.rpy),
-        f"<parent link={_quoted(joint.parent)}/><child link={_quoted(joint.child)}/>",
+        f"<parent link={quoted(joint.parent)}/><child link={quoted(joint.child)}/>",
         f'<axis xyz="{_numbers(joint.axis)}"/>',
         _limit(joint),
     ]
     if joint.mimic is not None:
-        leader = _quoted(joint.mimic.leader)
+        leader = quoted(joint.mimic.leader)
         scale = f'multiplier="{joint.mimic.multiplier!r}" offset="{joint.mimic.offset!r}"'
         parts.append(f"<mimic joint={leader} {scale}/>")
     if joint.damping is not None or joint.friction is not None:
@@ -73,8 +73,3 @@ def _origin(xyz: Vector, rpy: Vector) -> str:
 
 def _numbers(vector: Vector) -> str:
     return " ".join(repr(value) for value in vector)
-
-
-def _quoted(text: str) -> str:
-    """`text` as the value of an XML attribute, with quotes."""
-    return f'"{escaped(text)}"'

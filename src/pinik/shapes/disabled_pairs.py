@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from pathlib import Path
-from xml.sax.saxutils import quoteattr
 
+from ..description.edits import quoted
 from ..description.xml import MAX_BYTES, DocumentError, parse
 from ..errors import RobotLoadError
 from ..files import FileError, read_within
@@ -47,7 +47,7 @@ def read_disabled_pairs(srdf: Path, links: Iterable[str]) -> dict[LinkPair, str]
 def written_disabled_pairs(name: str, pairs: Mapping[LinkPair, str]) -> str:
     """An SRDF that disables these pairs, each for its reason."""
     lines = [
-        f"  <disable_collisions link1={quoteattr(first)} link2={quoteattr(second)} reason={quoteattr(reason)}/>"
+        f"  <disable_collisions link1={quoted(first)} link2={quoted(second)} reason={quoted(reason)}/>"
         for (first, second), reason in pairs.items()
     ]
-    return "\n".join(['<?xml version="1.0"?>', f"<robot name={quoteattr(name)}>", *lines, "</robot>", ""])
+    return "\n".join(['<?xml version="1.0"?>', f"<robot name={quoted(name)}>", *lines, "</robot>", ""])

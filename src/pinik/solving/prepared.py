@@ -12,14 +12,14 @@ import pinocchio
 from numpy.typing import ArrayLike, NDArray
 
 from ..engine import load
-from ..errors import EngineError, InputError
+from ..errors import InputError
 from ..model.robot_model import RobotModel
 from ..problem.targets import Target, as_targets
 from ..solvers.base import Solver
 from .attempts import Attempts
 from .native.codec import goals_of
 from .native.compiling import make_engine
-from .native.module import why_not
+from .native.module import engine_for
 from .native.recalling import make_call, note
 from .options import Options
 from .origin import Origin
@@ -52,7 +52,7 @@ class Prepared:
 
     def __init__(self, robot: RobotModel, targets: Target | Sequence[Target], options: Options) -> None:
         """Compile the problem."""
-        self.engine = _chosen(options.engine, options.method)
+        self.engine = engine_for(options.method, options.engine)
         self.question = Question.of(robot, targets, options)
         self.robot, self.options = robot, options
         self.targets = self.question.problem.targets
@@ -171,15 +171,3 @@ def _are_targets(value: object) -> bool:
     if isinstance(value, memoryview):
         return False  # iterating over some raises an error
     return isinstance(value, Target) or (isinstance(value, Sequence) and any(isinstance(v, Target) for v in value))
-
-
-def _chosen(engine: str, solver: Solver) -> str:
-    """The engine to use; for "auto", the compiled engine if it is available for this solver.
-
-    Raises:
-        EngineError: The compiled engine was requested but cannot be used.
-    """
-    why = why_not(solver)
-    if engine == "native" and why:
-        raise EngineError(f"the compiled engine cannot be used: {why}; use engine='auto' or 'python' instead")
-    return "python" if engine == "python" or why else "native"

@@ -16,7 +16,18 @@ from ..motion.tracks import lay_track, random_configuration
 from ..robot import Robot
 from .steps import LAP, PROGRAM, Chase, Rules, in_pieces
 
-__all__ = ["COMPARISONS", "CURVE", "HOME_PHASE", "LAP", "Comparison", "Row", "bones", "chain_length", "compare", "places"]
+__all__ = [
+    "COMPARISONS",
+    "CURVE",
+    "HOME_PHASE",
+    "LAP",
+    "Comparison",
+    "Row",
+    "bones",
+    "chain_length",
+    "compare",
+    "places",
+]
 
 Array = NDArray[np.float64]
 

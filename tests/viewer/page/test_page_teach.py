@@ -1,4 +1,4 @@
-"""The drawer to teach with in a real browser: explanations, the race, lessons, the thesis's table; and larger charts."""
+"""The drawer to teach with in a real browser: explanations, race, lessons, the thesis's table; and larger charts."""
 
 from __future__ import annotations
 
@@ -46,13 +46,17 @@ def test_singular_values_in_the_drawer_are_numpys(open_panel, arm):
     desk.expect("explain-errors").to_contain_text("promises")
     home = home_configuration(arm)
     data = arm.model.createData()
-    J = pinocchio.computeFrameJacobian(arm.model, data, home, arm.model.getFrameId("tip"), pinocchio.LOCAL_WORLD_ALIGNED)
+    J = pinocchio.computeFrameJacobian(
+        arm.model, data, home, arm.model.getFrameId("tip"), pinocchio.LOCAL_WORLD_ALIGNED
+    )
     sigma = np.linalg.svd(J[:3], compute_uv=False)
     shown = desk.page.locator(".explained .bars").nth(0).inner_text()
     found = [float(number) for number in re.findall(r"= ([\d.]+) m", shown)]
     np.testing.assert_allclose(found, sigma, rtol=5e-3)
     error = np.linalg.norm(np.array(PLACE) - plain_placement(arm, "tip", home).translation)
-    assert float(re.search(r"λ = ([\d.]+) m", desk.text("explain-value"))[1]) == pytest.approx(np.sqrt(0.5) * error, rel=5e-3)
+    assert float(re.search(r"λ = ([\d.]+) m", desk.text("explain-value"))[1]) == pytest.approx(
+        np.sqrt(0.5) * error, rel=5e-3
+    )
     dots = desk.page.locator(".gain .dot")
     assert dots.count() == 3
     assert desk.page.locator("[data-testid=formulas] math").count() == 2

@@ -65,7 +65,7 @@ def test_every_text_has_two_sentences(name):
 
 
 def test_set_up_text_is_as_a_link_writes_it():
-    assert setup_text(robot="a b", view=4, balls=[["tip", "on"]]) == 'robot=a%20b&view=4&balls=[[%22tip%22,%22on%22]]'
+    assert setup_text(robot="a b", view=4, balls=[["tip", "on"]]) == "robot=a%20b&view=4&balls=[[%22tip%22,%22on%22]]"
 
 
 def test_only_ccd_leaves_the_straight_arm():

@@ -107,7 +107,17 @@ MALFORMED = list(malformed())
 def test_every_type_of_the_documentation_is_tried_here():
     table = PROTOCOL.read_text("utf-8").split("## From the page")[1]
     rows = dict(re.findall(r"^\| `(\w+)` \| (.*?) \|", table, re.MULTILINE))
-    elsewhere = {"type", "robot", "setup", "drawn", "lesson", "comparison", "explain", "race", "bones"}  # the table's head, and what the show answers
+    elsewhere = {
+        "type",
+        "robot",
+        "setup",
+        "drawn",
+        "lesson",
+        "comparison",
+        "explain",
+        "race",
+        "bones",
+    }  # the table's head, and what the show answers
     assert set(rows) - elsewhere == set(GOOD)
     for kind, (fields, _) in GOOD.items():
         assert set(re.findall(r"`(\w+)`", rows[kind])) == set(fields)

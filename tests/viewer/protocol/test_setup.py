@@ -112,11 +112,11 @@ def test_a_set_up_makes_any_session_the_same_again(messages, others):
 @given(st.lists(MESSAGES, max_size=14))
 def test_a_sessions_own_set_up_changes_nothing(messages):
     shown = session_after(messages)
-    before, states = snapshot(shown), [one._states for one in shown.instances]
+    before, pursuits = snapshot(shown), [one._pursuit for one in shown.instances]
     targets = [ball.target for ball in shown.balls]
     apply_setup(shown, read_setup(write_setup(shown)))
     assert snapshot(shown) == before
-    assert [one._states for one in shown.instances] == states  # every run goes on
+    assert [one._pursuit for one in shown.instances] == pursuits  # every run goes on
     assert all(ball.target is target for ball, target in zip(shown.balls, targets, strict=True))
 
 

@@ -26,8 +26,9 @@ def walked(robot, number, preset):
 
 
 @pytest.mark.parametrize(
-    ("number", "motion", "limits"), [("1", "curve", False), ("2", "random", False), ("3", "curve", True), ("4", "random", True)]
-)  # fmt: skip
+    ("number", "motion", "limits"),
+    [("1", "curve", False), ("2", "random", False), ("3", "curve", True), ("4", "random", True)],
+)
 @pytest.mark.parametrize("preset", ["thesis", "tuned"])
 def test_comparisons_have_the_thesiss_motion_limits_and_tolerance(arm, number, motion, limits, preset):
     session = walked(arm, number, preset)

@@ -159,7 +159,7 @@ def test_iterations_follow_one_another_and_are_no_steps(panda):
 
 
 def test_a_sweep_turns_each_joint_to_its_best_angle(panda):
-    """Each turn is the best of its joint by brute force, and the turns lead from one to the next by plain kinematics."""
+    """Each turn is the best of its joint by brute force, and each begins where the last one ended."""
     one, targets, told = begin(panda, "ccd", ("panda_hand_tcp",))
     goal, q = np.array(targets[0].position), one.q.copy()
     names = [turn.joint for turn in told.turns]
@@ -217,7 +217,7 @@ def test_what_cannot_be_explained_gives_its_reason(panda, two_link):
         def direction(self, J, e):
             raise ZeroDivisionError("not today")
 
-    one, targets, told = begin(panda, Bad, ("panda_hand_tcp",))
+    one, _, told = begin(panda, Bad, ("panda_hand_tcp",))
     assert told == "the solver failed: ZeroDivisionError: not today"
     assert Explainer().explain(one, []) == "there are no targets"
     bones = Instance(two_link, make_solver("two_bone"), home_configuration(two_link), StepSettings(), Clock())

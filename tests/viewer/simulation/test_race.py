@@ -11,7 +11,8 @@ from pinik.model.home import home_configuration
 from pinik.solvers.registry import make_solver
 from pinik.viewer.simulation.balls import Balls
 from pinik.viewer.simulation.instance import StepSettings
-from pinik.viewer.simulation.race import card, enter, run_race
+from pinik.viewer.simulation.race import enter, run_race
+from pinik.viewer.simulation.race_card import card
 
 ALL = ("ccd", "jt", "pinv", "dls")
 

@@ -261,7 +261,7 @@ def test_a_value_that_is_there_already_changes_nothing(arm):
     shown.set_motion("curve")
     steps(shown, 5)
     before = snapshot(shown)
-    states = [one._states for one in shown.instances]
+    pursuits = [one._pursuit for one in shown.instances]
     for index, one in enumerate(shown.instances):
         shown.set_method(index, one.solver.name)
         for name, value in one.solver.parameters.items():
@@ -271,7 +271,7 @@ def test_a_value_that_is_there_already_changes_nothing(arm):
     shown.set_motion("curve")
     shown.set_view(4)
     assert snapshot(shown) == before
-    assert [one._states for one in shown.instances] == states  # no run was started anew
+    assert [one._pursuit for one in shown.instances] == pursuits  # no run was started anew
 
 
 @pytest.mark.parametrize(
@@ -527,7 +527,11 @@ def test_a_solver_that_raises_leaves_the_others_alone(arm):
 
 def test_solvers_get_seven_tenths_of_a_step_between_them(arm):
     """Each reading of the clock takes 1 ms. Four solvers share 11.7 ms, so each has time for two iterations."""
-    shown = session(arm, ["jt"] * 4, Clock(each=0.001))
+
+    class Own(pinik.JacobianTranspose):
+        name = "own"
+
+    shown = session(arm, [Own] * 4, Clock(each=0.001))
     shown.move_ball(0, [0.5, 0.4, 0.4])
     shown.step()
     assert [one.status for one in shown.seen] == ["TIME_LIMIT"] * 4
@@ -535,6 +539,37 @@ def test_solvers_get_seven_tenths_of_a_step_between_them(arm):
     shown.set_view(1)
     shown.step()
     assert shown.instances[0].last.iterations == 12  # one of them before it first looks at the clock
+
+
+def test_a_session_rests_once_nothing_has_moved_for_a_second_and_a_half(arm):
+    shown = session(arm, ["dls"])
+    shown.running = True
+    shown.set_motion("hand")
+    steps(shown, 80)
+    assert not shown.rests
+    steps(shown, 30)
+    assert shown.rests
+    assert shown.sleeps
+    shown.move_ball(0, [0.3, 0.1, 0.8])
+    steps(shown, 1)
+    assert not shown.rests
+    steps(shown, 200)
+    shown.set_motion("curve")
+    assert not shown.sleeps  # the balls are about to move
+    shown.running = False
+    assert shown.sleeps
+
+
+def test_a_robot_that_still_moves_keeps_a_session_from_resting(arm):
+    """Out of reach, the pseudo-inverse swings for ever."""
+    shown = session(arm, ["pinv"])
+    shown.running = True
+    shown.move_ball(0, [1.2, 0.0, 0.3])
+    steps(shown, 300)
+    before = shown.instances[0].q
+    steps(shown, 1)
+    assert np.abs(shown.instances[0].q - before).max() > 0.1
+    assert not shown.rests
 
 
 # Another robot

@@ -152,7 +152,7 @@ def test_no_more_than_two_frames_are_under_way_and_then_comes_the_newest(stage):
 
 
 def test_nothing_queues_for_a_tab_that_never_answers(two_link):
-    stage = Stage(two_link, ["dls"], motion="hand")
+    stage = Stage(two_link, ["dls"], motion="curve")
     mute, quick = stage.join(), stage.join()
     stage.later.do_all()
     told = len(mute.sent)
@@ -160,6 +160,24 @@ def test_nothing_queues_for_a_tab_that_never_answers(two_link):
     assert len(mute.sent) - told == 1  # the second frame
     assert quick.kinds.count("frame") == 10_001
     assert 620 <= quick.kinds.count("state") <= 670  # about four a second in 10,000/60 s
+
+
+def test_nothing_is_sent_while_nothing_moves(two_link):
+    stage = Stage(two_link, ["dls"], motion="hand")
+    tab = stage.join()
+    stage.later.do_all()
+    stage.play(tab, ticks=200)
+    assert not stage.show.is_lively()
+    told = len(tab.sent)
+    stage.play(tab, ticks=600)
+    assert len(tab.sent) == told
+    stage.show.receive(tab, json.dumps({"type": "ball", "index": 0, "position": [0.9, 0.7, 0.0]}))
+    assert stage.show.is_lively()
+    stage.play(tab, ticks=30)
+    new = [read_frame(frame) for frame in tab.of("frame")[-20:]]
+    assert new[-1].step > new[0].step >= 800
+    assert new[-1].balls[0, :3].tolist() == pytest.approx([0.9, 0.7, 0.0])
+    assert not Stage(two_link, ["dls"], motion="hand").show.is_lively()  # nobody watches
 
 
 def test_a_state_waits_for_a_late_tab_and_is_then_the_newest(stage):

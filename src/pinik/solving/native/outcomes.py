@@ -16,7 +16,7 @@ from ..attempts import Outcomes
 from ..state import State, Status
 from .codec import targets_of
 
-__all__ = ["NativeOutcome", "attempt_many", "follow"]
+__all__ = ["NativeOutcome", "attempt_many", "follow", "state_of"]
 
 if TYPE_CHECKING:
     from ... import _native
@@ -133,13 +133,14 @@ class NativeOutcome:
     @property
     def states(self) -> tuple[State, ...]:
         """Every state, if a trace was requested."""
-        return tuple([_state(*state) for state in self._answer.states])
+        return tuple([state_of(*state) for state in self._answer.states])
 
 
 def _errors(pairs: Any) -> tuple[TargetError, ...]:
     return tuple([TargetError(*error) for error in pairs])
 
 
-def _state(q: Array, iteration: int, updates: int, errors: Any, residual: float, attempt: int, status: Any) -> State:
+def state_of(q: Array, iteration: int, updates: int, errors: Any, residual: float, attempt: int, status: Any) -> State:
+    """A state from the engine's own tuple."""
     q.setflags(write=False)
     return State(q, iteration, updates, _errors(errors), residual, attempt, _statuses()[status])

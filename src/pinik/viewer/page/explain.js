@@ -14,7 +14,8 @@ const VALUES = {
     dls: ["λ", "the damping; the gain is largest at σ = λ"],
 };
 const SENTENCES = {
-    ccd: "Joint after joint, from the tip to the base, turns the effector as near to the ball as its circle allows.",
+    ccd: "Joint after joint, from the tip to the base, turns the effector as near to the ball as its circle allows. " +
+        "Seen from the joint, the effector is at 𝐩c and the ball at 𝐩d; 𝐚 is its axis.",
     jt: "Every joint moves in proportion to how much it would help alone: down the gradient, with one factor α for all.",
     pinv: "The shortest step that removes the whole linear residual. A small σ makes its gain 1/σ large.",
     dls: "Like the pseudo-inverse, but λ holds the gain of small singular values down.",

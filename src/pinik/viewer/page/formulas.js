@@ -33,13 +33,22 @@ const indexed = (base) => sub(base, mi("i"));
 const component = () => within(transposed(indexed(bold("u"))), e());
 const sum = (below) => (below ? m("munder", mo("∑"), below) : sub(mo("∑"), mi("i")));
 
+const numbered = (number) => sub(mi("k"), m("mn", String(number)));
+const effector = () => sub(bold("p"), mi("c"));
+const goal = () => sub(bold("p"), mi("d"));
+
 const FORMULAS = {
     ccd: () => [
         row(
             mi("φ"),
             mo("="),
             mi("atan2"),
-            within(sub(mi("k"), m("mn", "3")), mo(","), sub(mi("k"), m("mn", "2")), mo("−"), sub(mi("k"), m("mn", "1"))),
+            within(numbered(3), mo(","), numbered(2), mo("−"), numbered(1)),
+        ),
+        row(numbered(1), mo("="), within(goal(), mo("·"), bold("a")), within(effector(), mo("·"), bold("a"))),
+        row(
+            ...[numbered(2), mo("="), goal(), mo("·"), effector(), mo(","), m("mspace")],
+            ...[numbered(3), mo("="), bold("a"), mo("·"), within(effector(), mo("×"), goal())],
         ),
     ],
     jt: () => {

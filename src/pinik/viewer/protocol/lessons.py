@@ -46,23 +46,23 @@ def _damped(*dampings: float) -> dict[str, dict[str, Any]]:
 LESSONS: Mapping[str, Lesson] = {
     "straight": Lesson(
         "Straight and stuck",
-        "The arm is straight and the ball lies on its line, so no joint can bring the tip nearer by a small turn: Jᵀe is "
-        "zero, and three methods stay where they are. CCD asks each joint for its best angle however far away it is, "
-        "and the elbow turns by 180°.",
+        "The arm is straight and the ball lies on its line, so no joint can bring the tip nearer by a small turn:"
+        " Jᵀe is zero, and three methods stay where they are. CCD asks each joint for its best angle however far "
+        "away it is, and the elbow turns by 180°.",
         _scene("double_pendulum_simple", "ccd,jt,pinv,dls", limits="off", balls=[["link3", "on", [0.0375, 0, -0.1]]]),
     ),
     "out-of-reach": Lesson(
         "Out of reach",
-        "The ball is 24 cm too far away, so the arms stretch, with one iteration in every step, and one singular value "
-        "goes to zero. The pseudo-inverse divides by it and swings for ever; damped least squares comes to rest at the "
-        "nearest point.",
+        "The ball is 24 cm too far away, so the arms stretch, with one iteration in every step, and one singular "
+        "value goes to zero. The pseudo-inverse divides by it and swings for ever; damped least squares comes to "
+        "rest at the nearest point.",
         _scene("arm", "pinv,dls", balls=[["tip", "on", [1.1, 0.5, 0.9]]], iterations=1),
     ),
     "damping": Lesson(
         "λ from 0 to large",
-        "The four robots have λ = 0.001, 0.05, 0.3 and 2 m, and one iteration in every step. With almost no damping an arm "
-        "that passes a singular pose swings by whole turns; the larger λ is, the smaller are the jumps, and the more "
-        "iterations it takes.",
+        "The four robots have λ = 0.001, 0.05, 0.3 and 2 m, and one iteration in every step. With almost no "
+        "damping an arm that passes a singular pose swings by whole turns; the larger λ is, the smaller are the "
+        "jumps, and the more iterations it takes.",
         _scene(
             "arm",
             "dls,dls,dls,dls",
@@ -74,21 +74,21 @@ LESSONS: Mapping[str, Lesson] = {
     ),
     "curl": Lesson(
         "Why CCD curls",
-        "CCD begins at the tip, and the last joints use up the error before the first ones have their turn, so the arm "
-        "curls at its end. Damped least squares shares the motion among all joints, because it minimises the sum of the "
-        "squared changes.",
+        "CCD begins at the tip, and the last joints use up the error before the first ones have their turn, so "
+        "the arm curls at its end. Damped least squares shares the motion among all joints, because it minimises "
+        "the sum of the squared changes.",
         _scene("arm", "ccd,dls", balls=[["tip", "on", [0.35, 0.35, 0.55]]]),
     ),
     "limits": Lesson(
         "Joint limits",
-        "The ball is near the base, and every hinge of this arm turns by 45° at most: the amber rings mark those at a "
-        "limit, and both arms miss it by 13 cm. Switch the joint limits off, and both reach it.",
+        "The ball is near the base, and every hinge of this arm turns by 45° at most: the amber rings mark those "
+        "at a limit, and both arms miss it by 13 cm. Switch the joint limits off, and both reach it.",
         _scene("arm", "ccd,dls", balls=[["tip", "on", [0, 0, 0.2]]]),
     ),
     "paws": Lesson(
         "Three planted paws",
-        "The lion's body is free, and pins hold three paws while the fourth follows the curve: four targets at once, in "
-        "one Jacobian of twelve rows. Take a pin away, and see what else moves.",
+        "The lion's body is free, and pins hold three paws while the fourth follows the curve: four targets at "
+        "once, in one Jacobian of twelve rows. Take a pin away, and see what else moves.",
         _scene(
             "lion",
             "dls",
@@ -103,8 +103,8 @@ LESSONS: Mapping[str, Lesson] = {
     ),
     "two-bones": Lesson(
         "Two bones in closed form",
-        "For two bones the law of cosines gives the elbow's angle, so one step suffices wherever the ball is. The "
-        "iteration beside it needs several after every jump of the ball, and now and then stalls at a limit.",
+        "For two bones the law of cosines gives the elbow's angle, so one step suffices wherever the ball is. The"
+        " iteration beside it needs several after every jump of the ball, and now and then stalls at a limit.",
         _scene("two_link", "two_bone,dls", motion="random"),
     ),
 }

@@ -12,7 +12,18 @@ from ...errors import InputError, UnknownNameError
 from ...problem.tolerance import Tolerance
 from ..simulation.session import Session
 
-__all__ = ["FARTHEST", "RANGES", "any_text", "apply", "checked", "number_or_none", "parse", "read_json", "text", "whole_number"]
+__all__ = [
+    "FARTHEST",
+    "RANGES",
+    "any_text",
+    "apply",
+    "checked",
+    "number_or_none",
+    "parse",
+    "read_json",
+    "text",
+    "whole_number",
+]
 
 RANGES: dict[str, tuple[float, float]] = {
     "speed": (0.1, 100.0),

@@ -17,9 +17,9 @@ _LEVEL = 1  # higher levels save less than a tenth, and take twice the time
 def packed_frames(frames: bytes, frame_bytes: int) -> bytes:
     """Pack frames of one layout.
 
-    Each number is taken as 32 bits, rounded to 15 bits of mantissa, and replaced by its difference from the frame before.
-    All first bytes of these differences follow one another, number by number, then all second bytes, and so on; the whole
-    is deflated. `pinik/unpack.js` reads it.
+    Each number is taken as 32 bits, rounded to 15 bits of mantissa, and replaced by its difference from the frame
+    before. All first bytes of these differences follow one another, number by number, then all second bytes, and so on;
+    the whole is deflated. `pinik/unpack.js` reads it.
 
     Args:
         frames: The frame messages, one after another.

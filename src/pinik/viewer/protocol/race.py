@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from typing import Any
 
-from ..simulation.race import Race, card
+from ..simulation.race import Race
+from ..simulation.race_card import card
 
 __all__ = ["race_message"]
 

@@ -14,26 +14,34 @@ from numpy.typing import NDArray
 
 from ...errors import InputError
 from ...model.limits import Limits
-from ...problem.kinematics import Kinematics
 from ...problem.targets import Target
 from ...problem.tolerance import Tolerance, largest_of
 from ...robot import Robot
 from ...solvers.base import Solver
 from ...solving.message import explain
 from ...solving.options import Options
+from ...solving.pursuit import Pursuit, pursue
 from ...solving.question import Question
-from ...solving.run import Pace, States, run
 from ...solving.state import State, Status
 from ...solving.verdict import judge
 from .statistics import Statistics, StepFigures
 
-__all__ = ["STATUSES", "Instance", "Standing", "StepSettings"]
+__all__ = ["STATUSES", "Instance", "Standing", "StepSettings", "same_objects"]
 
 Array = NDArray[np.float64]
 
 STATUSES = ("IDLE", *(status.name for status in Status), "FAILED", "REFUSED")
 """How a step may end: with the status of a solve; IDLE without targets; FAILED if a custom solver raised an exception;
 REFUSED if the method cannot solve for these targets."""
+
+
+_STILL = 1e-7
+"""The largest change of a joint in one step [rad or m] that nobody sees."""
+
+
+def same_objects(some: Sequence[object], others: Sequence[object]) -> bool:
+    """Whether two sequences hold the very same objects."""
+    return len(some) == len(others) and all(a is b for a, b in zip(some, others, strict=True))
 
 
 @dataclass(frozen=True)
@@ -139,7 +147,7 @@ class Instance:
         self.status = "IDLE"
         self.counted = False
         self._idle = why
-        self._states: States | None = None
+        self._pursuit: Pursuit | None = None
         self._state: State | None = None
         self._question: Question | None = None
         self._targets: tuple[Target, ...] = ()
@@ -156,7 +164,7 @@ class Instance:
         if not asked:
             self._forget_run("there are no targets")
             return
-        moved = len(asked) != len(self._targets) or any(a is not b for a, b in zip(asked, self._targets, strict=True))
+        moved = not same_objects(asked, self._targets)
         if moved and [target.shape for target in asked] != [target.shape for target in self._targets]:
             self._forget_run()  # the kinds of the targets changed, so whether the method can solve for them may change
         self._targets = asked
@@ -206,25 +214,24 @@ class Instance:
         self._paused = self.status == Status.TIME_LIMIT.name
 
     def _run(self, targets: tuple[Target, ...], deadline: float) -> State:
-        if self._states is None:
-            self._states = self._begin(targets)
-            state = next(self._states)
+        if self._pursuit is None:
+            self._pursuit = self._begin(targets)
+            state = self._pursuit.state
         else:
-            state = self._states.send(targets)
+            state = self._pursuit.aim_at(targets)
         while state.status is None and self._clock() < deadline:
-            state = next(self._states)
+            state = self._pursuit.advance(self._pursuit.at_once)
         return state
 
-    def _begin(self, targets: tuple[Target, ...]) -> States:
+    def _begin(self, targets: tuple[Target, ...]) -> Pursuit:
         solver, settings = self._solver, self._settings
         options = Options(solver, limits=settings.limits, tolerance=settings.tolerance, polish=settings.polish)
         try:
             self._question = Question.of(self.robot, targets, options)
         except InputError as error:
             raise _RefusedError(str(error)) from None
-        limits, kinematics = self._question.limits, Kinematics.of(self._question.problem)
         most = solver.max_iterations if settings.until_reached else settings.at_most
-        return run(self._question, kinematics, limits.wrap(self.q), Pace(most))
+        return pursue(self._question, self._question.limits.wrap(self.q), most)
 
     def _fail(self, error: Exception, spent: float) -> None:
         """Count a step in which the solver raised an exception as a miss."""
@@ -233,6 +240,11 @@ class Instance:
         self.last = StepFigures(spent, 0, 0, reached=False, error=None, jump=0.0)
         self.status, self.counted = "FAILED", True
         self.statistics.add(self.last)
+
+    @property
+    def moves(self) -> bool:
+        """Whether the last step moved a joint as far as anybody can see."""
+        return self.last is not None and self.last.jump > _STILL
 
     @property
     def orientation_error(self) -> float | None:

@@ -54,9 +54,9 @@ class Motion:
 
     def advance(self, balls: Sequence[Ball], seconds: float) -> None:
         """Move the balls by one step of `seconds`."""
-        moving = [ball for ball in balls if ball.mode == "on"]
-        if self.kind == "hand" or not moving:
+        if not self.moves(balls):
             return
+        moving = [ball for ball in balls if ball.mode == "on"]
         if self.kind == "curve":
             self._phase = (self._phase + self.speed * seconds / _PERIOD) % 1.0
             for ball in moving:
@@ -68,6 +68,10 @@ class Motion:
             q = random_configuration(self._robot, self._home, self._rng)
             for ball in moving:
                 ball.put(self._robot.placement(ball.frame, q).translation)
+
+    def moves(self, balls: Sequence[Ball]) -> bool:
+        """Whether it moves any of the balls."""
+        return self.kind != "hand" and any([ball.mode == "on" for ball in balls])
 
     def path(self, ball: Ball) -> Array:
         """Return the points (n, 3) [m] of the closed curve that a ball follows; no points if it follows none."""

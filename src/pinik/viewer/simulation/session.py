@@ -13,13 +13,14 @@ from ...errors import InputError, UnknownNameError
 from ...model.home import home_configuration
 from ...motion.curves import CURVES
 from ...motion.effectors import principal_frames
+from ...problem.targets import Target
 from ...robot import Robot
 from ...solvers.base import Solver
 from ...solvers.registry import make_solver
 from ...solving.question import check_joint_names
 from .ball import MODES
 from .balls import Balls
-from .instance import Instance, StepSettings
+from .instance import Instance, StepSettings, same_objects
 from .method_menu import Methods, check_balls, chosen, filled_up, fitting, offered
 from .motion import MOTIONS, Motion
 from .statistics import Summary
@@ -30,6 +31,7 @@ STEPS_PER_SECOND = 60
 VIEWS = (1, 2, 4)
 # The share of a step's time that the solvers may take; the rest is for drawing and for messages from the page.
 _SOLVERS_SHARE = 0.7
+_STILL_STEPS = 90  # a second and a half, which is longer than random motion pauses
 _DEFAULT_METHODS = ("ccd", "jt", "pinv", "dls")
 
 
@@ -83,8 +85,9 @@ class Session:
             check_joint_names(robot, solver)
         self.robot = robot
         self.running = False
-        self.steps = 0
+        self.steps = self._still_steps = 0
         self.notes: list[str] = []
+        self._targets: list[Target] = []  # of the last step
         self._offered: tuple[list[str], list[str]] = ([], [])  # for which frames, what
         self.settings = StepSettings()
         self.motion = Motion(robot, seed)
@@ -127,6 +130,16 @@ class Session:
         """The statistics of the visible instances, refreshed once per second."""
         return self._summaries[: self.view]
 
+    @property
+    def rests(self) -> bool:
+        """Whether neither a ball nor a robot has moved for a while."""
+        return self._still_steps > _STILL_STEPS
+
+    @property
+    def sleeps(self) -> bool:
+        """Whether nothing will move until somebody asks for something."""
+        return not self.running or (self.rests and not self.motion.moves(self.balls))
+
     def tick(self) -> bool:
         """Take a step if the session is running; return whether it is."""
         if self.running:
@@ -137,9 +150,13 @@ class Session:
         """Advance the balls by 1/60 s, and let every visible instance chase them."""
         self.motion.advance(self.balls, 1.0 / STEPS_PER_SECOND)
         share = _SOLVERS_SHARE / STEPS_PER_SECOND / self.view
+        targets = self.balls.targets
         for instance in self.seen:
-            instance.step(self.balls.targets, share)
+            instance.step(targets, share)
         self.steps += 1
+        is_still = not any([instance.moves for instance in self.seen])
+        self._still_steps = self._still_steps + 1 if is_still and same_objects(targets, self._targets) else 0
+        self._targets = targets
         if not self.running or self._clock() - self._refreshed >= 1.0:
             self._refresh_statistics()
 
@@ -151,6 +168,7 @@ class Session:
         """
         chosen = self.seen if index is None else [self._instance(index)]
         self.running = False
+        self._still_steps = 0
         for instance in chosen:
             instance.step_iteration(self.balls.targets)
 
@@ -165,6 +183,7 @@ class Session:
             raise InputError("no ball is on")
         self.move_ball(index, position)
         self.running = False
+        self._still_steps = 0
         for instance in self.instances:
             instance.put(self.home)
         self._refresh_statistics()
@@ -176,7 +195,7 @@ class Session:
         for ball in self.balls:
             ball.go_home()
         self.motion.restart()
-        self.steps = 0
+        self.steps = self._still_steps = 0
         self._refresh_statistics()
 
     def set_view(self, count: int) -> None:

@@ -1,4 +1,4 @@
-"""The heartbeat: sixty ticks a second while somebody watches or asks, and none otherwise."""
+"""The heartbeat: sixty ticks a second while there is something to show or somebody asks, and none otherwise."""
 
 from __future__ import annotations
 
@@ -10,32 +10,35 @@ from .metronome import Metronome
 
 __all__ = ["Heartbeat"]
 
-_AWAKE = 10.0  # [s] after anybody has last watched or asked
+_AWAKE = 10.0  # [s] after there has last been anything to show, or a request
 
 
 class Heartbeat:
-    """Calls `tick` sixty times a second; it rests when nobody has watched and nobody has asked for ten seconds."""
+    """Calls `tick` sixty times a second.
+
+    It rests when there has been nothing to show for ten seconds, and nobody has asked for anything.
+    """
 
     def __init__(
         self,
         tick: Callable[[], None],
-        watched: Callable[[], bool],
+        lively: Callable[[], bool],
         clock: Callable[[], float] = time.monotonic,
     ) -> None:
         """Start beating, in the loop of this thread.
 
         Args:
             tick: What to do sixty times a second.
-            watched: Returns whether somebody watches.
+            lively: Returns whether there is something to show to somebody.
             clock: A function that returns the time in seconds.
         """
-        self._tick, self._watched, self._clock = tick, watched, clock
+        self._tick, self._lively, self._clock = tick, lively, clock
         self._metronome = Metronome(self._beat, STEPS_PER_SECOND)
         self.wake()
 
     @property
     def rests(self) -> bool:
-        """Whether nobody watches or has asked lately."""
+        """Whether there has been nothing to do lately."""
         return not self._metronome.runs
 
     def wake(self) -> None:
@@ -49,7 +52,7 @@ class Heartbeat:
         self._metronome.stop()
 
     def _beat(self) -> None:
-        if self._watched():
+        if self._lively():
             self._used = self._clock()
         elif self._clock() - self._used > _AWAKE:
             self._metronome.stop()

@@ -87,7 +87,7 @@ class LiveView:
         loop = tornado.ioloop.IOLoop.current()
         try:
             show = Show(session, later_in_threads(loop, self._workers), version)
-            heartbeat, guests = Heartbeat(show.tick, show.is_watched), Guests()
+            heartbeat, guests = Heartbeat(show.tick, show.is_lively), Guests()
             server = make_server(show, heartbeat, guests, host, self._mark)
         except BaseException as error:
             for listening in sockets:

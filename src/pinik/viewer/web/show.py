@@ -108,6 +108,11 @@ class Show:
         """Return whether there is any tab."""
         return len(self._seats) > 0
 
+    def is_lively(self) -> bool:
+        """Return whether there is a tab, and anything to tell it without being asked."""
+        waits = self._waits_for_shapes or self._loader.loading is not None or self._frame_due or self._state_due
+        return self.is_watched() and (waits or not self.session.sleeps)
+
     def join(self, tab: Tab) -> None:
         """Add a tab and send it everything."""
         for message in (self._hello, self._robot, self.state()):
@@ -146,13 +151,13 @@ class Show:
         """
         if not (self._waits_for_shapes and self._seats) and self.session.tick():
             self._pace.note_step()
-            self._frame_due = True
+            self._frame_due = self._frame_due or not self.session.rests
         else:
             self._pace.forget()
         if self._frame_due:
             self._send_frame()
         often_enough = self._clock() - self._state_sent >= 1.0 / _STATES_PER_SECOND
-        if self._state_due or (self.session.running and often_enough):
+        if self._state_due or (self.session.running and often_enough and not self.session.rests):
             self._send_state()
 
     def _send_frame(self) -> None:

@@ -52,6 +52,7 @@ class WebSocket(tornado.websocket.WebSocketHandler):
         await self._budgeted()
         if self.ws_connection is not None:
             asked = message if isinstance(message, str) else ""
+            self.heartbeat.wake()
             spent = await self.turns.take(lambda: self.show.receive(self, asked))
             self._budget.spend(max(_LEAST, spent))
 
