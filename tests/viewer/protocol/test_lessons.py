@@ -123,23 +123,23 @@ def test_limits_cost_both_methods_the_ball():
     assert lecture.statuses == ["CONVERGED", "CONVERGED"]
 
 
-def test_three_paws_stay_planted_while_the_fourth_follows():
+def test_three_paws_stay_planted_while_the_fourth_reaches():
     lecture = Lecture("paws")
     session = lecture.session
     modes = [ball.mode for ball in session.balls]
     assert modes == ["on", "pinned", "pinned", "pinned"]
-    begin = [ball.position.copy() for ball in session.balls]
+    home = [plain_placement(session.robot, ball.frame, session.home).translation for ball in session.balls]
     (lion,) = session.seen
-    moved = 0.0
-    for _ in range(240):
+    for step in range(20):
         session.step()
-        for ball, at in zip(session.balls, begin, strict=True):
+        if step < 10:
+            continue
+        for ball, at in zip(session.balls, home, strict=True):
             off = np.linalg.norm(plain_placement(session.robot, ball.frame, lion.q).translation - ball.position)
             assert off <= 1e-4
             if ball.mode == "pinned":
-                np.testing.assert_array_equal(ball.position, at)
-        moved = max(moved, np.linalg.norm(session.balls[0].position - begin[0]))
-    assert moved > 0.05
+                np.testing.assert_allclose(ball.position, at, atol=1e-9)
+    assert np.linalg.norm(session.balls[0].position - home[0]) > 0.2
 
 
 def test_two_bones_need_one_step_and_the_iteration_several():

@@ -38,10 +38,11 @@ export class Explain {
         this._heat = new HeatMap(theme);
         this._turns = new TurnList((turn, part) => showTurn(this.index, turn, part));
         const change = (value) => (Math.abs(value) < 1e-9 ? "0" : degrees(value));
-        this._values = new Bars({ title: "Singular values: what is left of the error along each", signed: false, words: (v) => v.toPrecision(3) });
+        this._values = new Bars({ title: "Singular values: what is left of the error along each", signed: false, words: percentage });
         this._gradient = new Bars({ title: "Gradient Jᵀe", signed: true, words: (v) => v.toPrecision(2) });
         this._steps = new Bars({ title: "This step", signed: true, words: change });
         this._freedom = new Bars({ title: "", signed: false, words: (v) => `${Math.round(100 * v)} %` });
+        this._values.element.classList.add("with-notes");
         this._body = make("div", { className: "explained" }, this._sentence, this._formulas, this._value, this._curve.element,
             this._turns.element, this._values.element,
             make("section", {}, make("h4", {}, "Jacobian J, residual e and step Δq"), this._heat.element),
@@ -121,7 +122,7 @@ export class Explain {
         this._values.show(gains.length ? sigma.map((s, i) => ({
             name: `σ${subscript(i + 1)} = ${Number(s.toPrecision(3))} m`,
             value: Math.abs(1 - gains[i] * s),
-            note: `   of ${length(Math.abs(parts[i]))}`,
+            note: ` of ${length(Math.abs(parts[i]))}`,
         })) : [], 1);
         this._freedom.element.querySelector("h4").textContent = nullity
             ? `Null space: ${nullity} dimension${nullity > 1 ? "s" : ""}. Each joint's share that moves no effector`
@@ -134,6 +135,11 @@ export class Explain {
     replay() {
         this._turns.replay();
     }
+}
+
+function percentage(part) {
+    if (part < 0.001) return "none";
+    return `${part < 0.1 ? (100 * part).toFixed(1) : Math.round(100 * part)} %`;
 }
 
 function subscript(number) {

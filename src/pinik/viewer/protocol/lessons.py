@@ -87,16 +87,14 @@ LESSONS: Mapping[str, Lesson] = {
     ),
     "paws": Lesson(
         "Three planted paws",
-        "The lion's body is free, and pins hold three paws while the fourth follows the curve: four targets at "
-        "once, in one Jacobian of twelve rows. Take a pin away, and see what else moves.",
+        "The lion's body is free, and pins hold three paws while the fourth reaches for its ball: four targets at "
+        "once, in one Jacobian of twelve rows. Drag the ball, or switch a pin off, and see what else moves.",
         _scene(
             "lion",
             "dls",
             root="free_flyer",
-            motion="curve",
-            curve="circle",
             balls=[
-                ["left_fore_paw", "on"],
+                ["left_fore_paw", "on", [1.0, 0.16, -0.55]],
                 *([paw, "pinned"] for paw in ("right_fore_paw", "left_hind_paw", "right_hind_paw")),
             ],
         ),
