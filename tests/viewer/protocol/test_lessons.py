@@ -73,7 +73,7 @@ def test_only_ccd_leaves_the_straight_arm():
     home = lecture.session.home
     lecture.watch(60)
     ccd, *others = lecture.session.seen
-    assert ccd.status == "CONVERGED"
+    assert ccd.last.error == pytest.approx(0.05, abs=1e-6)  # the bones are 0.1 and 0.2 m long, the ball is 0.05 m away
     assert abs(ccd.q - home).max() == pytest.approx(math.pi, abs=0.01)
     for other in others:
         np.testing.assert_allclose(other.q, home, atol=1e-6)

@@ -236,3 +236,24 @@ def test_a_method_of_ones_own_shows_its_jacobian_and_its_step(panda):
     _, _, told = begin(panda, Tenth, ("panda_hand_tcp",))
     assert (len(told.spectrum.gains), told.spectrum.value) == (0, None)
     np.testing.assert_allclose(told.asked, 0.1 * told.J.T @ NEAR, atol=1e-12)
+
+
+def test_a_new_parameter_and_new_limits_are_explained_as_if_for_the_first_time(panda):
+    """What is kept between explanations never shows: far out of reach, where bounds decide about the damping."""
+    kept = Explainer()
+    home = home_configuration(panda)
+    target = [pinik.Target("panda_hand_tcp", [2.0, 0.3, 0.5])]
+    for damping, limits in [
+        (0.1, True),
+        (0.7, True),
+        (0.7, False),
+        (0.1, True),
+        (0.2, True),
+        (0.3, True),
+        (0.4, False),
+    ]:
+        solver = pinik.DampedLeastSquares(damping=damping)
+        one = Instance(panda, solver, home, StepSettings(limits=limits), Clock())
+        told, anew = kept.explain(one, target), Explainer().explain(one, target)
+        assert told.spectrum.value == anew.spectrum.value
+        np.testing.assert_array_equal(told.step, anew.step)

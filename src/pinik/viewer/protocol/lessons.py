@@ -48,8 +48,8 @@ LESSONS: Mapping[str, Lesson] = {
         "Straight and stuck",
         "The arm is straight and the ball lies on its line, so no joint can bring the tip nearer by a small turn:"
         " Jᵀe is zero, and three methods stay where they are. CCD asks each joint for its best angle however far "
-        "away it is, and the elbow turns by 180°.",
-        _scene("double_pendulum_simple", "ccd,jt,pinv,dls", limits="off", balls=[["link3", "on", [0.0375, 0, -0.1]]]),
+        "away it is, and the elbow turns by 180°, to the point nearest to the ball that this arm can reach.",
+        _scene("double_pendulum_simple", "ccd,jt,pinv,dls", limits="off", balls=[["link3", "on", [0.0375, 0, 0.05]]]),
     ),
     "out-of-reach": Lesson(
         "Out of reach",
