@@ -29,6 +29,7 @@ PLACEHOLDERS = {
     "parameters": "NAME",
     "poses": "POSE",
     "stiffness": "JOINT",
+    "turns": "JOINT",
     "windings": "JOINT",
 }
 TARGETS = [
@@ -38,6 +39,7 @@ TARGETS = [
 ]
 # The place of tool0 at elbow_joint=2.9, where links of the ur5 touch.
 TOUCH = ("--position", "0.02149671", "0.19145", "0.08721464", "--start", "elbow_joint=2.9")
+DOWN = ("--axis", "z", "--direction", "0", "0", "-1")
 RUNS = {
     "solve": [
         ("solve", "arm", "--targets", "-", "--root", "planar", "--json"),
@@ -46,6 +48,7 @@ RUNS = {
     ],
     "solve-all": [
         ("solve-all", "ur5", "--frame", "tool0", "--position", "0.4", "0.1", "0.4", "--rpy", "0", "0", "0", "--json"),
+        ("solve-all", "ur5", "--frame", "tool0", "--position", "0.4", "0.1", "0.4", *DOWN, "--families", "--json"),
     ],
     "track": [
         ("track", "two_link", JUMP, "--frame", "tip", "--start", "joint1=-2.64", "--start", "joint2=1.5", "--json"),

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import colorsys
+import dataclasses
+import itertools
 
 import numpy as np
 import pinocchio
@@ -133,7 +135,30 @@ def test_every_branch_has_a_colour_of_its_own(ur5):
     apart = np.abs(np.subtract.outer(hues, hues))
     apart = np.minimum(apart, 1 - apart) + np.eye(7)
     assert apart.min() > 0.02
-    assert len(set(TINTS)) == 7
+
+
+def cielab(pixel):
+    """L*, a*, b* of an sRGB pixel under D65, by the formulas of CIE 15 and IEC 61966-2-1."""
+    c = np.asarray(pixel[:3], dtype=float) / 255.0
+    linear = np.where(c <= 0.04045, c / 12.92, ((c + 0.055) / 1.055) ** 2.4)
+    to_xyz = np.array([[0.4124, 0.3576, 0.1805], [0.2126, 0.7152, 0.0722], [0.0193, 0.1192, 0.9505]])
+    x, y, z = np.cbrt(to_xyz @ linear / to_xyz.sum(axis=1))
+    return np.array([116 * y - 16, 500 * (x - y), 200 * (y - z)])
+
+
+@pytest.mark.parametrize("paper", ["#ffffff", "#14181d"])
+def test_the_colours_of_sixteen_branches_are_told_apart_on_white_and_on_black(bars, paper):
+    branches = elbows(bars, [2.0, -2.0, 0.5])
+    row = dataclasses.replace(branches, q=np.repeat(branches.q[:1], 16, axis=0))
+    where = np.zeros((16, 3))
+    where[:, 0] = 1.5 * np.arange(16)
+    size = (1200, 120)
+    picture = pinik.draw(bars, row, offset=where, view="top", size=size, ground=False, background=paper)
+    seen = [cielab(at(picture, middle(bars, "upper", branches[0]) + offset)) for offset in where[1:]]
+    paper_seen = cielab(picture.pixels[0, 0])
+    gaps = [np.linalg.norm(a - b) for a, b in itertools.combinations([*seen, paper_seen], 2)]
+    assert min(gaps) > 5.0
+    assert len(set(TINTS)) == 15
 
 
 def test_answers_that_are_none_are_said_in_words(bars):
@@ -287,6 +312,26 @@ def test_what_stands_around_is_drawn_and_what_touches_it_is_red(bars):
     assert red(at(picture, post + away))
     only = pinik.draw(bars, FREE, world=world, view="top", **BARE)
     assert not red(only.pixels).any()
+
+
+def test_an_object_with_the_name_of_a_link_makes_no_link_of_its_name_red(bars):
+    """The box "hand" goes into the bar "lower"; the hand itself is free of everything."""
+    world = pinik.World()
+    post = middle(bars, "lower", FREE)
+    world.add_box("hand", [0.03, 0.03, 0.6], post)
+    (touch,) = bars.collisions(FREE, world)
+    assert (touch.pair, touch.with_world, touch.links) == (("lower", "hand"), True, ("lower",))
+    (own,) = bars.collisions(np.array([0.2, 2.55, 1.6]))
+    assert (set(own.links), own.with_world) == ({"upper", "hand"}, False)
+    picture = pinik.draw(bars, FREE, world=world, collisions=True, view="top", **BARE)
+    assert red(at(picture, post + 0.4 * (bars.placement("hand", FREE).translation - post)))
+    assert not red(at(picture, middle(bars, "hand", FREE)))
+    assert not red(at(picture, post + np.array([0.0, 0.0, 0.3])))
+    tip = bars.placement("tip", FREE).translation
+    solution = bars.solve("tip", tip, q0=FREE, avoid=world, restarts=0)
+    assert solution.status is pinik.Status.COLLIDING
+    drawn = pinik.draw(bars, solution, view="top", **BARE)
+    assert not red(at(drawn, middle(bars, "hand", solution.q)))
 
 
 def test_a_ghost_is_seen_in_front_of_what_stands_around_and_not_behind(bars):

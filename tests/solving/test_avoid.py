@@ -11,37 +11,15 @@ import pinocchio
 import pytest
 
 import pinik
+from bars import BALL, THICK, bar, gap, planar, world_of
 from collision_oracle import PlainCollisions
 from engines import needs_native
 from pinik import Status, World
 from pinik.solving.options import Options
 from robots import load_quietly
-from urdf_texts import joint, link, robot
+from urdf_texts import joint
 
 ENGINES = ["python", pytest.param("native", marks=needs_native)]
-THICK = 0.04
-BALL = 0.05
-
-
-def bar(name: str, length: float) -> str:
-    """A link that is a bar along its x axis."""
-    shape = f'<collision><origin xyz="{length / 2} 0 0"/><geometry><box size="{length} {THICK} {THICK}"/></geometry>'
-    return link(name, f"{shape}</collision>")
-
-
-def planar(*lengths: float, limits: tuple[float, float] = (-3.0, 3.0)) -> str:
-    """An arm of bars in the plane z = 0, with hinges j0, j1, …; the limits are those of j0."""
-    parts, reach, before = [link("base"), link("tip")], 0.0, "base"
-    for number, length in enumerate(lengths):
-        low, high = limits if number == 0 else (-3.0, 3.0)
-        ends = f'<limit lower="{low}" upper="{high}" effort="1" velocity="1"/>'
-        at = f'<origin xyz="{reach} 0 0"/><axis xyz="0 0 1"/>'
-        parts += [bar(f"b{number}", length), joint(f"j{number}", before, f"b{number}", at, limit=ends)]
-        before, reach = f"b{number}", length
-    parts.append(joint("t", before, "tip", f'<origin xyz="{reach} 0 0"/>', kind="fixed", limit=""))
-    return robot(*parts)
-
-
 TWO, THREE = planar(1.0, 0.8), planar(1.0, 1.0, 0.5)
 
 
@@ -60,23 +38,9 @@ def ball_on(q: np.ndarray, depth: float, along: float = 0.5) -> np.ndarray:
     return np.array([along * math.cos(a) - offset * math.sin(a), along * math.sin(a) + offset * math.cos(a), 0.0])
 
 
-def world_of(*centres: np.ndarray) -> World:
-    world = World()
-    for number, centre in enumerate(centres):
-        world.add_sphere(f"ball{number}", BALL, centre)
-    return world
-
-
-def touches_ball(machine: pinik.Robot, q: np.ndarray, centre: np.ndarray, radius: float = BALL) -> bool:
-    """Whether a ball touches a bar of a planar arm: the distance of its centre from each box, by hand."""
-    at = np.zeros(3)
-    for number, length in enumerate([1.0, 0.8] if len(q) == 2 else [1.0, 1.0, 0.5]):
-        at = machine.placement(f"b{number}", q)
-        local = at.actInv(centre) - np.array([length / 2, 0.0, 0.0])
-        outside = np.maximum(np.abs(local) - [length / 2, THICK / 2, THICK / 2], 0.0)
-        if np.linalg.norm(outside) <= radius:
-            return True
-    return False
+def touches_ball(machine: pinik.Robot, q: np.ndarray, centre: np.ndarray) -> bool:
+    """Whether a ball touches a bar of TWO or THREE, by hand."""
+    return gap(machine, [1.0, 0.8] if len(q) == 2 else [1.0, 1.0, 0.5], q, centre) <= 0.0
 
 
 @pytest.mark.parametrize("engine", ENGINES)
@@ -126,18 +90,84 @@ def test_where_both_elbows_touch_the_shallower_is_told_with_names_and_depth(engi
     (touch,) = found.collisions
     assert set(touch.pair) == {"b0", "ball1"}
     assert touch.depth == pytest.approx(0.012, abs=1e-6)
-    assert found.message == "reaches the target, but b0 and ball1 overlap by 1.2 cm"
-    with pytest.raises(pinik.SolveError, match=r"b0 and ball1 overlap by 1\.2 cm"):
+    assert (
+        found.message == "reaches the target, but b0 and the object ball1 overlap by 1.2 cm; both answers found collide"
+    )
+    assert found.chosen_from == 2
+    with pytest.raises(pinik.SolveError, match=r"b0 and the object ball1 overlap by 1\.2 cm"):
         found.raise_for_status()
     document = found.to_dict()
     assert document["status"] == "COLLIDING"
-    assert document["collisions"] == [{"pair": ["b0", "ball1"], "depth_m": touch.depth}]
+    assert document["collisions"] == [{"pair": ["b0", "ball1"], "with_world": True, "depth_m": touch.depth}]
     again = pickle.loads(pickle.dumps(found))
     assert [one.pair for one in again.collisions] == [("b0", "ball1")]
     assert again.message == found.message
     alone = machine.solve("tip", position=[1.1, 0.6, 0], q0=both[0], engine=engine, avoid=world, restarts=0)
     assert alone.status is Status.COLLIDING
     assert alone.q == pytest.approx(both[0], abs=1e-6)
+
+
+@pytest.mark.parametrize("engine", ENGINES)
+def test_where_the_same_answers_collide_again_and_again_the_attempts_end_early(engine):
+    """An arm of two bars has two answers; the 56th attempt is the last one."""
+    machine = load_quietly(TWO)
+    both = elbows(1.1, 0.6)
+    world = world_of(ball_on(both[0], 0.03), ball_on(both[1], 0.012))
+    found = machine.solve("tip", position=[1.1, 0.6, 0], q0=both[0], engine=engine, avoid=world)
+    assert found.status is Status.COLLIDING
+    assert (found.restarts, found.chosen_from) == (55, 2)
+    assert found.message.endswith("; both answers found collide")
+
+
+@pytest.mark.parametrize("engine", ENGINES)
+def test_answers_that_differ_by_whole_turns_are_one(engine):
+    """Hinges with a range of two turns and more reach each elbow in many ways, at which the same touches."""
+    machine = load_quietly(
+        planar(1.0, 0.8, limits=(-9.0, 9.0)).replace('lower="-3.0" upper="3.0"', 'lower="-9" upper="9"')
+    )
+    both = elbows(1.1, 0.6)
+    world = world_of(ball_on(both[0], 0.03), ball_on(both[1], 0.012))
+    for q0 in (both[0], both[0] + [2 * math.pi, -2 * math.pi], [math.pi + both[0][0], both[0][1] - math.pi]):
+        found = machine.solve("tip", position=[1.1, 0.6, 0], q0=q0, engine=engine, avoid=world)
+        assert (found.status, found.chosen_from) == (Status.COLLIDING, 2)
+        assert found.restarts == 55
+
+
+@pytest.mark.parametrize("engine", ENGINES)
+def test_where_answers_are_not_isolated_all_attempts_are_made(engine):
+    """Three bars reach a point in infinitely many ways; a ball around all holds every one."""
+    machine = load_quietly(planar(1.0, 1.0, 0.5))
+    world = World()
+    world.add_sphere("room", 1.5, [0.0, 0.0, 0.0])
+    found = machine.solve("tip", position=[0.9, 0.6, 0], engine=engine, avoid=world, restarts=70)
+    assert (found.status, found.restarts) == (Status.COLLIDING, 70)
+    assert found.chosen_from > 10
+    assert found.message.endswith(f"; all {found.chosen_from} answers found collide")
+
+
+@needs_native
+def test_the_answers_that_all_collide_are_those_that_solve_all_finds_and_collide_as_pinocchio_sees_it():
+    machine = load_quietly("ur5")
+    plain, counting = PlainCollisions(machine), set(machine.collision_pairs.counting)
+    rng = np.random.default_rng(8)
+    ended_early = equal = poses_without = 0
+    for _ in range(250):
+        aim = machine.placement("tool0", machine.random(rng))
+        found = machine.solve("tool0", placement=aim, avoid="self")
+        if found.success:
+            continue
+        poses_without += 1
+        others = machine.solve_all("tool0", placement=aim)
+        assert all(plain.touching(q) & counting for q in others)
+        distinct: list[np.ndarray] = []
+        for q in others:
+            if all(np.abs(np.sin(0.5 * (q - other))).max() > 0.005 for other in distinct):
+                distinct.append(q)
+        equal += found.chosen_from == len(distinct)
+        ended_early += found.restarts < 100
+    assert poses_without > 8
+    assert equal >= 0.8 * poses_without
+    assert ended_early >= 0.8 * poses_without
 
 
 @pytest.mark.parametrize("engine", ENGINES)
@@ -386,8 +416,3 @@ def test_anything_else_is_refused_in_words(value):
 def test_a_robot_without_collision_shapes_says_so():
     with pytest.raises(pinik.InputError, match="has no collision shapes"):
         pinik.solve(load_quietly("arm"), "tip", position=[0.2, 0.2, 0.9], avoid="self")
-
-
-def test_a_tracker_does_not_take_it():
-    with pytest.raises(pinik.UnknownNameError, match="avoid"):
-        pinik.Tracker(load_quietly(TWO), "tip", [1.0, 0.0], avoid="self")

@@ -9,12 +9,13 @@ import math
 import pickle
 
 import numpy as np
+import pinocchio
 import pytest
 
 import pinik
 from every_answer import hinge_arm, puma
 from robots import load_quietly
-from urdf_texts import joint
+from urdf_texts import joint, link, robot
 
 
 @functools.cache
@@ -107,7 +108,7 @@ class TestSequence:
         robot, start = load_quietly("two_link"), np.array([0.3, -0.4])
         branches = robot.solve_all("tip", [0.4, 0.3, 0.0], q0=start)
         assert branches.distance == pytest.approx([np.abs(q - start).max() for q in branches])
-        assert all(a <= b for a, b in itertools.pairwise(branches.distance))
+        assert all(a <= b + 1e-9 for a, b in itertools.pairwise(branches.distance))
 
     def test_errors_are_those_of_plain_pinocchio(self):
         robot = load_quietly("ur5")
@@ -123,7 +124,8 @@ class TestSequence:
 
 
 def test_too_few_starts_tell_nothing_of_what_is_missing(ur5):
-    place = ur5.placement("tool0", ur5.configuration({"shoulder_lift_joint": -1.0, "elbow_joint": 1.2}))
+    angles = {"shoulder_lift_joint": -1.0, "elbow_joint": 1.2, "wrist_2_joint": 0.5}
+    place = ur5.placement("tool0", ur5.configuration(angles))
     few = ur5.solve_all("tool0", placement=place, restarts=0)
     assert math.isinf(few.estimate_missing)
     assert "from 1 start, too few to tell" in few.message
@@ -152,3 +154,44 @@ def test_a_pickled_copy_has_the_families_of_the_original(panda):
 def test_a_self_motion_of_two_points_has_the_ends_of_its_arc(panda):
     motion = panda.self_motion("panda_hand_tcp", panda.poses["default"], points=2)
     assert len(motion.q) == 2
+
+
+class TestTheJointThatMovesMost:
+    """A slide along x carries a hinge about z with a bar of 0.4 m, or the hinge alone follows the slide."""
+
+    X, Z = '<axis xyz="1 0 0"/>', '<axis xyz="0 0 1"/>'
+    BAR = joint("end", "bar", "tip", '<origin xyz="0.4 0 0"/>', kind="fixed", limit="")
+
+    @pytest.mark.parametrize("engine", ["python", "auto"])
+    def test_its_change_is_in_metres_if_it_slides_and_in_radians_if_it_turns(self, engine):
+        slide = joint("slide", "base", "cart", self.X, kind="prismatic")
+        links = [link(name) for name in ("base", "cart", "bar", "tip")]
+        machine = pinik.load(robot(*links, slide, joint("elbow", "cart", "bar", self.Z), self.BAR))
+        branches = machine.solve_all("tip", [1.0, 0.1, 0.0], q0=[0.1, 0.05], engine=engine)
+        bend = math.asin(0.1 / 0.4)
+        ways = [[1.0 - 0.4 * math.cos(turn) - 0.1, turn - 0.05] for turn in (bend, math.pi - bend)]
+        assert ways[0][0] > ways[0][1]
+        assert branches.distance == pytest.approx([ways[0][0], ways[1][1]], abs=1e-8)
+        assert branches.farthest_joint == ["slide", "elbow"]
+        assert branches.distance_unit == ["m", "rad"]
+        told = [(row["farthest_joint"], row["distance_unit"]) for row in branches.to_dict()["branches"]]
+        assert told == [("slide", "m"), ("elbow", "rad")]
+        assert pickle.loads(pickle.dumps(branches)).distance_unit == ["m", "rad"]
+
+    def test_a_slide_that_only_turns_its_follower_is_told_in_metres(self):
+        slide = joint("slide", "base", "cart", self.X, kind="prismatic")
+        follower = joint("elbow", "base", "bar", self.Z, '<mimic joint="slide" multiplier="2"/>')
+        links = [link(name) for name in ("base", "cart", "bar", "tip")]
+        machine = pinik.load(robot(*links, slide, follower, self.BAR))
+        branches = machine.solve_all("tip", [0.4 * math.cos(0.6), 0.4 * math.sin(0.6), 0.0])
+        assert (branches.farthest_joint, branches.distance_unit) == (["slide"], ["m"])
+        assert branches.distance == pytest.approx([0.3], abs=1e-8)
+
+    def test_a_free_root_is_told_with_the_unit_of_its_largest_coordinate(self):
+        machine = load_quietly("two_link", root="free_flyer")
+        branches = machine.solve_all("tip", [3.0, 0.0, 0.0], locked=["joint1", "joint2"], restarts=4)
+        step = np.array([pinocchio.difference(machine.model, machine.neutral(), q) for q in branches])
+        assert branches.distance == pytest.approx(np.abs(step).max(axis=1))
+        wanted = ["m" if k < 3 else "rad" for k in np.abs(step).argmax(axis=1)]
+        assert branches.distance_unit == wanted
+        assert set(branches.farthest_joint) == {machine.model.names[1]}

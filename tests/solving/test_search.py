@@ -5,6 +5,7 @@ from __future__ import annotations
 import subprocess
 import sys
 import textwrap
+import time
 
 import numpy as np
 import pinocchio
@@ -16,6 +17,7 @@ from every_answer import hinge_arm, puma
 from pinik import Target
 from pinik.problem.kinematics import Kinematics
 from pinik.solving.metric import Metric
+from pinik.solving.native.codec import goals_of
 from pinik.solving.spread import NEAREST, SIZE, Spread
 from robots import load_quietly
 
@@ -176,3 +178,110 @@ class TestEnds:
         """)
         done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, timeout=60, check=False)
         assert done.stdout == "ended\n", done.stderr
+
+
+class TestOrder:
+    @needs_native
+    def test_answers_at_equal_distances_come_in_the_order_of_their_angles_in_both_engines(self):
+        robot = pinik.load(hinge_arm("zz", [(0, 0, 0), (0.5, 0, 0), (0.5, 0, 0)], (-3.1, 3.1)))
+        rng, ties = np.random.default_rng(2), 0
+        for _ in range(60):
+            radius, angle = rng.uniform(0.2, 0.6), rng.uniform(-0.5, 0.5)
+            at = [radius * np.cos(angle), radius * np.sin(angle), 0.0]
+            bend = 2.0 * np.arccos(radius)  # of two bones of 0.5 m, one way or the other
+            wanted = [[angle - bend / 2.0, bend], [angle + bend / 2.0, -bend]]
+            if abs(angle) + bend / 2.0 > bend:
+                continue
+            ties += 1  # the elbow, which turns the farthest, turns as far in both
+            for engine in ("native", "python"):
+                assert robot.solve_all("tip", position=at, engine=engine).q == pytest.approx(np.array(wanted), abs=1e-6)
+        assert ties > 40
+
+
+class TestTime:
+    def test_the_solve_after_a_search_without_an_answer_has_what_is_left_of_the_time(self, monkeypatch):
+        robot = load_quietly("so101")
+        wanted = robot.placement("gripper_frame_link", 0.3 * robot.random(np.random.default_rng(1)))
+        wanted.rotation = wanted.rotation @ pinocchio.utils.rotate("z", 0.3)
+        words = {"placement": wanted, "engine": "python", "restarts": 20}
+        ticks = iter(range(10**9))
+        monkeypatch.setattr(time, "perf_counter", lambda: 0.1 * next(ticks))
+        unlimited = robot.solve_all("gripper_frame_link", time_limit=1e6, **words)
+        assert unlimited.status is pinik.Status.STALLED
+        enough = 0.95 * unlimited.time
+        branches = robot.solve_all("gripper_frame_link", time_limit=enough, **words)
+        assert not branches
+        assert branches.status is pinik.Status.TIME_LIMIT
+        assert enough < branches.time < enough + 1.0
+
+    @needs_native
+    def test_time_that_is_spent_counts_in_the_compiled_engine(self):
+        robot = load_quietly("so101")
+        wanted = robot.placement("gripper_frame_link", 0.3 * robot.random(np.random.default_rng(1)))
+        prepared = pinik.prepare(robot, Target("gripper_frame_link", placement=wanted), time_limit=50.0)
+        goals = goals_of(prepared.targets)
+        ended = pinik.Solution(prepared.native.solve(robot.neutral(), goals, False, 60.0), prepared.question, {})
+        assert ended.status is pinik.Status.TIME_LIMIT
+        assert ended.time > 60.0
+        assert prepared.native.solve(robot.neutral(), goals, False, 10.0).iterations > ended.iterations
+
+
+class TestWideSlides:
+    BONES = (0.5, 0.3)
+
+    @pytest.mark.parametrize("engine", ["python", pytest.param("native", marks=needs_native)])
+    @pytest.mark.parametrize("limits", [True, False])
+    def test_a_rail_without_end_is_searched_around_the_start(self, engine, limits):
+        a, b = self.BONES
+        steps = [(0, 0, 0), (0, 0, 0), (a, 0, 0), (b, 0, 0)]
+        robot = pinik.load(hinge_arm("xzz", steps, (-1e6, 1e6), j1="prismatic"))
+        for place in (5000.0, -123456.7):
+            x, y, heading = place + 0.4, 0.35, 0.8
+            wanted = []
+            for first in (np.arcsin((y - b * np.sin(heading)) / a), np.pi - np.arcsin((y - b * np.sin(heading)) / a)):
+                wanted.append([x - a * np.cos(first) - b * np.cos(heading), first, heading - first])
+            target = pinocchio.SE3(pinocchio.utils.rotate("z", heading), np.array([x, y, 0.0]))
+            q0 = np.array([place, 0.1, 0.1])
+            branches = robot.solve_all("tip", placement=target, q0=q0, limits=limits, engine=engine)
+            found = branches.q[np.argsort(branches.q[:, 1])]
+            assert found == pytest.approx(np.array(wanted), abs=1e-6)
+            assert branches.estimate_missing == 0.0
+            assert branches.hits.sum() > 40
+
+    def test_starts_slide_by_the_length_of_the_chain_around_the_given_one(self):
+        steps = [(0, 0, 0), (0, 0, 0), (self.BONES[0], 0, 0), (self.BONES[1], 0, 0)]
+        robot = pinik.load(hinge_arm("xzz", steps, (-1e6, 1e6), j1="prismatic"))
+        spread, _ = spread_of(robot, Target("tip", position=[700.0, 0.1, 0.0]))
+        for start in (700.0, 700.1, -3.0, 700.0):
+            spread.begin(np.array([start, 0.0, 0.0]))
+            slides = np.array([spread.next()[0] for _ in range(NEAREST)])
+            assert np.abs(slides - start).max() <= 1.5 * sum(self.BONES)
+            assert np.ptp(slides) > 0.3
+
+
+class TestSamples:
+    @pytest.mark.parametrize("engine", ["python", pytest.param("native", marks=needs_native)])
+    def test_starts_that_lead_to_colliding_answers_do_not_count_where_there_are_infinitely_many(self, panda, engine):
+        place = panda.placement("panda_hand_tcp", panda.poses["default"])
+        world = pinik.World()
+        world.add_box("wall", (0.05, 0.4, 0.6), (0.1, -0.45, 0.5))
+        words = {"placement": place, "engine": engine}
+        branches = panda.solve_all("panda_hand_tcp", avoid=["self", world], **words)
+        open_ = panda.solve_all("panda_hand_tcp", **words)
+        assert open_.starts == 32
+        assert branches.colliding > 0
+        assert branches.starts >= 32 + branches.colliding
+        assert all(not panda.collisions(q, world=world) for q in branches)
+        few = panda.solve_all("panda_hand_tcp", avoid=["self", world], restarts=31, **words)
+        assert len(few) < len(branches)
+
+
+@needs_native
+def test_a_placement_of_a_question_that_is_known_goes_straight_to_the_compiled_engine(ur5, monkeypatch):
+    place = ur5.placement("tool0", Q)
+    before = ur5.solve_all("tool0", placement=place)
+    monkeypatch.setattr(sys.modules["pinik.solving.solve_all"], "asked_targets", None)  # reads targets anew
+    for same in (place, place.homogeneous):
+        again = ur5.solve_all("tool0", placement=same)
+        assert np.array_equal(again.q, before.q)
+        assert again.targets[0].rotation == pytest.approx(place.rotation, abs=1e-15)

@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import inspect
 import itertools
+import json
 import math
 import pickle
 from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
+import pinocchio
 import pytest
 
 import pinik
@@ -653,3 +655,39 @@ def test_it_survives_a_pickle(panda):
     assert str(copy) == str(motion)
     assert np.array_equal(copy.q, motion.q)
     assert copy.contains(motion.q[3])
+
+
+def test_the_dictionary_has_arcs_on_the_target_with_their_ends_at_the_limits(panda):
+    """Checked by plain Pinocchio, the URDF's limits and the sum of chords; the text is plain JSON."""
+    default = panda.poses["default"]
+    motion = panda.self_motion(TIP, default)
+    told = json.loads(json.dumps(motion.to_dict(), allow_nan=False))
+    assert (told["schema"], told["robot"], told["dimension"], told["complete"]) == (1, "panda", 1, True)
+    assert told["message"] == str(motion)
+    assert (told["angles"], told["gap"], told["turns"]) == ([], None, motion.turns)
+    names, (arc,) = told["joint_names"], told["arcs"]
+    data, wanted = panda.model.createData(), panda.placement(TIP, default)
+    rows = [panda.configuration(dict(zip(names, row, strict=True))) for row in arc["angles"]]
+    for q in rows:
+        pinocchio.framesForwardKinematics(panda.model, data, q)
+        there = data.oMf[panda.model.getFrameId(TIP)]
+        assert there.isApprox(wanted, 1e-7)
+    assert polyline(np.array(arc["angles"])) == pytest.approx(arc["length"], rel=1e-3)
+    assert not arc["closed"]
+    for row, end in zip((arc["angles"][0], arc["angles"][-1]), arc["ends"], strict=True):
+        (name,) = end["limits"]
+        side = {"lower": panda.lower_q, "upper": panda.upper_q}[end["limits"][name]]
+        assert end["why"] == "limit"
+        assert row[names.index(name)] == pytest.approx(side[panda.joint(name).idx_q], abs=1e-9)
+
+
+def test_the_dictionary_of_more_dimensions_has_configurations_and_no_arcs(panda):
+    default = panda.poses["default"]
+    place = panda.placement(TIP, default).translation
+    motion = panda.self_motion(TIP, default, position=place, points=20)
+    told = motion.to_dict()
+    assert (told["dimension"], told["complete"], told["arcs"], len(told["angles"])) == (4, False, [], 20)
+    assert told["gap"] > 0.0
+    for row in told["angles"]:
+        q = panda.configuration(dict(zip(told["joint_names"], row, strict=True)))
+        assert np.linalg.norm(panda.placement(TIP, q).translation - place) < 1e-7

@@ -1,7 +1,6 @@
 // The answers to many problems, one column for each of their figures.
 #pragma once
 
-#include <cmath>
 #include <cstdint>
 #include <utility>
 #include <vector>
@@ -32,11 +31,7 @@ struct Columns {
 
   void put(std::uint64_t i, const Answer& answer) {
     Eigen::Map<Vector>(q.data() + i * static_cast<std::size_t>(answer.q.size()), answer.q.size()) = answer.q;
-    TargetError largest;
-    for (const TargetError& error : answer.errors) {
-      largest.position = std::fmax(largest.position, error.position);
-      largest.orientation = std::fmax(largest.orientation, error.orientation);
-    }
+    const TargetError largest = largest_of(answer.errors);
     position[i] = largest.position;
     orientation[i] = largest.orientation;
     status[i] = static_cast<int>(answer.status);

@@ -27,14 +27,14 @@ std::string expected(const Engine& engine) {
          std::to_string(engine.problem().terms.size()) + " goals of " + std::to_string(numbers_of_a_goal) + " numbers";
 }
 
-Answer solve(Engine& engine, Vector start, std::vector<Goal> goals, bool nearest) {
+Answer solve(Engine& engine, Vector start, std::vector<Goal> goals, bool nearest, double spent = 0.0) {
   if (start.size() != engine.mechanism().nq || goals.size() != engine.problem().terms.size())
     throw std::invalid_argument(expected(engine) + "; got " + std::to_string(start.size()) + " numbers and " +
                                 std::to_string(goals.size()) + " goals");
   Answer answer;
   {
     const nb::gil_scoped_release release;
-    answer = engine.solve(std::move(start), std::move(goals), nearest, &no_signal);
+    answer = engine.solve(std::move(start), std::move(goals), nearest, &no_signal, spent);
   }
   if (PyErr_Occurred()) throw nb::python_error();
   return answer;
@@ -96,8 +96,10 @@ void register_engine(nb::module_& m) {
            "robot"_a, "problem"_a, "settings"_a)
       .def("solve",
            [](Engine& self, Vector start, nb::ndarray<const double, nb::shape<-1, numbers_of_a_goal>, nb::c_contig> goals,
-              bool nearest) { return solve(self, std::move(start), goals_from(goals.data(), goals.shape(0)), nearest); },
-           "start"_a, "goals"_a, "nearest"_a)
+              bool nearest, double spent) {
+             return solve(self, std::move(start), goals_from(goals.data(), goals.shape(0)), nearest, spent);
+           },
+           "start"_a, "goals"_a, "nearest"_a, "spent"_a = 0.0)
       .def("solve_many", &solve_many, "starts"_a, "goals"_a, "nearest"_a, "threads"_a,
            nb::sig("def solve_many(self, starts: NDArray[numpy.float64], goals: NDArray[numpy.float64], "
                    "nearest: bool, threads: int) -> tuple[NDArray[numpy.float64], NDArray[numpy.int32], "

@@ -19,28 +19,32 @@ using namespace nb::literals;
 namespace {
 
 // For each free answer inside the limits: q, the distance from the start, the largest errors, the number of its start, and
-// how many starts led to it. Then how many answers collide and how many are outside, the starts, the iterations, the
+// how many starts led to it, and the dimension of the set of answers around it. Then how many answers collide and how many are outside, the starts, the iterations, the
 // redundancy, whether time ran out, and the seconds.
 nb::tuple columns(const Findings& findings, std::size_t nq) {
   std::vector<double> q, distance, position, orientation;
-  std::vector<std::int64_t> start, hits;
+  std::vector<std::int64_t> start, hits, dimension;
   std::int64_t colliding = 0, outside = 0;
   for (const Found& answer : findings.answers) {
     if (!answer.inside) ++outside;
-    if (answer.collides) ++colliding;
-    if (!answer.certified || answer.collides) continue;
+    if (!answer.certified) continue;
+    if (*answer.collides) {
+      ++colliding;
+      continue;
+    }
     q.insert(q.end(), answer.q.data(), answer.q.data() + answer.q.size());
     distance.push_back(answer.distance);
     position.push_back(answer.error.position);
     orientation.push_back(answer.error.orientation);
     start.push_back(answer.start);
     hits.push_back(answer.hits);
+    dimension.push_back(answer.dimension);
   }
   const std::size_t count = start.size();
   return nb::make_tuple(as_array(std::move(q), {count, nq}), as_array(std::move(distance), {count}),
                         as_array(std::move(position), {count}), as_array(std::move(orientation), {count}),
-                        as_array(std::move(start), {count}), as_array(std::move(hits), {count}), colliding,
-                        outside, findings.starts, findings.iterations, findings.redundancy, findings.ended_early,
+                        as_array(std::move(start), {count}), as_array(std::move(hits), {count}),
+                        as_array(std::move(dimension), {count}), colliding, outside, findings.starts, findings.iterations, findings.redundancy, findings.ended_early,
                         findings.seconds);
 }
 
@@ -82,13 +86,13 @@ void register_search(nb::module_& m) {
       .def("search", &search, "start"_a, "goals"_a,
            nb::sig("def search(self, start: NDArray[numpy.float64], goals: NDArray[numpy.float64]) -> "
                    "tuple[tuple[NDArray[numpy.float64], NDArray[numpy.float64], NDArray[numpy.float64], "
-                   "NDArray[numpy.float64], NDArray[numpy.int64], NDArray[numpy.int64], int, int, int, int, int, bool, "
-                   "float], NDArray[numpy.float64]]"))
+                   "NDArray[numpy.float64], NDArray[numpy.int64], NDArray[numpy.int64], NDArray[numpy.int64], int, int, int, "
+                   "int, int, bool, float], NDArray[numpy.float64]]"))
       .def("search_at", &search_at, "start"_a, "place"_a.none(),
            nb::sig("def search_at(self, start: NDArray[numpy.float64], place: object) -> "
                    "tuple[tuple[NDArray[numpy.float64], NDArray[numpy.float64], NDArray[numpy.float64], "
-                   "NDArray[numpy.float64], NDArray[numpy.int64], NDArray[numpy.int64], int, int, int, int, int, bool, "
-                   "float], NDArray[numpy.float64], tuple[NDArray[numpy.float64]]] | None"));
+                   "NDArray[numpy.float64], NDArray[numpy.int64], NDArray[numpy.int64], NDArray[numpy.int64], int, int, int, "
+                   "int, int, bool, float], NDArray[numpy.float64], tuple[NDArray[numpy.float64]]] | None"));
 }
 
 }  // namespace pinik

@@ -49,7 +49,8 @@ nb::tuple follow(Track& track, const Numbers& start, const Goals& goals, OnMiss 
   return std::move(columns).arrays(answered, nq);
 }
 
-// What a tick came to: q, whether the targets are reached, whether further ticks will bring them nearer, and the largest errors.
+// What a tick came to: q, whether the targets are reached, whether further ticks will bring them nearer, where something touches
+// that kept it from going on, and the largest errors.
 nb::tuple ticked(Track& track, const Numbers& start, const Numbers& most, const std::vector<Goal>& goals) {
   const Problem& problem = track.problem();
   Eigen::Index nv = 0;
@@ -58,15 +59,12 @@ nb::tuple ticked(Track& track, const Numbers& start, const Numbers& most, const 
   if (most.shape(0) != static_cast<std::size_t>(nv))
     throw std::invalid_argument("there must be " + std::to_string(nv) + " largest changes; got " +
                                 std::to_string(most.shape(0)));
-  const auto [answer, approaches] = track.tick(Eigen::Map<const Vector>(start.data(), problem.mechanism->nq),
-                                           Eigen::Map<const Vector>(most.data(), nv), goals);
-  TargetError largest;
-  for (const TargetError& error : answer.errors) {
-    largest.position = std::fmax(largest.position, error.position);
-    largest.orientation = std::fmax(largest.orientation, error.orientation);
-  }
-  return nb::make_tuple(as_array(answer.q), answer.status == Status::converged, approaches, largest.position,
-                        largest.orientation);
+  const auto [answer, approaches, touching] =
+      track.tick(Eigen::Map<const Vector>(start.data(), problem.mechanism->nq),
+                 Eigen::Map<const Vector>(most.data(), nv), goals);
+  const TargetError largest = largest_of(answer.errors);
+  return nb::make_tuple(as_array(answer.q), answer.status == Status::converged, approaches,
+                        touching ? as_array(*touching) : nb::none(), largest.position, largest.orientation);
 }
 
 nb::tuple tick(Track& track, const Numbers& start, const Numbers& most,
@@ -98,10 +96,11 @@ void register_track(nb::module_& m) {
                    "NDArray[numpy.int64], NDArray[numpy.float64]]"))
       .def("tick", &tick, "start"_a, "most"_a, "goals"_a,
            nb::sig("def tick(self, start: NDArray[numpy.float64], most: NDArray[numpy.float64], "
-                   "goals: NDArray[numpy.float64]) -> tuple[NDArray[numpy.float64], bool, bool, float, float]"))
+                   "goals: NDArray[numpy.float64]) -> "
+                   "tuple[NDArray[numpy.float64], bool, bool, NDArray[numpy.float64] | None, float, float]"))
       .def("tick_at", &tick_at, "start"_a, "most"_a, "place"_a.none(),
            nb::sig("def tick_at(self, start: NDArray[numpy.float64], most: NDArray[numpy.float64], place: object) -> "
-                   "tuple[NDArray[numpy.float64], bool, bool, float, float] | None"));
+                   "tuple[NDArray[numpy.float64], bool, bool, NDArray[numpy.float64] | None, float, float] | None"));
 }
 
 }  // namespace pinik

@@ -45,6 +45,8 @@ struct Constants {
   int restarts_when_unreachable = 0;
   int exact_attempts = 0;
   double same_answer = not_given;
+  int colliding_least = 0;
+  int colliding_since = 0;
   double nothing_new_share = not_given;
   int table_size = 0;
   int table_nearest = 0;
@@ -61,6 +63,13 @@ struct Constants {
   double search_approach = not_given;
   double search_basin = not_given;
   double search_outside = not_given;
+  double search_spacing = not_given;
+  double search_nearly_singular = not_given;
+  double search_alike = not_given;
+  double continuum_singular = not_given;
+  double continuum_aside = not_given;
+  int continuum_iterations = 0;
+  int continuum_parts = 0;
   double jump_floor = not_given;
   double jump_factor = not_given;
   double jump_damping = not_given;

@@ -131,4 +131,33 @@ struct Problem {
   }
 };
 
+// Call `see(change, coordinate)` with the change of each free coordinate from configuration a to b.
+template <class See>
+inline void each_change(const Problem& problem, const Vector& a, const Vector& b, const See& see) {
+  for (const MovingJoint& moving : problem.moving) {
+    const Joint& joint = problem.mechanism->joints[static_cast<std::size_t>(moving.joint)];
+    double own[6];
+    problem.mechanism->difference(joint, a.data(), b.data(), own);
+    for (int i = 0; i < joint.nv; ++i)
+      if (moving.coordinates[i] >= 0) see(own[i], static_cast<std::size_t>(moving.coordinates[i]));
+  }
+}
+
+// Move q by a step of the free coordinates.
+inline void integrate(const Problem& problem, const Vector& dq, Vector& q) {
+  for (const MovingJoint& moving : problem.moving) {
+    const Joint& joint = problem.mechanism->joints[static_cast<std::size_t>(moving.joint)];
+    double own[6];
+    for (int i = 0; i < joint.nv; ++i) own[i] = moving.coordinates[i] < 0 ? 0.0 : dq[moving.coordinates[i]];
+    problem.mechanism->integrate(joint, q.data(), own);
+  }
+}
+
+// Whether each target's error is within its tolerance.
+inline bool all_within(const Problem& problem, const std::vector<TargetError>& errors) {
+  for (std::size_t t = 0; t < errors.size(); ++t)
+    if (!errors[t].within(problem.terms[t].tolerance)) return false;
+  return true;
+}
+
 }  // namespace pinik

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cmath>
+#include <vector>
 
 #include "../model/spatial.hpp"
 
@@ -36,6 +37,16 @@ struct TargetError {
     return std::hypot(beyond, metres_per_radian * std::fmax(orientation - t.orientation, 0.0));
   }
 };
+
+// The largest position and orientation error of several targets.
+inline TargetError largest_of(const std::vector<TargetError>& errors) {
+  TargetError largest;
+  for (const TargetError& error : errors) {
+    largest.position = std::fmax(largest.position, error.position);
+    largest.orientation = std::fmax(largest.orientation, error.orientation);
+  }
+  return largest;
+}
 
 // The numbers of one target, in the axes of its reference frame. What the target does not constrain is not read.
 struct Goal {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "choice.hpp"
+#include "colliding.hpp"
 #include "outcome.hpp"
 #include "run.hpp"
 #include "settings.hpp"
@@ -21,7 +22,7 @@ class Attempts {
         run_(settings_.solver, kinematics_),
         limits_(Limits::of(*problem.mechanism, settings.limits, problem.constants.barely_outside)),
         loose_(limits_.loosened()),
-        choice_(problem, limits_, settings.choose_weights), starts_(problem, limits_, settings.seed),
+        choice_(problem, limits_, settings.choose_weights), colliding_(problem, limits_), starts_(problem, limits_, settings.seed),
         way_out_(settings_, kinematics_, run_, limits_, loose_, watch_, collisions) {
     kinematics_.target_jacobian = settings.solver.target_jacobian;
     for (const Joint& joint : problem.mechanism->joints) has_circles_ = has_circles_ || joint.nq == 2;
@@ -33,7 +34,7 @@ class Attempts {
     watch_.start();
     outcome_ = Outcome();
     least_miss_ = infinity;
-    colliding_.clear();
+    colliding_.begin();
     given_ = start;
     limits_.wrap(start, given_);
     given_ = start;
@@ -68,9 +69,9 @@ class Attempts {
   std::uint64_t target_ = 0;
   std::int64_t first_number_ = 0;  // 1 if the first attempt begins at the first of starts_
   Choice choice_;
+  Colliding colliding_;  // answers at which something touches
   Starts<Rows> starts_;
   WayOut<Rows> way_out_;
-  std::vector<Vector> colliding_;  // answers at which something touches
   bool has_circles_ = false, loosens_ = true;
   Vector given_, drawn_, answer_;
   Linearization<Rows> inside_;
@@ -96,7 +97,7 @@ class Attempts {
         choice_.add(outcome_.q, given_);
       else
         choice_.add_nothing();
-      if (choice_.count() > 0 && choice_.since() >= patience) break;
+      if (choice_.count() > 0 ? choice_.since() >= patience : no_other_answer(number + 1)) break;
     }
     if (choice_.count() > 0) {
       outcome_.q = choice_.nearest(given_);
@@ -104,29 +105,39 @@ class Attempts {
       return Status::converged;
     }
     if (status == Status::converged) return status;
-    if (colliding_.empty() && status != Status::time_limit) {
+    if (colliding_.found().empty() && status != Status::time_limit) {
       loosens_ = true;
       const Vector best = outcome_.q;
       status = attempt(best, problem_.constants.to_the_end, settings_.iterations_to_the_end, false, true,
                        outcome_.restarts + 1);
     }
-    return colliding_.empty() ? status : leave_touches();
+    return colliding_.found().empty() ? status : leave_touches();
+  }
+
+  // Whether further attempts are unlikely to bring another answer than those that collide, which are isolated.
+  bool no_other_answer(std::int64_t attempts) {
+    const std::vector<Vector>& found = colliding_.found();
+    return colliding_.is_enough(attempts) &&
+           std::all_of(found.begin(), found.end(), [&](const Vector& q) { return way_out_.is_isolated(q); });
   }
 
   // Try the way out of the shallowest touches. Take the first answer that is free, or else the shallowest.
   Status leave_touches() {
     std::vector<std::pair<double, std::size_t>> order;
-    for (std::size_t k = 0; k < colliding_.size(); ++k) order.emplace_back(way_out_.depth(colliding_[k]), k);
+    const std::vector<Vector>& found = colliding_.found();
+    for (std::size_t k = 0; k < found.size(); ++k) order.emplace_back(way_out_.depth(found[k]), k);
     std::sort(order.begin(), order.end());
     order.resize(std::min(order.size(), static_cast<std::size_t>(settings_.way_out.ways)));
     double least = infinity;
     for (const auto& [before, number] : order) {
-      const double depth = way_out_(colliding_[number], given_);
+      answer_ = found[number];
+      const double depth = way_out_(answer_, given_);
       if (depth >= least) continue;
       least = depth;
-      outcome_.q = colliding_[number];
+      outcome_.q = answer_;
       if (depth < 0.0) return Status::converged;
     }
+    outcome_.chosen_from = static_cast<std::int64_t>(found.size());
     return Status::colliding;
   }
 
@@ -165,7 +176,7 @@ class Attempts {
     answer_ = outcome_.q;
     limits_.wrap(answer_, given_);
     const bool touches = way_out_.touches(answer_);
-    if (touches) colliding_.push_back(answer_);
+    if (touches) colliding_.add(answer_, outcome_.restarts);
     return touches;
   }
 

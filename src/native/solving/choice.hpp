@@ -6,6 +6,7 @@
 
 #include "../model/limits.hpp"
 #include "../problem/problem.hpp"
+#include "metric.hpp"
 
 namespace pinik {
 
@@ -13,10 +14,7 @@ class Choice {
  public:
   // `weights` has a factor for each coordinate of the problem.
   Choice(const Problem& problem, const Limits& limits, const std::vector<double>& weights)
-      : problem_(problem), limits_(limits), weights_(weights) {
-    for (const Coordinate& coordinate : problem.coordinates)
-      scales_.push_back(problem.slides(coordinate.joint, coordinate.index) ? 1.0 / problem.size_of_chain : 1.0);
-  }
+      : problem_(problem), limits_(limits), weights_(weights), scales_(joint_scales(problem)) {}
 
   void begin() {
     found_.clear();
@@ -31,7 +29,7 @@ class Choice {
     ++since_;
     limits_.wrap(q, start);
     for (const Vector& other : found_)
-      if (change(other, q, scales_) <= problem_.constants.same_answer) return;
+      if (largest_difference(problem_, other, q, scales_) <= problem_.constants.same_answer) return;
     found_.push_back(std::move(q));
     since_ = 0;
   }
@@ -46,7 +44,7 @@ class Choice {
     std::size_t best = 0;
     double least = infinity;
     for (std::size_t k = 0; k < found_.size(); ++k) {
-      const double now = change(start, found_[k], weights_);
+      const double now = largest_difference(problem_, start, found_[k], weights_);
       if (now < least) {
         least = now;
         best = k;
@@ -58,23 +56,9 @@ class Choice {
  private:
   const Problem& problem_;
   const Limits& limits_;
-  const std::vector<double> weights_;
-  std::vector<double> scales_;
+  const std::vector<double> weights_, scales_;  // by coordinate
   std::vector<Vector> found_;
   std::int64_t since_ = 0;
-
-  double change(const Vector& a, const Vector& b, const std::vector<double>& factors) const {
-    double largest = 0.0;
-    for (const MovingJoint& moving : problem_.moving) {
-      const Joint& joint = problem_.mechanism->joints[static_cast<std::size_t>(moving.joint)];
-      double own[6];
-      problem_.mechanism->difference(joint, a.data(), b.data(), own);
-      for (int i = 0; i < joint.nv; ++i)
-        if (moving.coordinates[i] >= 0)
-          largest = std::max(largest, std::abs(own[i]) * factors[static_cast<std::size_t>(moving.coordinates[i])]);
-    }
-    return largest;
-  }
 };
 
 }  // namespace pinik

@@ -7,9 +7,9 @@
 #include <new>
 #include <optional>
 #include <stdexcept>
-#include <variant>
 
 #include "attempts.hpp"
+#include "by_rows.hpp"
 #include "certifier.hpp"
 #include "pool.hpp"
 #include "robot.hpp"
@@ -33,9 +33,10 @@ class Engine {
 
   const Mechanism& mechanism() const { return robot_->mechanism; }
 
-  Answer solve(Vector start, std::vector<Goal> goals, bool nearest, Pause pause) {
+  // Solve one problem, of whose time `spent` seconds are used up.
+  Answer solve(Vector start, std::vector<Goal> goals, bool nearest, Pause pause, double spent) {
     std::unique_ptr<Worker> worker = borrow();
-    Answer answer = worker->solve(*robot_, start, goals, 0, nearest, {nullptr, pause});
+    Answer answer = worker->solve(*robot_, start, goals, 0, nearest, {nullptr, pause, spent});
     give_back(std::move(worker));
     answer.goals = std::move(goals);
     return answer;
@@ -54,7 +55,7 @@ class Engine {
         std::vector<Goal> goals;
         for (std::uint64_t i = next++; i < count && !stop; i = next++) {
           take(i, start, goals);
-          put(i, worker->solve(*robot_, start, goals, i, nearest, {&stop, nullptr}));
+          put(i, worker->solve(*robot_, start, goals, i, nearest, {&stop, nullptr, 0.0}));
         }
         give_back(std::move(worker));
       };
@@ -69,18 +70,13 @@ class Engine {
     Certifier::Memory memory;
     Interrupts interrupts;
     std::optional<Collisions> collisions;
-    std::variant<std::monostate, Attempts<3>, Attempts<6>, Attempts<Eigen::Dynamic>> attempts;
+    ByRows<Attempts> attempts;
 
     Worker(const Robot& robot, const Problem& asked, const Settings& settings)
         : problem(asked), memory(*robot.certifier) {
       if (settings.avoid) collisions.emplace(settings.avoid);
       Collisions* const avoided = collisions ? &*collisions : nullptr;
-      if (problem.rows == 3)
-        attempts.emplace<1>(problem, settings, interrupts, avoided);
-      else if (problem.rows == 6)
-        attempts.emplace<2>(problem, settings, interrupts, avoided);
-      else
-        attempts.emplace<3>(problem, settings, interrupts, avoided);
+      attempts.make(problem, settings, interrupts, avoided);
     }
 
     // Solve one problem; `start` is put inside the limits.
@@ -90,24 +86,16 @@ class Engine {
       problem.goals.swap(goals);
       interrupts = now;
       Answer answer;
-      std::visit(
-          [&](auto& method) {
-            if constexpr (!std::is_same_v<std::decay_t<decltype(method)>, std::monostate>)
-              static_cast<Outcome&>(answer) = method(start, target, nearest);
-          },
-          attempts);
+      attempts.with([&](auto& method) { static_cast<Outcome&>(answer) = method(start, target, nearest); });
       answer.errors = robot.certifier->errors(problem, answer.q, memory);
-      bool within = true;
-      for (std::size_t t = 0; t < answer.errors.size(); ++t)
-        within = within && answer.errors[t].within(problem.terms[t].tolerance);
-      if (within)
+      if (all_within(problem, answer.errors))
         answer.status = collisions && collisions->touches(answer.q.data()) ? Status::colliding : Status::converged;
       else if (answer.proof)
         answer.status = Status::unreachable;
       else if (answer.status == Status::converged || answer.status == Status::colliding)
         answer.status = Status::stalled;
       problem.goals.swap(goals);
-      answer.seconds = std::chrono::duration<double>(Clock::now() - began).count();
+      answer.seconds = now.spent + std::chrono::duration<double>(Clock::now() - began).count();
       return answer;
     }
   };

@@ -23,14 +23,29 @@ PINIK_FAST static void add_squared_changes(const double* values, double value, d
   }
 }
 
+// The factors on free coordinates: 1 for radians, and 1 per length of the chain for metres.
+inline std::vector<double> joint_scales(const Problem& problem) {
+  std::vector<double> scales;
+  for (const Coordinate& coordinate : problem.coordinates)
+    scales.push_back(problem.slides(coordinate.joint, coordinate.index) ? 1.0 / problem.size_of_chain : 1.0);
+  return scales;
+}
+
+// The largest change of a free coordinate from configuration a to b, each times its factor.
+inline double largest_difference(const Problem& problem, const Vector& a, const Vector& b,
+                                 const std::vector<double>& factors) {
+  double largest = 0.0;
+  each_change(problem, a, b, [&](double change, std::size_t c) { largest = std::max(largest, std::abs(change) * factors[c]); });
+  return largest;
+}
+
 // Changes of the free coordinates in radians, or in lengths of the chain; whole turns of hinges count as no change.
 class Metric {
  public:
-  Metric(const Problem& problem, const Limits& limits) : problem_(problem) {
+  Metric(const Problem& problem, const Limits& limits) : problem_(problem), scales_(joint_scales(problem)) {
     for (const Coordinate& coordinate : problem.coordinates) {
       const int entry = coordinate.entry;
       entries_.push_back(entry);
-      scales_.push_back(problem.slides(coordinate.joint, coordinate.index) ? 1.0 / problem.size_of_chain : 1.0);
       // Of a turn and its inverse, 0 stands for a coordinate that makes none.
       turns_.push_back(entry >= 0 && limits.turning[static_cast<std::size_t>(entry)] ? 2.0 * M_PI : 0.0);
       inverse_turns_.push_back(turns_.back() > 0.0 ? 1.0 / turns_.back() : 0.0);
@@ -83,16 +98,7 @@ class Metric {
       for (std::size_t c = 0; c < count; ++c) see(turned(b[entries_[c]] - a[entries_[c]], c) * scales_[c]);
       return;
     }
-    for (const MovingJoint& moving : problem_.moving) {
-      const Joint& joint = problem_.mechanism->joints[static_cast<std::size_t>(moving.joint)];
-      double own[6];
-      problem_.mechanism->difference(joint, a.data(), b.data(), own);
-      for (int i = 0; i < joint.nv; ++i) {
-        if (moving.coordinates[i] < 0) continue;
-        const auto c = static_cast<std::size_t>(moving.coordinates[i]);
-        see(turned(own[i], c) * scales_[c]);
-      }
-    }
+    each_change(problem_, a, b, [&](double change, std::size_t c) { see(turned(change, c) * scales_[c]); });
   }
 
   // Rounds half away from zero by a conversion, which is quicker than a call.

@@ -3,9 +3,9 @@
 
 #include <memory>
 #include <utility>
-#include <variant>
 #include <vector>
 
+#include "by_rows.hpp"
 #include "engine.hpp"
 
 namespace pinik {
@@ -21,12 +21,11 @@ class Pursuit {
         limits_(Limits::of(*problem_.mechanism, limited_, problem_.constants.barely_outside)) {
     problem_.goals = std::move(goals);
     const RunSettings settings{max_iterations, patience, false, false, is_beyond(), engine.settings().polish};
-    if (problem_.rows == 3)
-      begin(run_.emplace<1>(solver_, problem_), settings);
-    else if (problem_.rows == 6)
-      begin(run_.emplace<2>(solver_, problem_), settings);
-    else
-      begin(run_.emplace<3>(solver_, problem_), settings);
+    run_.make(problem_, solver_);
+    run_.with([&](auto& own) {
+      own.run.begin(start_, start_, limits_, limits_, settings);
+      status_ = own.run.look();
+    });
   }
 
   Pursuit(const Pursuit&) = delete;  // run_ refers to the other members
@@ -37,7 +36,7 @@ class Pursuit {
   // The present state. A run that has come to its end stays there until the goals move.
   State state() {
     State state;
-    with_run([&](auto& own) {
+    run_.with([&](auto& own) {
       const auto& at = own.run.at();
       state.q = at.q;
       state.errors = at.errors;
@@ -51,7 +50,7 @@ class Pursuit {
 
   // Take at most `most` steps, fewer if the run comes to its end.
   void advance(std::int64_t most) {
-    with_run([&](auto& own) {
+    run_.with([&](auto& own) {
       for (std::int64_t k = 0; k < most && status_ == Status::running; ++k) {
         own.run.step();
         status_ = own.run.look();
@@ -61,7 +60,7 @@ class Pursuit {
 
   // Move the goals, and take the next step towards them.
   void aim_at(std::vector<Goal> goals) {
-    with_run([&](auto& own) {
+    run_.with([&](auto& own) {
       const bool waited = own.run.waits(), moved = !(goals == problem_.goals);
       problem_.goals = std::move(goals);
       own.run.go_on(waited, moved, is_beyond());
@@ -76,7 +75,7 @@ class Pursuit {
     Kinematics<Rows> kinematics;
     Run<Rows> run;
 
-    Own(const Solver& solver, const Problem& problem) : kinematics(problem), run(solver, kinematics) {
+    Own(const Problem& problem, const Solver& solver) : kinematics(problem), run(solver, kinematics) {
       kinematics.target_jacobian = solver.target_jacobian;
     }
   };
@@ -88,25 +87,10 @@ class Pursuit {
   const Vector start_;
   const Limits limits_;
   Status status_ = Status::running;
-  std::variant<std::monostate, Own<3>, Own<6>, Own<Eigen::Dynamic>> run_;
+  ByRows<Own> run_;
 
   // Only the damping of Jacobian methods asks for it.
   bool is_beyond() const { return !solver_.sweeps() && shortfall(problem_, limited_).has_value(); }
-
-  template <int Rows>
-  void begin(Own<Rows>& own, const RunSettings& settings) {
-    own.run.begin(start_, start_, limits_, limits_, settings);
-    status_ = own.run.look();
-  }
-
-  template <class Do>
-  void with_run(const Do& act) {
-    std::visit(
-        [&](auto& own) {
-          if constexpr (!std::is_same_v<std::decay_t<decltype(own)>, std::monostate>) act(own);
-        },
-        run_);
-  }
 };
 
 }  // namespace pinik

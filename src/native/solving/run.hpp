@@ -154,11 +154,7 @@ class Run {
     return settings_.loosens && kinematics_.problem.is_wide && !kinematics_.loose && !settings_.beyond;
   }
 
-  bool all_within() const {
-    for (std::size_t t = 0; t < at_.errors.size(); ++t)
-      if (!at_.errors[t].within(kinematics_.problem.terms[t].tolerance)) return false;
-    return true;
-  }
+  bool all_within() const { return pinik::all_within(kinematics_.problem, at_.errors); }
 };
 
 }  // namespace pinik

@@ -5,9 +5,9 @@
 #include <Eigen/SVD>
 #include <memory>
 #include <utility>
-#include <variant>
 #include <vector>
 
+#include "continuum.hpp"
 #include "engine.hpp"
 #include "metric.hpp"
 #include "run.hpp"
@@ -23,18 +23,19 @@ struct Found {
   bool inside = true;        // whether it is inside the limits
   std::int64_t start = 0;    // the number of the start from which it was found
   std::int64_t hits = 1;     // how many starts led to it
+  int dimension = 0;         // of the set of answers around it
   double basin = 0.0;        // the distance from which a run that comes nearer is taken to end here
   double distance = 0.0;     // the largest change of a joint from the start [rad or m]
   TargetError error;         // the largest of all targets, by plain Pinocchio
   bool certified = false;    // whether all are within tolerance
-  bool collides = false;     // whether something touches that is to be avoided
+  std::optional<bool> collides;  // whether something touches that is to be avoided; none if that is not known yet
 };
 
 // What a search came to.
 struct Findings {
   std::vector<Found> answers;
   std::int64_t starts = 0, iterations = 0;
-  int redundancy = 0;  // the dimension of the set of answers at a general configuration
+  int redundancy = 0;        // the largest dimension of the set of answers
   bool ended_early = false;  // by the time limit
   double seconds = 0.0;
 };
@@ -43,11 +44,13 @@ struct Findings {
 template <int Rows>
 class Search {
  public:
-  Search(const Problem& problem, const Settings& settings, const Interrupts& interrupts)
+  // Without `collisions`, nothing is to be avoided.
+  Search(const Problem& problem, const Settings& settings, const Interrupts& interrupts, Collisions* collisions)
       : problem_(sharpened(problem)), settings_(settings), watch_(interrupts, settings.time_limit),
         kinematics_(problem_), run_(settings_.solver, kinematics_),
         limits_(Limits::of(*problem.mechanism, settings.limits, problem.constants.barely_outside)),
-        loose_(limits_.loosened()), metric_(problem_, limits_), spread_(problem_, limits_, settings.seed) {
+        loose_(limits_.loosened()), metric_(problem_, limits_), continuum_(kinematics_, limits_),
+        collisions_(collisions), spread_(problem_, limits_, settings.seed) {
     kinematics_.target_jacobian = settings.solver.target_jacobian;
   }
 
@@ -56,21 +59,23 @@ class Search {
     problem_.goals = goals;
     watch_.start();
     findings_ = Findings();
-    last_new_ = 0;
+    last_new_ = colliding_ = 0;
     const std::int64_t most = std::min<std::int64_t>(spread_.begin(kinematics_, start), settings_.restarts);
-    stride_ = static_cast<std::size_t>(most) + 1;
+    stride_ = 2 * (static_cast<std::size_t>(most) + 1);
     columns_.resize(stride_ * problem_.coordinates.size());
     before_.resize(stride_);
     now_.resize(stride_);
     spread_.mark(start);
     if (redundancy_ < 0) redundancy_ = redundancy(start);
-    findings_.redundancy = redundancy_;
     Vector q = start;
     for (std::int64_t number = 0;; ++number) {
       attempt(q, start, number);
-      if (findings_.ended_early || number >= most || is_enough()) return std::move(findings_);
+      if (findings_.ended_early || number >= most || is_enough()) break;
       spread_.next(q);
     }
+    for (const Found& answer : findings_.answers)
+      if (answer.inside) findings_.redundancy = std::max(findings_.redundancy, answer.dimension);
+    return std::move(findings_);
   }
 
  private:
@@ -81,10 +86,12 @@ class Search {
   Run<Rows> run_;
   const Limits limits_, loose_;
   const Metric metric_;
+  Continuum<Rows> continuum_;
+  Collisions* const collisions_;
   Spread<Rows> spread_;
   Findings findings_;
-  int redundancy_ = -1;  // unknown until the first search
-  std::int64_t last_new_ = 0;
+  int redundancy_ = -1;  // the dimension of the answers at a general configuration; unknown until the first search
+  std::int64_t last_new_ = 0, colliding_ = 0;  // the start of the last new answer, and how many starts led to colliding ones
   Vector reached_;
   std::size_t stride_ = 0;               // the most answers that there can be
   std::vector<double> columns_;          // the coordinates of the answers, for metric_
@@ -122,21 +129,34 @@ class Search {
   // there were three starts for each since the last new one.
   bool is_enough() const {
     const Constants& constants = problem_.constants;
-    if (findings_.starts < (redundancy_ > 0 ? constants.search_samples : constants.search_least)) return false;
-    if (redundancy_ > 0) return true;
-    const auto count = static_cast<std::int64_t>(findings_.answers.size());
-    if (findings_.starts - 1 - last_new_ < constants.search_since * count) return false;
-    for (const Found& answer : findings_.answers)
+    if (redundancy_ > 0) return findings_.starts - colliding_ >= constants.search_samples;
+    if (findings_.starts < constants.search_least) return false;
+    std::int64_t count = 0;
+    for (const Found& answer : findings_.answers) {
+      if (answer.dimension > 0) continue;
       if (answer.inside && answer.hits < 2) return false;
-    return true;
+      ++count;
+    }
+    return findings_.starts - 1 - last_new_ >= constants.search_since * count;
   }
 
   // Run from one start. If answers are isolated, the run may leave the limits to the end, since an answer outside counts
-  // as known too, and it ends as soon as it is heading for a known one.
+  // as known too. A continuum outside the limits may have another part inside them, so a second run looks for one there.
   void attempt(const Vector& from, const Vector& near, std::int64_t number) {
     ++findings_.starts;
-    const bool isolated = redundancy_ == 0;
-    const RunSettings run{settings_.max_iterations, problem_.constants.search_patience, true, false, false, settings_.polish, false};
+    Found* answer = run(redundancy_ == 0 ? loose_ : limits_, from, near, number);
+    if (answer && answer->dimension > 0 && !answer->inside) {
+      Vector inside = answer->q;
+      limits_.wrap(inside, near);
+      answer = run(limits_, inside, near, number);
+    }
+    if (answer && answer->collides.value_or(false)) ++colliding_;
+  }
+
+  // The answer that a run leads to, with one more hit; none if to none. If answers are isolated, the run ends as soon as it
+  // is heading for a known one.
+  Found* run(const Limits& limits, const Vector& from, const Vector& near, std::int64_t number) {
+    const RunSettings settings{settings_.max_iterations, problem_.constants.search_patience, true, false, false, settings_.polish, false};
     Found* known = nullptr;
     Status ended = Status::running;
     const auto see = [&](const Linearization<Rows>& at, std::int64_t iteration, std::int64_t, Status status) {
@@ -146,17 +166,16 @@ class Search {
       if (status != Status::running) return false;
       findings_.ended_early = watch_.out_of_time();
       if (findings_.ended_early) return false;
-      if (isolated) known = heading_for(at.q, iteration > 0);
+      if (redundancy_ == 0) known = heading_for(at.q, iteration > 0);
       return known == nullptr;
     };
-    run_(from, near, isolated ? loose_ : limits_, loose_, run, see);
-    if (!known && ended != Status::converged) return;
+    run_(from, near, limits, loose_, settings, see);
+    if (!known && ended != Status::converged) return nullptr;
     for (Found& answer : findings_.answers)
       if (!known && metric_.largest(reached_, answer.q) <= problem_.constants.same_answer) known = &answer;
-    if (known)
-      ++known->hits;
-    else
-      add(near, number);
+    if (!known) return add(near, number);
+    ++known->hits;
+    return known;
   }
 
   // The known answer that a run is heading for, which is now at q: it is nearby, and the last step led towards it.
@@ -172,18 +191,45 @@ class Search {
     return nullptr;
   }
 
-  void add(const Vector& near, std::int64_t number) {
+  // Add an answer; or count it for the known one of a continuum that stands for it, and return that one.
+  Found* add(const Vector& near, std::int64_t number) {
     Found answer;
     answer.q = reached_;
     limits_.wrap(answer.q, near);
     answer.inside = metric_.largest(answer.q, reached_) <= problem_.constants.search_outside;
     if (!answer.inside) answer.q = reached_;
     answer.start = number;
-    if (redundancy_ == 0) answer.basin = problem_.constants.search_basin * least_singular_value(answer.q);
+    if (redundancy_ > 0) {
+      answer.dimension = redundancy_;
+      answer.collides = touches(answer.q);
+    } else {
+      const double least = least_singular_value(answer.q);
+      answer.basin = problem_.constants.search_basin * least;
+      const Eigen::MatrixXd kernel =
+          least < problem_.constants.search_nearly_singular ? continuum_.kernel(answer.q) : Eigen::MatrixXd();
+      if (kernel.cols() > 0) {
+        answer.collides = answer.inside && touches(answer.q);
+        for (Found& other : findings_.answers) {
+          if (!stands_for(other, answer)) continue;
+          ++other.hits;
+          return &other;
+        }
+        answer.dimension = continuum_.dimension(answer.q, kernel);
+      }
+    }
     spread_.mark(answer.q);
     metric_.store(answer.q, findings_.answers.size(), stride_, columns_.data());
+    if (answer.dimension == 0 || redundancy_ > 0) last_new_ = number;
     findings_.answers.push_back(std::move(answer));
-    last_new_ = number;
+    return &findings_.answers.back();
+  }
+
+  bool touches(const Vector& q) const { return collisions_ && collisions_->touches(q.data()); }
+
+  // Whether a known answer belongs to a continuum and is like a singular one nearby.
+  bool stands_for(const Found& known, const Found& answer) const {
+    return known.dimension > 0 && known.inside == answer.inside && known.collides == answer.collides &&
+           metric_.largest(known.q, answer.q) <= problem_.constants.search_spacing;
   }
 
   // A lower bound of the Jacobian's smallest singular value, per length of the chain: σ² ≥ 1 / trace (JᵀJ)⁻¹.
@@ -203,14 +249,10 @@ class Searcher {
  public:
   explicit Searcher(const Engine& engine)
       : robot_(engine.robot()), settings_(engine.settings()), problem_(engine.problem()), memory_(*robot_->certifier),
-        limits_(Limits::of(*problem_.mechanism, settings_.limits, problem_.constants.barely_outside)) {
+        limits_(Limits::of(*problem_.mechanism, settings_.limits, problem_.constants.barely_outside)),
+        ones_(problem_.coordinates.size(), 1.0) {
     if (settings_.avoid) collisions_.emplace(settings_.avoid);
-    if (problem_.rows == 3)
-      search_.emplace<1>(problem_, settings_, interrupts_);
-    else if (problem_.rows == 6)
-      search_.emplace<2>(problem_, settings_, interrupts_);
-    else
-      search_.emplace<3>(problem_, settings_, interrupts_);
+    search_.make(problem_, settings_, interrupts_, collisions_ ? &*collisions_ : nullptr);
   }
 
   Searcher(const Searcher&) = delete;  // search_ refers to the other members
@@ -226,25 +268,17 @@ class Searcher {
     Findings findings;
     limits_.wrap(start, Vector(start));
     if (shortfall(problem_, settings_.limits)) return findings;  // a target is proved out of reach
-    std::visit(
-        [&](auto& search) {
-          if constexpr (!std::is_same_v<std::decay_t<decltype(search)>, std::monostate>) findings = search(start, goals);
-        },
-        search_);
+    search_.with([&](auto& search) { findings = search(start, goals); });
     for (Found& answer : findings.answers) {
       if (!answer.inside) continue;
-      answer.distance = distance(start, answer.q);
-      answer.certified = true;
+      answer.distance = largest_difference(problem_, start, answer.q, ones_);
       const std::vector<TargetError> errors = robot_->certifier->errors(problem_, answer.q, memory_);
-      for (std::size_t t = 0; t < errors.size(); ++t) {
-        answer.certified = answer.certified && errors[t].within(problem_.terms[t].tolerance);
-        answer.error.position = std::fmax(answer.error.position, errors[t].position);
-        answer.error.orientation = std::fmax(answer.error.orientation, errors[t].orientation);
-      }
-      answer.collides = answer.certified && collisions_ && collisions_->touches(answer.q.data());
+      answer.certified = all_within(problem_, errors);
+      answer.error = largest_of(errors);
+      if (answer.certified && !answer.collides) answer.collides = collisions_ && collisions_->touches(answer.q.data());
     }
     std::stable_sort(findings.answers.begin(), findings.answers.end(),
-                     [](const Found& a, const Found& b) { return a.distance < b.distance; });
+                     [&](const Found& a, const Found& b) { return is_before(a, b); });
     findings.seconds = std::chrono::duration<double>(Clock::now() - began).count();
     return findings;
   }
@@ -257,18 +291,19 @@ class Searcher {
   const Limits limits_;
   Interrupts interrupts_;
   std::optional<Collisions> collisions_;
-  std::variant<std::monostate, Search<3>, Search<6>, Search<Eigen::Dynamic>> search_;
+  const std::vector<double> ones_;  // by coordinate
+  ByRows<Search> search_;
 
-  // The largest change of a joint [rad or m].
-  double distance(const Vector& from, const Vector& to) const {
-    double most = 0.0;
-    for (const MovingJoint& moving : problem_.moving) {
-      const Joint& joint = problem_.mechanism->joints[static_cast<std::size_t>(moving.joint)];
-      double own[6];
-      problem_.mechanism->difference(joint, from.data(), to.data(), own);
-      for (int i = 0; i < joint.nv; ++i) most = std::max(most, std::abs(own[i]));
+  // Whether one answer comes before another: by its distance, and where those are alike by its configuration.
+  bool is_before(const Found& a, const Found& b) const {
+    const double unit = problem_.constants.search_alike;
+    const double from = std::nearbyint(a.distance / unit), to = std::nearbyint(b.distance / unit);
+    if (from != to) return from < to;
+    for (Eigen::Index i = 0; i < a.q.size(); ++i) {
+      const double mine = std::nearbyint(a.q[i] / unit), other = std::nearbyint(b.q[i] / unit);
+      if (mine != other) return mine < other;
     }
-    return most;
+    return false;
   }
 };
 

@@ -69,12 +69,7 @@ class Stepping {
       for (std::size_t c = 0; c < held_.size(); ++c) q[problem.coordinates[c].entry] += dq_[static_cast<Eigen::Index>(c)];
       return;
     }
-    for (const MovingJoint& moving : problem.moving) {
-      const Joint& joint = problem.mechanism->joints[static_cast<std::size_t>(moving.joint)];
-      double own[6];
-      for (int i = 0; i < joint.nv; ++i) own[i] = moving.coordinates[i] < 0 ? 0.0 : dq_[moving.coordinates[i]];
-      problem.mechanism->integrate(joint, q.data(), own);
-    }
+    integrate(problem, dq_, q);
   }
 
   // Repeat the step after the first attempt `q` left the limits. Joints that are at a limit and would move further out

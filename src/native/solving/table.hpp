@@ -1,6 +1,7 @@
 // Configurations with what their frames show, ranked by how near that is to the targets; follows pinik.solving.table.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 #include <vector>
@@ -13,9 +14,9 @@ namespace pinik {
 
 // The range from which a joint's value is drawn, as in pinik.model.joint.Joint.range_to_draw_from.
 inline std::pair<double, double> range_to_draw_from(const Joint& joint, double lower, double upper, double slide_about,
-                                                    double widest) {
+                                                    double slide_by, double widest) {
   if (upper - lower <= widest) return {lower, upper};
-  const double half = joint.slides() ? 1.0 : M_PI;
+  const double half = std::min(joint.slides() ? slide_by : M_PI, 0.5 * (upper - lower));
   const double middle = std::min(std::max(joint.slides() ? slide_about : 0.0, lower + half), upper - half);
   return {middle - half, middle + half};
 }
@@ -43,6 +44,8 @@ class Table {
       const Joint& joint = problem.mechanism->joints[static_cast<std::size_t>(coordinate.joint)];
       if (!joint.has_one_axis()) continue;
       drawn_.push_back(coordinate.joint);
+      if (joint.slides() && limits.upper[joint.idx_q] - limits.lower[joint.idx_q] > problem.constants.widest_range)
+        wide_.push_back(joint.idx_q);
       for (int i = 0; i < joint.nq; ++i) is_drawn[static_cast<std::size_t>(joint.idx_q + i)] = 1;
     }
     for (int j : problem.joints) {
@@ -58,7 +61,7 @@ class Table {
   const std::vector<int>& drawn() const { return drawn_; }
 
   // Write into `q` the configuration where each drawn joint has the part `share(joint)` of its range, and what is not
-  // drawn is as in `start`. Slides without limits are drawn about `slides_about`.
+  // drawn is as in `start`. Slides with no or very wide limits are drawn about `slides_about`.
   template <class Share>
   void draw(const Vector& start, const Vector& slides_about, const Share& share, Vector& q) const {
     q = start;
@@ -67,7 +70,7 @@ class Table {
       const int entry = joint.idx_q;
       const auto [low, high] =
           range_to_draw_from(joint, limits_.lower[entry], limits_.upper[entry], slides_about[entry],
-                             problem_.constants.widest_range);
+                             problem_.size_of_chain, problem_.constants.widest_range);
       const double angle = low + share(joint) * (high - low);
       if (joint.nq == 2) {
         q[entry] = std::cos(angle);
@@ -97,6 +100,11 @@ class Table {
   // configuration k if the table is not made yet, or not for what is not drawn in `start`.
   template <class Share>
   void rank(Kinematics<Rows>& kinematics, const Vector& start, const Share& share) {
+    // Slides with very wide limits are drawn around the whole number of lengths of the chain that is nearest to `start`, so
+    // that starts near each other share a table.
+    const double length = problem_.size_of_chain;
+    about_.setZero(start.size());
+    for (int entry : wide_) about_[entry] = length * std::nearbyint(start[entry] / length);
     if (is_for_another(start)) make(kinematics, start, share);
     goal_.resize(features_);
     Eigen::Index f = 0;
@@ -124,6 +132,8 @@ class Table {
   const Eigen::Index size_;
   std::vector<int> drawn_;  // joints
   std::vector<int> still_;  // entries of q that are not drawn although the targets depend on them
+  std::vector<int> wide_;   // entries of q that are drawn around the start
+  Vector about_, made_about_;  // the middles of their ranges: those that are wanted, and those of the table
   Eigen::MatrixXd configurations_;  // (nq, size); empty until they are needed
   Eigen::Index features_ = 0;
   Eigen::MatrixXd seen_;
@@ -133,6 +143,8 @@ class Table {
     if (configurations_.size() == 0) return true;
     for (int entry : still_)
       if (configurations_(entry, 0) != start[entry]) return true;
+    for (int entry : wide_)
+      if (made_about_[entry] != about_[entry]) return true;
     return false;
   }
 
@@ -142,10 +154,10 @@ class Table {
     configurations_.resize(start.size(), size_);
     seen_.resize(size_, features_);
     lengths_.setZero(size_);
-    const Vector zero = Vector::Zero(start.size());
+    made_about_ = about_;
     Vector q;
     for (Eigen::Index k = 0; k < size_; ++k) {
-      draw(start, zero, [&](const Joint& joint) { return share(static_cast<std::uint64_t>(k), joint); }, q);
+      draw(start, about_, [&](const Joint& joint) { return share(static_cast<std::uint64_t>(k), joint); }, q);
       configurations_.col(k) = q;
       kinematics.forward(q);
       Eigen::Index f = 0;

@@ -2,8 +2,8 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <utility>
-#include <variant>
 
 #include "engine.hpp"
 #include "walk.hpp"
@@ -21,12 +21,7 @@ class Track {
       : robot_(engine.robot()), settings_(engine.settings()), problem_(engine.problem()), memory_(*robot_->certifier) {
     if (settings_.avoid) collisions_.emplace(settings_.avoid);
     Collisions* const avoided = collisions_ ? &*collisions_ : nullptr;
-    if (problem_.rows == 3)
-      walk_.emplace<1>(problem_, settings_, interrupts_, avoided);
-    else if (problem_.rows == 6)
-      walk_.emplace<2>(problem_, settings_, interrupts_, avoided);
-    else
-      walk_.emplace<3>(problem_, settings_, interrupts_, avoided);
+    walk_.make(problem_, settings_, interrupts_, avoided);
   }
 
   Track(const Track&) = delete;  // walk_ refers to the other members
@@ -47,7 +42,7 @@ class Track {
       const Clock::time_point began = Clock::now();
       take(i, problem_.goals);
       answer.proof.reset();
-      with_walk([&](auto& walk) { keep(walk(q, i), answer); });
+      walk_.with([&](auto& walk) { keep(walk(q, i), answer); });
       certify(answer);
       if (answer.status == Status::converged || on_miss == OnMiss::nearest) {
         q = answer.q;
@@ -62,21 +57,28 @@ class Track {
     return count;
   }
 
-  // One tick from `q` towards the goals, in which the joints change by at most `most`. Returns the answer, and whether
-  // further ticks will bring the targets nearer.
-  std::pair<Answer, bool> tick(Vector q, const Vector& most, const std::vector<Goal>& goals) {
+  // What a tick came to: the answer, whether further ticks will bring the targets nearer, and where something touches that
+  // kept the tick from going on.
+  struct Tick {
+    Answer answer;
+    bool approaches = false;
+    std::optional<Vector> touching;
+  };
+
+  // One tick from `q` towards the goals, in which the joints change by at most `most`.
+  Tick tick(Vector q, const Vector& most, const std::vector<Goal>& goals) {
     interrupts_.pause = nullptr;
     place(q);
     problem_.goals = goals;
-    Answer answer;
-    bool approaches = false;
-    with_walk([&](auto& walk) {
+    Tick tick;
+    walk_.with([&](auto& walk) {
       const Stride& stride = walk.tick(q, most);
-      approaches = stride.approaches;
-      keep(stride, answer);
+      tick.approaches = stride.approaches;
+      tick.touching = stride.touching;
+      keep(stride, tick.answer);
     });
-    certify(answer);
-    return {std::move(answer), approaches};
+    certify(tick.answer);
+    return tick;
   }
 
  private:
@@ -86,20 +88,11 @@ class Track {
   Certifier::Memory memory_;
   Interrupts interrupts_;
   std::optional<Collisions> collisions_;
-  std::variant<std::monostate, Walk<3>, Walk<6>, Walk<Eigen::Dynamic>> walk_;
-
-  template <class Do>
-  void with_walk(const Do& act) {
-    std::visit(
-        [&](auto& walk) {
-          if constexpr (!std::is_same_v<std::decay_t<decltype(walk)>, std::monostate>) act(walk);
-        },
-        walk_);
-  }
+  ByRows<Walk> walk_;
 
   // Put a start inside the limits.
   void place(Vector& q) {
-    with_walk([&](auto& walk) {
+    walk_.with([&](auto& walk) {
       walk.limits().wrap(q, Vector(q));
     });
   }
@@ -114,10 +107,7 @@ class Track {
   // Measure an answer's errors by plain Pinocchio; they decide its status.
   void certify(Answer& answer) {
     answer.errors = robot_->certifier->errors(problem_, answer.q, memory_);
-    bool within = true;
-    for (std::size_t t = 0; t < answer.errors.size(); ++t)
-      within = within && answer.errors[t].within(problem_.terms[t].tolerance);
-    if (within) {
+    if (all_within(problem_, answer.errors)) {
       answer.status = collisions_ && collisions_->touches(answer.q.data()) ? Status::colliding : Status::converged;
       return;
     }

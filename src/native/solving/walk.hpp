@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cmath>
+#include <optional>
 #include <vector>
 
 #include "changes.hpp"
@@ -20,6 +21,7 @@ struct Stride {
   Vector q;
   std::int64_t iterations = 0, restarts = 0;
   bool approaches = false;  // whether the targets, missed in a tick, will be nearer after further ticks
+  std::optional<Vector> touching;  // where something touches that kept the tick from going on
 };
 
 // Goes along paths with the working memory of one thread. `problem.goals` are those of the present point.
@@ -63,32 +65,10 @@ class Walk {
   }
 
   // Move towards the problem's goals as far as `most`, the largest changes of the joints by tangent coordinate, allows
-  // within one tick, and never to another branch.
+  // within one tick, and never to another branch. It ends where nothing touches, unless something touches at `from`.
   const Stride& tick(const Vector& from, const Vector& most) {
-    watch_.start();
-    stride_.iterations = stride_.restarts = 0;
-    const Pace pace = pace_of_a_tick();
-    const double least = problem_.constants.to_the_end.progress;
-    run(from, pace, plain_);
-    const bool near = !is_jump(from, plain_.q);
-    const double ticks = largest_excess(from, plain_.q, most);
-    stride(plain_);
-    if (near && ticks <= 1.0) {
-      stride_.approaches = plain_.status == Status::max_iterations || plain_.status == Status::time_limit;
-      return stride_;
-    }
-    const bool leads = near && plain_.status == Status::converged;
-    const double before = residual_at(from);
-    go_straight(from, most, pace, near);
-    if (leads) {
-      if (largest_excess(stride_.q, plain_.q, most) > ticks - 0.5) {
-        stride_.q = plain_.q;
-        shorten(from, most);
-      }
-    } else if (residual_at(stride_.q) >= before) {
-      go_down(from, most, before);
-    }
-    stride_.approaches = largest_excess(from, stride_.q, most) >= least || residual_at(stride_.q) <= (1.0 - least) * before;
+    go(from, most);
+    keep_free(from, most);
     return stride_;
   }
 
@@ -126,6 +106,80 @@ class Walk {
     stride_.ended = ran.status;
     stride_.q = ran.q;
     return stride_;
+  }
+
+  // Move towards the problem's goals within one tick, whatever touches.
+  void go(const Vector& from, const Vector& most) {
+    watch_.start();
+    stride_.iterations = stride_.restarts = 0;
+    const Pace pace = pace_of_a_tick();
+    const double least = problem_.constants.to_the_end.progress;
+    run(from, pace, plain_);
+    const bool near = !is_jump(from, plain_.q);
+    const double ticks = largest_excess(from, plain_.q, most);
+    stride(plain_);
+    if (near && ticks <= 1.0) {
+      stride_.approaches = plain_.status == Status::max_iterations || plain_.status == Status::time_limit;
+      return;
+    }
+    const bool leads = near && plain_.status == Status::converged;
+    const double before = residual_at(from);
+    go_straight(from, most, pace, near);
+    if (leads) {
+      if (largest_excess(stride_.q, plain_.q, most) > ticks - 0.5) {
+        stride_.q = plain_.q;
+        shorten(from, most);
+      }
+    } else if (residual_at(stride_.q) >= before) {
+      go_down(from, most, before);
+    }
+    stride_.approaches = largest_excess(from, stride_.q, most) >= least || residual_at(stride_.q) <= (1.0 - least) * before;
+  }
+
+  // If something touches at the end of a tick, take the way out of it, which leaves the frames where the tick takes them;
+  // or the largest of halved parts of the tick at whose end nothing touches. If nothing helps, stay. Where something touches
+  // at `from` already, what is less deep will do. Follows pinik.solving.detour.
+  void keep_free(const Vector& from, const Vector& most) {
+    stride_.touching.reset();
+    if (!way_out_.touches(stride_.q)) return;
+    const double before = way_out_.depth(from);
+    const Vector wanted = stride_.q;
+    if (takes(before, false, wanted)) return;
+    go_aside(from);
+    const bool is_on_the_way = largest_excess(from, stride_.q, most) > 1.0;
+    shorten(from, most);
+    if (takes(before, false, wanted)) {
+      stride_.approaches = stride_.approaches || is_on_the_way;
+      return;
+    }
+    stride_.q = wanted;
+    for (int k = 0; k < problem_.constants.creep_halvings; ++k) {
+      shorten(from, 0.5);
+      if (takes(before, true, wanted)) return;
+    }
+    stride_.q = from;
+    stride_.touching = before < 0.0 ? wanted : from;
+  }
+
+  // Whether a tick may end at stride_.q, where touches are less deep than `before`.
+  bool takes(double before, bool is_cut, const Vector& wanted) {
+    const double depth = way_out_.depth(stride_.q);
+    if (depth >= std::max(before, 0.0)) return false;
+    if (depth >= 0.0)
+      stride_.touching = stride_.q;
+    else if (is_cut)
+      stride_.touching = wanted;
+    return true;
+  }
+
+  // Set stride_.q to the end of the way out of what touches there, with the frames where they are there.
+  void go_aside(const Vector& from) {
+    const std::vector<Goal> all = problem_.goals;
+    targets_ = all;
+    see_present(stride_.q);
+    problem_.goals = origins_;
+    way_out_(stride_.q, from);
+    problem_.goals = all;
   }
 
   bool is_beyond() const { return shortfall(problem_, settings_.limits).has_value(); }

@@ -13,10 +13,11 @@ using Clock = std::chrono::steady_clock;
 using StopFlag = const std::atomic<bool>*;
 using Pause = bool (*)();  // called now and then; returns whether to continue
 
-// What may end a solve from outside: a flag and a call, either of which may be missing.
+// What may end a solve from outside: a flag and a call, either of which may be missing, and what is used up of its time.
 struct Interrupts {
   StopFlag stop = nullptr;
   Pause pause = nullptr;
+  double spent = 0.0;  // [s]
 };
 
 class Watch {
@@ -26,6 +27,7 @@ class Watch {
   // Begin a solve.
   void start() {
     if (time_limit_ < infinity) began_ = Clock::now();  // reading the clock takes as long as a step
+    left_ = time_limit_ - interrupts_.spent;
     paused_ = Clock::time_point();
     states_seen_ = 0;
   }
@@ -39,12 +41,13 @@ class Watch {
       paused_ = Clock::now();
       if (!interrupts_.pause()) return true;
     }
-    return time_limit_ < infinity && std::chrono::duration<double>(Clock::now() - began_).count() > time_limit_;
+    return time_limit_ < infinity && std::chrono::duration<double>(Clock::now() - began_).count() > left_;
   }
 
  private:
   const Interrupts& interrupts_;
   const double time_limit_;
+  double left_ = infinity;
   Clock::time_point began_, paused_;
   std::int64_t states_seen_ = 0;
 };

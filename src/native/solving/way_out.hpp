@@ -30,6 +30,16 @@ class WayOut {
   // The depth of the deepest touch at q [m]; −1 if nothing touches.
   double depth(const Vector& q) { return deepest(collisions_->report(q.data())); }
 
+  // Whether the targets leave no motion at the answer q: whether their Jacobian has no kernel.
+  bool is_isolated(const Vector& q) {
+    at_.q = q;
+    kinematics_.loose = false;
+    kinematics_.linearize(at_);
+    Eigen::JacobiSVD<Eigen::MatrixXd> svd{Eigen::MatrixXd(at_.J)};
+    svd.setThreshold(own_.same_rank);
+    return svd.rank() == at_.J.cols();
+  }
+
   // Go on from an answer `q` at which something touches, as long as the touches become less deep. `near` is the
   // configuration to which hinges are turned. Writes the last answer into `q` and returns its depth.
   double operator()(Vector& q, const Vector& near) {
@@ -129,14 +139,8 @@ class WayOut {
 
   // Write the configuration after a step of the free coordinates into `there`.
   void move(const Vector& q, const Vector& dq, Vector& there) const {
-    const Problem& problem = kinematics_.problem;
     there = q;
-    for (const MovingJoint& moving : problem.moving) {
-      const Joint& joint = problem.mechanism->joints[static_cast<std::size_t>(moving.joint)];
-      double own[6];
-      for (int i = 0; i < joint.nv; ++i) own[i] = moving.coordinates[i] < 0 ? 0.0 : dq[moving.coordinates[i]];
-      problem.mechanism->integrate(joint, there.data(), own);
-    }
+    integrate(kinematics_.problem, dq, there);
   }
 
   // Write the configuration near aside_ that reaches the targets again into there_. Returns false if there is none.

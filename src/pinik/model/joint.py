@@ -156,15 +156,18 @@ class Joint:
         kind = self.kind
         return kind == "prismatic" or (kind == "floating" and index < 3) or (kind == "planar" and index < 2)
 
-    def range_to_draw_from(self, lower: float, upper: float, slide_about: float = 0.0) -> tuple[float, float]:
+    def range_to_draw_from(
+        self, lower: float, upper: float, slide_about: float = 0.0, slide_by: float = 1.0
+    ) -> tuple[float, float]:
         """A finite range inside the limits [rad or m], from which random angles are drawn.
 
         It is the whole range, unless that is infinite or wider than 100. Then it is ±π about 0 for turning joints and
-        ±1 m about `slide_about` for sliding joints, shifted into the limits.
+        ±`slide_by` about `slide_about` [m] for sliding joints, shifted into the limits.
         """
         if upper - lower <= WIDEST_RANGE:
             return lower, upper
-        half, middle = (1.0, slide_about) if self.kind == "prismatic" else (math.pi, 0.0)
+        half, middle = (slide_by, slide_about) if self.kind == "prismatic" else (math.pi, 0.0)
+        half = min(half, 0.5 * (upper - lower))
         middle = min(max(middle, lower + half), upper - half)
         return middle - half, middle + half
 

@@ -26,7 +26,7 @@ from .bodies import Body, bodies_of
 from .camera import Camera, look_from
 from .obstacles import obstacles_of
 from .picture import Picture
-from .poses import Drawable, Pose, names_of, poses_of
+from .poses import Drawable, Pose, links_of, poses_of
 from .render import render
 from .solids import ball
 
@@ -103,7 +103,7 @@ def draw(
         raise InputError(f"must be a pinik.World; got {world!r}", argument="world")
     poses = poses_of(robot, q)
     if collisions:
-        poses = [replace(pose, touching=names_of(robot.collisions(pose.q, world))) for pose in poses]
+        poses = [replace(pose, touching=links_of(robot.collisions(pose.q, world))) for pose in poses]
     shown = _shown(poses, opacity, offset, color)
     paper = None if background is None else as_color(background, "background")
     spheres = _spheres(balls, ball_color, _radius(robot, ball_radius))

@@ -18,14 +18,20 @@ from ..solving.self_motion import SelfMotion
 from ..solving.solution import Solution
 from .arguments import as_color, as_configurations
 
-__all__ = ["GHOSTS", "TINTS", "Drawable", "Pose", "names_of", "poses_of"]
+__all__ = ["GHOSTS", "TINTS", "Drawable", "Pose", "links_of", "poses_of"]
 
 Array = NDArray[np.float64]
 
 Drawable: TypeAlias = ArrayLike | Solution | Branches | SelfMotion | Sequence[SelfMotion]
 
-TINTS = ("#1f6fc4", "#d97a00", "#0c9a72", "#b9559a", "#7a5fd0", "#94a81e", "#2a9db0")
-"""The colours of ghosts, one after the other; none is red, as balls are."""
+TINTS = (
+    "#1f6fc4", "#d97a00", "#0c9a72", "#b9559a", "#7a5fd0", "#94a81e", "#2a9db0",
+    "#6e3f18", "#ecd800", "#cc22dd", "#86f2c8", "#3322dd", "#e8bfae", "#3cc81e", "#6a1080",
+)  # fmt: skip
+"""The colours of ghosts, one after the other, from the first again after the last; none is red, as balls are.
+
+On a grey arm, any two ghosts differ by more than 5 in CIELAB (ΔE of 1976), on white and on nearly black.
+"""
 
 GHOSTS = 12
 """How many ghosts stand for infinitely many answers."""
@@ -53,9 +59,9 @@ class Pose:
     touching: frozenset[str] = frozenset()
 
 
-def names_of(collisions: Iterable[Collision]) -> frozenset[str]:
-    """The names of all that touch."""
-    return frozenset(name for collision in collisions for name in collision.pair)
+def links_of(collisions: Iterable[Collision]) -> frozenset[str]:
+    """The names of the links that touch something."""
+    return frozenset(name for collision in collisions for name in collision.links)
 
 
 def poses_of(robot: Robot, shown: Drawable | None) -> list[Pose]:
@@ -71,7 +77,7 @@ def poses_of(robot: Robot, shown: Drawable | None) -> list[Pose]:
     if isinstance(shown, SelfMotion):
         return _of(robot, _fans([shown]))
     if isinstance(shown, Solution):
-        return _of(robot, iter([Pose(shown.q, touching=names_of(shown.collisions))]))
+        return _of(robot, iter([Pose(shown.q, touching=links_of(shown.collisions))]))
     if _are_motions(shown):
         return _of(robot, _fans(shown))
     return [Pose(q) for q in as_configurations(robot, shown)]  # type: ignore[arg-type]

@@ -43,12 +43,20 @@ class Collision:
         normal: A unit vector (3,) from the first to the second, in the world; moved by the depth against it, the first
             is free of the second.
         points: The deepest point of each hull in the other (2, 3), in the world [m].
+        with_world: Whether the second is an object of the world, which may have the name of a link. The first is always
+            a link of the robot.
     """
 
     pair: tuple[str, str]
     depth: float
     normal: Array = field(compare=False)
     points: Array = field(compare=False)
+    with_world: bool = False
+
+    @property
+    def links(self) -> tuple[str, ...]:
+        """The names of the robot's links among the two."""
+        return self.pair[:1] if self.with_world else self.pair
 
 
 @dataclass(frozen=True)
@@ -59,19 +67,28 @@ class Clearance:
         distance: Their distance [m]; minus the depth where they touch, and infinite if there is nothing to compare.
         pair: The names of both: two links, or a link and an object of the world; None if there is nothing to compare.
         points: The nearest point of each (2, 3), in the world [m]; None if there is nothing to compare.
+        with_world: Whether the second is an object of the world, as for a `Collision`.
     """
 
     distance: float
     pair: tuple[str, str] | None
     points: Array | None = field(compare=False)
+    with_world: bool = False
 
 
 @dataclass(frozen=True, eq=False)
 class Guard:
-    """A checker, with the names of its groups of pairs."""
+    """A checker, with the names of its groups of pairs: first those of two links, then those of a link and an object.
+
+    Attributes:
+        checker: The checker.
+        names: The two names of each group.
+        own: The number of groups of two links.
+    """
 
     checker: Checker
     names: Sequence[tuple[str, str]]
+    own: int
 
     @property
     def native_shapes(self) -> Shapes:
@@ -91,7 +108,8 @@ class Guard:
             known = deepest.get(touch.group)
             if known is None or touch.depth > known.depth:
                 at = np.array(touch.points)
-                deepest[touch.group] = Collision(self.names[touch.group], touch.depth, np.array(touch.normal), at)
+                names, normal = self.names[touch.group], np.array(touch.normal)
+                deepest[touch.group] = Collision(names, touch.depth, normal, at, touch.group >= self.own)
         return sorted(deepest.values(), key=lambda collision: -collision.depth)
 
     def clearance(self, q: Array) -> Clearance:
@@ -99,7 +117,7 @@ class Guard:
         gap = self.checker.clearance(q)
         if gap is None:
             return Clearance(np.inf, None, None)
-        return Clearance(gap.distance, self.names[gap.group], np.array(gap.points))
+        return Clearance(gap.distance, self.names[gap.group], np.array(gap.points), gap.group >= self.own)
 
 
 class RobotShapes:
@@ -150,7 +168,7 @@ class RobotShapes:
             if solid.joint != 0:
                 group = groups.setdefault((solid.owner, other.owner), len(names) + len(groups))
                 pairs.append(Pair(first, second, group))
-        guard = Guard(make_checker(robot, (*self.solids, *around), pairs, engine), [*names, *groups])
+        guard = Guard(make_checker(robot, (*self.solids, *around), pairs, engine), [*names, *groups], len(names))
         self._guards[f"{itself} {engine}"] = (around, guard)
         return guard
 

@@ -15,6 +15,7 @@ from ..problem.reach import Shortfall, shortfall
 from ..problem.targets import Target
 from ..problem.tolerance import TargetError
 from .choice import NOTHING_NEW_SHARE, Choice
+from .colliding import Colliding
 from .question import Question
 from .run import TO_THE_END, Pace, run
 from .starts import Starts
@@ -51,7 +52,8 @@ class Outcome(NamedTuple):
         errors: The error of each target at `q`, by plain forward kinematics.
         iterations, joint_updates: Totals over all attempts.
         restarts: The number of restarts used.
-        chosen_from: The number of distinct answers that `q` was chosen from.
+        chosen_from: The number of distinct answers that `q` was chosen from; if the status is COLLIDING, all of them
+            collide.
         proof: The proof that a target is out of reach, if there is one.
         states: Every state of every attempt, if a trace was requested.
         targets: The targets.
@@ -96,12 +98,14 @@ class Attempts:
         question: The kinds of the targets, and the options.
         kinematics: The kinematics of the current targets.
         way_out: The way out of slight touches.
+        colliding: The answers of the present solve at which something touches.
     """
 
     def __init__(self, question: Question) -> None:
         self.question = question
         self.kinematics = Kinematics.of(question.problem)
         self.way_out = WayOut(question, self.kinematics)
+        self.colliding = Colliding(question)
         self._starts = Starts(self.kinematics, question.limits, question.options.seed)
 
     def __call__(
@@ -143,7 +147,6 @@ class _Search:
         restarts: The number of restarts so far.
         best: The state inside the limits with the smallest residual so far.
         choice: The answers so far, for `choose="nearest"`.
-        colliding: The answers so far at which something touches.
         states: Every state so far, if a trace was requested.
     """
 
@@ -157,7 +160,8 @@ class _Search:
         self.restarts = 0
         self.best: State | None = None
         self.choice = Choice(self.question, start)
-        self.colliding: list[Array] = []
+        self.colliding = attempts.colliding
+        self.colliding.begin()
         self.states: list[State] = []
 
     def outcome(self) -> Outcome:
@@ -195,7 +199,11 @@ class _Search:
                 break
             assert self.best is not None
             self.choice.add(self.best.q if status is Status.CONVERGED else None)
-            if self.choice.found and self.choice.since >= math.ceil(NOTHING_NEW_SHARE * most):
+            if self.choice.found:
+                ends = self.choice.since >= math.ceil(NOTHING_NEW_SHARE * most)
+            else:
+                ends = self._no_other_answer()
+            if ends:
                 break
         assert self.best is not None
         if self.choice.found:
@@ -203,18 +211,23 @@ class _Search:
             return Status.CONVERGED
         if status is Status.CONVERGED:
             return status
-        if not self.colliding and status is not Status.TIME_LIMIT:
+        if not self.colliding.found and status is not Status.TIME_LIMIT:
             last = Pace(options.iterations_to_the_end, TO_THE_END, downhill=True, attempt=self.restarts + 1)
             status = self._attempt(self.best.q, last)
-        return self._leave_touches() if self.colliding else status
+        return self._leave_touches() if self.colliding.found else status
+
+    def _no_other_answer(self) -> bool:
+        """Whether further attempts are unlikely to bring another answer than those that collide, which are isolated."""
+        colliding = self.colliding
+        return colliding.is_enough(self.restarts + 1) and all(map(self.attempts.way_out.is_isolated, colliding.found))
 
     def _leave_touches(self) -> Status:
         """Try the way out of the shallowest touches; take the first answer that is free, or else the shallowest."""
         assert self.best is not None
         way_out, tried = self.attempts.way_out, []
-        ordered = sorted([(way_out.depth(q), number) for number, q in enumerate(self.colliding)])
+        ordered = sorted([(way_out.depth(q), number) for number, q in enumerate(self.colliding.found)])
         for _, number in ordered[:WAYS_OUT]:
-            q, depth = way_out(self.colliding[number], self.given, self.deadline)
+            q, depth = way_out(self.colliding.found[number], self.given, self.deadline)
             tried.append((depth, number, q))
             if depth < 0.0:
                 break
@@ -243,7 +256,7 @@ class _Search:
             self.best = state
             q = limits.wrap(state.q, self.given)
             if self.question.touches(q):
-                self.colliding.append(q)
+                self.colliding.add(q, self.restarts)
                 status = Status.COLLIDING
         elif not limits.contains(state.q):
             self._consider_inside(state)
@@ -276,7 +289,8 @@ class _Search:
         assert self.best is not None
         q, targets = self.question.limits.wrap(self.best.q, self.given), self.kinematics.targets
         status, errors, proof = judge(self.question, targets, q, ended)
+        chosen_from = len(self.colliding.found if status is Status.COLLIDING else self.choice.found)
         return Outcome(
             status, q, self.given, errors, self.iterations, self.joint_updates, self.restarts,
-            max(1, len(self.choice.found)), proof, tuple(self.states), targets, time.perf_counter() - self.began,
+            max(1, chosen_from), proof, tuple(self.states), targets, time.perf_counter() - self.began,
         )  # fmt: skip

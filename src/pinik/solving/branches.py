@@ -12,8 +12,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..model.robot_model import RobotModel
+from ..problem.coordinates import Coordinate
 from ..problem.targets import Target
 from ..problem.tolerance import TargetError
+from .changes import farthest_coordinate
 from .origin import unwound
 from .question import Question
 from .search import LEAST
@@ -26,7 +28,7 @@ __all__ = ["Branches"]
 
 Array = NDArray[np.float64]
 
-_FROM_THE_QUESTION = ("robot", "method", "joint_names", "windings", "errors", "_conditions")
+_FROM_THE_QUESTION = ("robot", "method", "joint_names", "windings", "errors", "_farthest", "_conditions")
 
 
 @dataclass(frozen=True, eq=False)
@@ -38,20 +40,23 @@ class Branches:
     one nearest to the start, and `windings` tells how far the joints can turn from there.
 
     Attributes:
-        q: The configurations (n, nq), ordered by `distance`.
-        distance: The largest change of a joint from the start to each (n,) [rad, or m for prismatic joints].
+        q: The configurations (n, nq), ordered by `distance`; at distances equal to 1e-6, by their entries.
+        distance: The largest change of a joint from the start to each (n,), in `distance_unit`. Here a metre is as much
+            as a radian.
         position_error: The largest position error of each (n,) [m], by plain Pinocchio; NaN without positions.
         orientation_error: The largest orientation error, likewise (n,) [rad].
         found_at: The number of the start from which each was found (n,); 0 is the given start.
-        hits: How many starts led to each (n,).
+        hits: How many starts led to each (n,). Where answers are usually isolated, one of a continuum stands for all
+            within 0.5 rad, so that a start that led to one of these counts for it.
+        dimension: The dimension of the set of answers around each (n,): 0 for an isolated one, 1 for one of a curve.
         starts: The number of starts tried.
-        redundancy: The dimension of the set of answers at a general configuration. If it is 0, answers are isolated; if
-            not, there are infinitely many, and `q` has a sample of them.
+        redundancy: The largest dimension of the set of answers. If it is 0, all that were found are isolated; if not,
+            there are infinitely many, and `q` has a sample of them, with all isolated ones that were found.
         colliding: The number of answers that were left out because something touches that is to be avoided.
         is_complete: Whether these are proved to be all; only a closed form proves it.
         ended_early: Whether the time limit ended the search.
         status: `Status.CONVERGED` if there is an answer; else why there is none.
-        time: The duration of the search [s].
+        time: The duration of the search [s], with that of the solve after a search that found nothing.
     """
 
     q: Array
@@ -60,6 +65,7 @@ class Branches:
     orientation_error: Array
     found_at: NDArray[np.int64]
     hits: NDArray[np.int64]
+    dimension: NDArray[np.int64]
     starts: int
     redundancy: int
     colliding: int
@@ -96,6 +102,21 @@ class Branches:
         return [name for name in self.robot.joint_names if name in moving]
 
     @property
+    def farthest_joint(self) -> list[str | None]:
+        """The joint that changes most from the start to each branch, by its `distance`; None if no joint can move."""
+        return [name for name, _ in self._farthest]
+
+    @property
+    def distance_unit(self) -> list[str]:
+        """The unit of each `distance`: "m" where the joint that changes most slides, else "rad"."""
+        return [unit for _, unit in self._farthest]
+
+    @cached_property
+    def _farthest(self) -> list[tuple[str | None, str]]:
+        ones = [farthest_coordinate(self._question.problem, self._start, q) for q in self.q]
+        return [(None, "rad") if one is None else (one.joint.name, _unit(one)) for one in ones]
+
+    @property
     def targets(self) -> tuple[Target, ...]:
         """The targets."""
         return self._targets
@@ -122,7 +143,9 @@ class Branches:
             return f"{begin}, all that there are"
         begin += f" from {self.starts} start{'s' * (self.starts != 1)}{', ended by the time limit' * self.ended_early}"
         if self.redundancy:
-            return f"{begin}, of infinitely many in {self.redundancy} dimension{'s' * (self.redundancy > 1)}"
+            isolated = int((self.dimension == 0).sum())
+            begin += f": {isolated} isolated, and {len(self) - isolated}" if isolated else ","
+            return f"{begin} of infinitely many in {self.redundancy} dimension{'s' * (self.redundancy > 1)}"
         left = self.estimate_missing
         if math.isinf(left):
             return f"{begin}, too few to tell how many are missing"
@@ -163,7 +186,7 @@ class Branches:
 
     @cached_property
     def families(self) -> tuple[SelfMotion, ...]:
-        """The curves on which the branches lie, if the answers have one dimension; empty otherwise. They may collide.
+        """The curves on which branches lie, if the answers have at most one dimension. They may collide.
 
         Each is the self-motion through one of the branches, so that no two are the same. They are traced when they are
         first read, which takes some 20 ms for each.
@@ -171,7 +194,7 @@ class Branches:
         if self.redundancy != 1:
             return ()
         found: list[SelfMotion] = []
-        for q in self.q:
+        for q in self.q[self.dimension == 1]:
             if not any(family.contains(q) for family in found):
                 found.append(self_motion(self.robot, self._targets, q, **self._conditions))
         return tuple(found)
@@ -210,35 +233,22 @@ class Branches:
     def __str__(self) -> str:
         return self.message
 
-    def to_dict(self) -> dict[str, Any]:
-        """A dictionary for JSON, as `pinik solve-all --json` prints it."""
+    def to_dict(self, families: bool = False) -> dict[str, Any]:
+        """A dictionary for JSON, as `pinik solve-all --json` prints it.
+
+        Args:
+            families: Whether to trace the families as well, as with `--families`.
+        """
         missing = self.estimate_missing
+        traced = {"families": [family.to_dict() for family in self.families]} if families else {}
         return {
             "schema": 1,
             "robot": self.robot.name,
             "success": self.success,
             "status": self.status.name,
             "message": self.message,
-            "branches": [
-                {
-                    "angles": angles,
-                    "q": q.tolist(),
-                    "distance": float(distance),
-                    "position_error_m": _number(position),
-                    "orientation_error_rad": _number(orientation),
-                    "found_at": int(found_at),
-                    "hits": int(hits),
-                    "windings": {
-                        name: turns.tolist()
-                        for name, turns in zip(self.robot.joint_names, windings, strict=True)
-                        if turns.any()
-                    },
-                }
-                for angles, q, distance, position, orientation, found_at, hits, windings in zip(
-                    self.angles, self.q, self.distance, self.position_error, self.orientation_error, self.found_at,
-                    self.hits, self.windings, strict=True,
-                )
-            ],
+            "branches": [self._branch(index) for index in range(len(self))],
+            **traced,
             "complete": self.is_complete,
             "estimate_missing": None if math.isinf(missing) else missing,
             "redundancy": self.redundancy,
@@ -247,7 +257,28 @@ class Branches:
             "time_s": self.time,
             "method": self.method,
             "engine": self._engine,
-        }  # fmt: skip
+        }
+
+    def _branch(self, index: int) -> dict[str, Any]:
+        """One branch for JSON."""
+        turns = zip(self.robot.joint_names, self.windings[index], strict=True)
+        return {
+            "angles": self.angles[index],
+            "q": self.q[index].tolist(),
+            "distance": float(self.distance[index]),
+            "farthest_joint": self.farthest_joint[index],
+            "distance_unit": self.distance_unit[index],
+            "position_error_m": _number(self.position_error[index]),
+            "orientation_error_rad": _number(self.orientation_error[index]),
+            "found_at": int(self.found_at[index]),
+            "hits": int(self.hits[index]),
+            "dimension": int(self.dimension[index]),
+            "windings": {name: own.tolist() for name, own in turns if own.any()},
+        }
+
+
+def _unit(coordinate: Coordinate) -> str:
+    return "m" if coordinate.joint.slides(coordinate.index) else "rad"
 
 
 def _number(value: float) -> float | None:

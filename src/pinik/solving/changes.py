@@ -5,13 +5,15 @@ from __future__ import annotations
 import math
 
 import numpy as np
+import pinocchio
 from numpy.typing import NDArray
 
 from ..model.joint import Joint
+from ..problem.coordinates import Coordinate
 from ..problem.kinematics import Kinematics, Linearization
 from ..problem.problem import Problem
 
-__all__ = ["asked_step", "is_jump", "joint_change", "largest_change"]
+__all__ = ["asked_step", "farthest_coordinate", "is_jump", "joint_change", "largest_change"]
 
 Array = NDArray[np.float64]
 
@@ -54,6 +56,17 @@ def largest_change(problem: Problem, before: Array, after: Array) -> float:
     joints = {coordinate.joint for coordinate in problem.coordinates}
     changes = [abs(joint_change(joint, before, after, problem.size_of_chain)) for joint in joints]
     return max(changes, default=0.0)
+
+
+def farthest_coordinate(problem: Problem, before: Array, after: Array) -> Coordinate | None:
+    """The free coordinate that changes by the largest number [rad or m]; the first of equal ones, None if none is free.
+
+    Args:
+        problem: The problem, whose coordinates are compared.
+        before, after: The configurations (nq,).
+    """
+    step = np.abs(pinocchio.difference(problem.model, before, after))
+    return max(problem.coordinates, key=lambda one: float(step[one.joint.idx_v + one.index]), default=None)
 
 
 def asked_step(at: Linearization) -> Array:

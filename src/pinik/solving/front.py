@@ -111,8 +111,9 @@ def solve(
             in "nearest"; 1 for joints not named.
         avoid: What the answer must not touch: "self" for the robot's own links, a `pinik.World`, or a list of both. An
             attempt that ends where something touches counts as failed. If all do, small steps away from a slight touch
-            are tried; then the status is COLLIDING, and `solution.collisions` names what touches. Joints that move no
-            target count too, with their values in `q0`, which itself may collide.
+            are tried; then the status is COLLIDING, and `solution.collisions` names what touches. Where answers are
+            isolated, the attempts end early once the same ones collide again and again. Joints that move no target
+            count too, with their values in `q0`, which itself may collide.
         **solver_parameters: Parameters of the solver, such as `damping=0.1`.
 
     Returns:

@@ -14,7 +14,7 @@ from .question import Question
 from .state import Status
 from .verdict import Verdict
 
-__all__ = ["explain"]
+__all__ = ["explain", "overlap"]
 
 
 def explain(
@@ -45,7 +45,7 @@ def explain(
         chosen = f"; the nearest of {chosen_from} answers" if chosen_from > 1 else ""
         return f"converged, {' and '.join(words)} off{chosen}"
     if status is Status.COLLIDING:
-        return _colliding(targets, collisions)
+        return _colliding(targets, collisions, chosen_from)
     tolerances = [term.tolerance for term in question.problem.terms]
     missed = _missed(targets, errors, tolerances)
     if not question.problem.free.any():
@@ -62,10 +62,17 @@ def explain(
     return "; ".join([f"{begin} {first}", *others, *_limits(active)])
 
 
-def _colliding(targets: Sequence[Target], collisions: Sequence[Collision]) -> str:
-    """Which of the links and obstacles overlap, and by how much."""
+def _colliding(targets: Sequence[Target], collisions: Sequence[Collision], answers: int) -> str:
+    """Which of the links and obstacles overlap, and by how much, and how many answers collide."""
+    every = f"; {'both' if answers == 2 else f'all {answers}'} answers found collide"
+    return f"reaches the target{'s' * (len(targets) > 1)}, but {overlap(collisions)}{every * (answers > 1)}"
+
+
+def overlap(collisions: Sequence[Collision]) -> str:
+    """Which two overlap the deepest, and by how much, and how many others touch."""
     first, *others = collisions
-    words = f"reaches the target{'s' * (len(targets) > 1)}, but {first.pair[0]} and {first.pair[1]} "
+    link, other = first.pair
+    words = f"{link} and {'the object ' * first.with_world}{other} "
     words += f"overlap by {_length(first.depth)}" if first.depth > 0.0 else "touch"
     more = f"; {len(others)} more pair{'s touch' if len(others) > 1 else ' touches'}"
     return words + more * bool(others)

@@ -122,12 +122,13 @@ class Prepared:
         Args:
             asked: The targets.
             q0: Start, as for a call, or as `Origin.of` reads it.
-            began: The time at which the time limit began to run, from `time.perf_counter` [s]; now when None.
+            began: When the solve and its time limit began, from `time.perf_counter` [s]; now when None.
         """
         began = time.perf_counter() if began is None else began
         start, nearest, turned = Origin.of(self.robot, q0)
         if self.native is not None:
-            return Solution(self.native.solve(start, goals_of(asked), nearest), self.question, turned)
+            spent = time.perf_counter() - began
+            return Solution(self.native.solve(start, goals_of(asked), nearest, spent), self.question, turned)
         return Solution(self.attempts(asked, start, nearest=nearest, began=began), self.question, turned)
 
     def at(self, place: object, q0: object = None) -> Solution | None:

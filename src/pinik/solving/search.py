@@ -6,17 +6,17 @@ import copy
 import dataclasses
 import math
 import time
-from collections.abc import Sequence
-from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ..problem.kinematics import Kinematics
 from ..problem.targets import Target
-from ..problem.tolerance import TargetError, Tolerance, largest_of
+from ..problem.tolerance import Tolerance
 from ..solvers.base import Patience
 from .choice import SAME_ANSWER
+from .continuum import Continuum
+from .findings import Findings, Found
 from .metric import Metric, largest_difference
 from .question import Question
 from .run import Pace, run
@@ -24,7 +24,7 @@ from .spread import Spread
 from .state import Status
 from .verdict import all_within, measure_errors
 
-__all__ = ["Findings", "Search"]
+__all__ = ["Search"]
 
 Array = NDArray[np.float64]
 
@@ -41,7 +41,14 @@ SINCE = 3
 """The number of starts for each answer found that must bring nothing new before the search ends."""
 
 SAMPLES = 32
-"""The number of starts where answers are not isolated."""
+"""The number of starts where answers are not isolated, without those that lead to colliding ones."""
+
+SPACING = 0.5
+"""The largest change [rad, or lengths of the chain] from a singular answer to one of a continuum that stands for it,
+where answers are usually isolated."""
+
+NEARLY_SINGULAR = 1e-3
+"""The singular value per length of the chain below which an answer may belong to a continuum."""
 
 RANKS = 3
 """The number of configurations whose Jacobian's rank tells whether answers are isolated."""
@@ -58,80 +65,9 @@ BASIN = 20.0
 OUTSIDE = 1e-9
 """The largest change [rad, or lengths of the chain] that brings an answer inside the limits."""
 
-
-@dataclass
-class Found:
-    """One answer.
-
-    Attributes:
-        q: The configuration (nq,).
-        is_inside: Whether it is inside the limits.
-        start: The number of the start from which it was found.
-        hits: How many starts led to it.
-        basin: The distance from which a run that comes nearer is taken to end here.
-    """
-
-    q: Array
-    is_inside: bool
-    start: int
-    hits: int = 1
-    basin: float = 0.0
-
-
-@dataclass
-class Findings:
-    """What a search came to.
-
-    Attributes:
-        q: The answers inside the limits (n, nq), ordered by `distance`.
-        distance: The largest change of a joint from the start to each (n,) [rad or m].
-        position_error, orientation_error: Their largest errors (n,) [m, rad] by plain Pinocchio; NaN where none is
-            asked for.
-        start: The numbers of the starts from which they were found (n,); 0 is the given one.
-        hits: How many starts led to each (n,).
-        colliding: The number of answers inside the limits at which something touches that is to be avoided.
-        outside: The number of answers outside the limits; they are not looked for where answers are not isolated.
-        starts: The number of starts.
-        iterations: The iterations of all runs.
-        redundancy: The dimension of the set of answers at a general configuration: 0 if answers are isolated.
-        ended_early: Whether the time limit ended the search.
-        time: The duration of the search [s].
-    """
-
-    q: Array
-    distance: Array
-    position_error: Array
-    orientation_error: Array
-    start: NDArray[np.int64]
-    hits: NDArray[np.int64]
-    colliding: int
-    outside: int
-    starts: int
-    iterations: int
-    redundancy: int
-    ended_early: bool
-    time: float
-
-    @classmethod
-    def nothing(cls, nq: int) -> Findings:
-        """What no search comes to, for configurations of `nq` numbers."""
-        none, counts = np.zeros(0), np.zeros(0, dtype=np.int64)
-        return cls(np.zeros((0, nq)), none, none, none, counts, counts, 0, 0, 0, 0, 0, False, 0.0)
-
-    def with_answer(
-        self, q: Array, distance: float, errors: Sequence[TargetError], *, start: int = 0, hits: int = 1
-    ) -> Findings:
-        """These findings and one more answer (nq,), the farthest; its start is the given one unless told otherwise."""
-        position, orientation = largest_of(errors)
-        return dataclasses.replace(
-            self,
-            q=np.vstack([self.q, q]),
-            distance=np.append(self.distance, distance),
-            position_error=np.append(self.position_error, np.nan if position is None else position),
-            orientation_error=np.append(self.orientation_error, np.nan if orientation is None else orientation),
-            start=np.append(self.start, start),
-            hits=np.append(self.hits, hits),
-        )
+ALIKE = 1e-6
+"""The unit [rad or m] of distances and configurations that decide on the order of answers; answers are less exact than
+1e-9, by which two at the same distance differ."""
 
 
 class Search:
@@ -144,6 +80,7 @@ class Search:
         self._loose = dataclasses.replace(self._sharp, limits=self._limits.loosened())
         self._kinematics = Kinematics.of(self._sharp.problem)
         self._metric = Metric(self._sharp.problem, self._limits)
+        self._continuum = Continuum(self._kinematics, self._limits)
         self._spread = Spread(self._kinematics, self._limits, question.options.seed)
         self._redundancy: int | None = None
 
@@ -160,6 +97,7 @@ class Search:
             self._redundancy = self._dimension(start)
         self._answers: list[Found] = []
         self._last_new, self._starts, self._iterations, self._deadline = 0, 0, 0, deadline
+        self._colliding = 0
         self._is_late = False
         q = start
         while True:
@@ -185,45 +123,57 @@ class Search:
         new one.
         """
         if self._redundancy:
-            return self._starts >= SAMPLES
+            return self._starts - self._colliding >= SAMPLES
+        isolated = [answer for answer in self._answers if answer.dimension == 0]
         since = self._starts - 1 - self._last_new
         return (
             self._starts >= LEAST
-            and since >= SINCE * len(self._answers)
-            and all(answer.hits >= 2 for answer in self._answers if answer.is_inside)
+            and since >= SINCE * len(isolated)
+            and all(answer.hits >= 2 for answer in isolated if answer.is_inside)
         )
 
     def _attempt(self, start: Array, near: Array) -> None:
         """Run from one start.
 
-        If answers are isolated, the run may leave the limits to the end, since an answer outside counts as known too,
-        and it ends as soon as it is heading for a known one.
+        If answers are isolated, the run may leave the limits to the end, since an answer outside counts as known too.
+        A continuum outside the limits may have another part inside them, so a second run looks for one there.
         """
-        number, isolated = self._starts, self._redundancy == 0
+        number = self._starts
         self._starts += 1
+        answer = self._run(self._sharp if self._redundancy else self._loose, start, near, number)
+        if answer is not None and answer.dimension and not answer.is_inside:
+            answer = self._run(self._sharp, self._limits.wrap(answer.q, near), near, number)
+        if answer is not None and answer.collides:
+            self._colliding += 1
+
+    def _run(self, question: Question, start: Array, near: Array, number: int) -> Found | None:
+        """The answer that a run from start `number` leads to, with one more hit; None if to none.
+
+        If answers are isolated, the run ends as soon as it is heading for a known one.
+        """
         pace = Pace(self.question.options.iterations_at_most, PATIENCE, bold=True, loosens=False)
         known: Found | None = None
         before = start
-        for state in run(self._loose if isolated else self._sharp, self._kinematics, start, pace, near):
+        for state in run(question, self._kinematics, start, pace, near):
             self._iterations += 1
             if state.status is not None:
                 break
             if self._deadline < math.inf and time.perf_counter() > self._deadline:
                 self._is_late = True
-                return
-            known = self._heading_for(state.q, before) if isolated and state.iteration else None
+                return None
+            known = self._heading_for(state.q, before) if state.iteration else None
             if known is not None:
                 break
             before = state.q
         if known is None and state.status is not Status.CONVERGED:
-            return
+            return None
         for answer in self._answers:
             if known is None and self._metric.largest(state.q, answer.q) <= SAME_ANSWER:
                 known = answer
         if known is None:
-            self._add(state.q, near, number)
-        else:
-            known.hits += 1
+            return self._add(state.q, near, number)
+        known.hits += 1
+        return known
 
     def _heading_for(self, q: Array, before: Array) -> Found | None:
         """The known answer that a run is heading for: one nearby, which the step from `before` to `q` led towards."""
@@ -233,15 +183,34 @@ class Search:
                 return answer
         return None
 
-    def _add(self, q: Array, near: Array, number: int) -> None:
+    def _add(self, q: Array, near: Array, number: int) -> Found:
+        """Add an answer; or count it for the known one of a continuum that stands for it, and return that one."""
         inside = self._limits.wrap(q, near)
         is_inside = self._metric.largest(inside, q) <= OUTSIDE
         answer = Found(inside if is_inside else q, is_inside, number)
-        if self._redundancy == 0:
-            answer.basin = BASIN * self._least_singular_value(answer.q)
+        if self._redundancy:
+            answer.dimension, answer.collides = self._redundancy, self.question.touches(answer.q)
+        else:
+            least = self._least_singular_value(answer.q)
+            answer.basin = BASIN * least
+            kernel = self._continuum.kernel(answer.q) if least < NEARLY_SINGULAR else np.zeros((0, 0))
+            if len(kernel):
+                answer.collides = is_inside and self.question.touches(answer.q)
+                for other in self._answers:
+                    if self._stands_for(other, answer):
+                        other.hits += 1
+                        return other
+                answer.dimension = self._continuum.dimension(answer.q, kernel)
         self._spread.mark(answer.q)
         self._answers.append(answer)
-        self._last_new = number
+        if answer.dimension == 0 or self._redundancy:
+            self._last_new = number
+        return answer
+
+    def _stands_for(self, known: Found, answer: Found) -> bool:
+        """Whether a known answer belongs to a continuum and is like a singular one nearby."""
+        alike = (known.is_inside, known.collides) == (answer.is_inside, answer.collides)
+        return known.dimension > 0 and alike and self._metric.largest(known.q, answer.q) <= SPACING
 
     def _least_singular_value(self, q: Array) -> float:
         """A lower bound of the Jacobian's smallest singular value, per length of the chain: σ² ≥ 1 / trace (JᵀJ)⁻¹."""
@@ -259,21 +228,28 @@ class Search:
             outside=sum(not answer.is_inside for answer in self._answers),
             starts=self._starts,
             iterations=self._iterations,
-            redundancy=self._redundancy or 0,
+            redundancy=max([answer.dimension for answer in self._answers if answer.is_inside], default=0),
             ended_early=self._is_late,
         )
         model = question.robot.model
         inside = [(largest_difference(model, start, answer.q), answer) for answer in self._answers if answer.is_inside]
-        for distance, answer in sorted(inside, key=lambda pair: pair[0]):
+        for distance, answer in sorted(inside, key=lambda pair: _in_order(pair[0], pair[1].q)):
             errors = measure_errors(question.robot, targets, answer.q, question.options.tolerance)
             if not all_within(errors, question):
                 continue
-            if question.touches(answer.q):
+            if question.touches(answer.q) if answer.collides is None else answer.collides:
                 findings.colliding += 1
-            else:
-                findings = findings.with_answer(answer.q, distance, errors, start=answer.start, hits=answer.hits)
+                continue
+            findings = findings.with_answer(
+                answer.q, distance, errors, start=answer.start, hits=answer.hits, dimension=answer.dimension
+            )
         findings.time = time.perf_counter() - self._began
         return findings
+
+
+def _in_order(distance: float, q: Array) -> tuple[float, ...]:
+    """The key of an answer's place among others: its distance, and where those are alike its configuration (nq,)."""
+    return tuple(np.rint(np.append(distance, q) / ALIKE).tolist())
 
 
 def _sharpened(question: Question) -> Question:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
+from typing import Any
 
 import numpy as np
 import pinocchio
@@ -190,6 +191,21 @@ class SelfMotion:
         asked = Origin.of(self.robot, q, searches=False).q
         within = as_positive_number(within, "within", "radians")
         return self.known.reaches(asked, within)
+
+    def to_dict(self) -> dict[str, Any]:
+        """A dictionary for JSON, as in the `families` of `pinik solve-all --json --families`."""
+        return {
+            "schema": 1,
+            "robot": self.robot.name,
+            "dimension": self.dimension,
+            "message": str(self),
+            "complete": self.complete,
+            "gap": self.gap,
+            "turns": dict(self.turns),
+            "joint_names": list(self.joint_names),
+            "angles": [] if self.dimension == 1 else self.angles.tolist(),
+            "arcs": [arc.to_dict() for arc in self.arcs],
+        }
 
     def __repr__(self) -> str:
         return f"SelfMotion({self})"

@@ -125,7 +125,11 @@ class Solution:
 
     @cached_property
     def chosen_from(self) -> int:
-        """The number of distinct answers that this one was chosen from; always 1 with `choose="first"`."""
+        """The number of distinct answers that this one was chosen from.
+
+        With `choose="first"` it is 1, unless the status is COLLIDING: then so many answers were found, up to whole
+        turns, and all of them collide.
+        """
         return self._outcome.chosen_from
 
     @cached_property
@@ -256,7 +260,10 @@ class Solution:
             "chosen_from": self.chosen_from,
             "time_s": self.time,
             "active_limits": list(self.active_limits),
-            "collisions": [{"pair": list(touch.pair), "depth_m": touch.depth} for touch in self.collisions],
+            "collisions": [
+                {"pair": list(touch.pair), "with_world": touch.with_world, "depth_m": touch.depth}
+                for touch in self.collisions
+            ],
             "method": self.method,
             "parameters": {name: _jsonable(value) for name, value in self.parameters.items()},
             "engine": self.engine,

@@ -23,12 +23,12 @@ from ..solvers.registry import Method
 from .answer import plainly_asked, prepared_for
 from .branches import Branches
 from .choice import SAME_ANSWER
+from .findings import Findings
 from .metric import largest_difference
 from .native.codec import goals_of, targets_of
 from .options import OPTION_NAMES
 from .origin import Origin
 from .prepared import Prepared
-from .search import Findings
 from .solution import Solution
 from .spread import NEAREST
 from .state import Status
@@ -83,6 +83,10 @@ def solve_all(
     If the robot has more joints than the targets need, the answers are infinitely many. Then `q` is a sample that is
     spread over them, and `pinik.self_motion` follows them from there.
 
+    Where answers are usually isolated, a singular target may have both isolated ones and others on curves: so has a UR5
+    whose wrist has parallel axes. Then `q` has the isolated ones that were found and a sample of the others,
+    `Branches.dimension` tells which is which, and `Branches.redundancy` is the largest dimension.
+
     If no configuration meets the targets exactly, as with an arm of five joints and a whole pose, the one answer is
     that of `pinik.solve`, inside the tolerance.
 
@@ -101,7 +105,7 @@ def solve_all(
         max_iterations: The maximum number of iterations per start.
         tolerance: The errors that count as reached. Answers are exact to 1e-9 rad, and 1e-9 of the chain's length,
             unless no such answer exists.
-        time_limit: Time limit [s]; a search that it ends keeps what was found.
+        time_limit: Time limit of the whole call [s]; a search that it ends keeps what was found.
         engine: "auto", "python" or "native".
         avoid: What the answers must not touch, as for `pinik.solve`. Those that do are left out; `Branches.colliding`
             counts them.
@@ -126,7 +130,8 @@ def solve_all(
     plain = plainly_asked(robot, targets, method, wanted, given, solver_parameters)
     prepared, quick = plain.prepared, None
     if prepared is not None and prepared.searcher is not None:
-        quick = prepared.searcher.search_at(origin.q, plain.place)
+        place = plain.place.homogeneous if isinstance(plain.place, pinocchio.SE3) else plain.place
+        quick = prepared.searcher.search_at(origin.q, place)
     if prepared is not None and quick is not None:
         found, start, goals = quick
         asked, findings = targets_of(prepared.targets, goals), Findings(*found)
@@ -137,7 +142,8 @@ def solve_all(
         findings = (_in_closed_form if prepared.options.method.exact else _search)(prepared, asked, start)
     instead = None
     if not len(findings.q):
-        instead = prepared.answer(asked, origin)
+        instead = prepared.answer(asked, origin, time.perf_counter() - findings.time)
+        findings.time = instead.time
         if instead.success:
             distance = largest_difference(robot.model, start, instead.q)
             findings = findings.with_answer(instead.q, distance, instead.errors)
@@ -172,7 +178,8 @@ def _in_closed_form(prepared: Prepared, targets: tuple[Target, ...], start: Arra
         if question.touches(q):
             findings.colliding += 1
         else:
-            findings = findings.with_answer(q, largest_difference(robot.model, start, q), errors)
+            distance = largest_difference(robot.model, start, q)
+            findings = findings.with_answer(q, distance, errors, dimension=findings.redundancy)
     findings.time = time.perf_counter() - began
     return findings
 
@@ -196,6 +203,7 @@ def _branches(
         findings.orientation_error,
         findings.start,
         findings.hits,
+        findings.dimension,
         findings.starts,
         findings.redundancy,
         findings.colliding,

@@ -8,7 +8,7 @@ import numpy as np
 import pinocchio
 from numpy.typing import NDArray
 
-from ..model.joint import Joint
+from ..model.joint import WIDEST_RANGE, Joint
 from ..model.limits import Limits
 from ..problem.kinematics import Kinematics
 from ..problem.problem import Problem
@@ -48,8 +48,13 @@ class Table:
                 if joint.id in term.chain.frame_support | term.chain.reference_support:
                     needed[joint.idx_q : joint.idx_q + joint.nq] = True
         self._entries = np.flatnonzero(is_drawn)
-        self._still = np.flatnonzero(needed & ~is_drawn)  # the table is valid for the present values of these entries
-        self._is_made = False
+        wide = np.zeros_like(is_drawn)
+        for joint in self.drawn:
+            entry = joint.idx_q
+            wide[entry] = joint.kind == "prismatic" and limits.upper[entry] - limits.lower[entry] > WIDEST_RANGE
+        self._wide = np.flatnonzero(wide)
+        self._settled = np.flatnonzero((needed & ~is_drawn) | wide)
+        self._about: Array | None = None  # the table is valid for these values of the settled entries
         self.configurations: Array = np.zeros((size, problem.model.nq))
         self.scores: Array = np.zeros(size)
         self._lengths: Array = np.zeros(size)
@@ -64,18 +69,24 @@ class Table:
     def rank(self, start: Array) -> None:
         """Score the configurations for the current targets, with all that is not drawn as in `start` (nq,).
 
+        Prismatic joints with no or very wide limits are drawn around the whole number of lengths of the chain that is
+        nearest to `start`, so that starts near each other share a table.
+
         A radian counts as in `Linearization.distance`, and a squared angle as 2 − 2 cos, so that the score is linear in
         the numbers of the targets. The direction towards a point (`at`) is not linear, and is left out.
         """
-        if not self._is_made or (self.configurations[0, self._still] != start[self._still]).any():
-            self._make(start)
+        about = start.copy()
+        about[self._entries] = self._kinematics.robot.neutral()[self._entries]
+        length = self._kinematics.problem.size_of_chain
+        about[self._wide] = length * np.rint(start[self._wide] / length)
+        if self._about is None or (self._about[self._settled] != about[self._settled]).any():
+            self._make(about)
+            self._about = about
         wanted = np.concatenate([_wanted(target) for target in self._kinematics.targets])
         self.scores = self._lengths + self._seen @ wanted
 
-    def _make(self, start: Array) -> None:
+    def _make(self, about: Array) -> None:
         kinematics, problem = self._kinematics, self._kinematics.problem
-        about = start.copy()
-        about[self._entries] = kinematics.robot.neutral()[self._entries]
         rows = []
         for k in range(len(self.configurations)):
             q = configuration_at(problem, self._limits, about, self._share(k))
@@ -88,7 +99,6 @@ class Table:
             self._lengths[k] = sum(length for length, _ in parts)
             rows.append(np.concatenate([row for _, row in parts]))
         self._seen = np.array(rows)
-        self._is_made = True
 
 
 def drawn_joints(problem: Problem) -> list[Joint]:
@@ -99,13 +109,14 @@ def drawn_joints(problem: Problem) -> list[Joint]:
 def configuration_at(problem: Problem, limits: Limits, start: Array, share: Share) -> Array:
     """A configuration (nq,) with every free one-axis joint at a part of its range, and all others as in `start`.
 
-    The range is `Joint.range_to_draw_from`, which for prismatic joints without limits lies around `start`.
+    The range is `Joint.range_to_draw_from`; for prismatic joints with no or very wide limits it is the chain's length
+    to both sides of `start`.
     """
     q = start.copy()
     for joint in drawn_joints(problem):
         entry = joint.idx_q
         low, high = joint.range_to_draw_from(
-            float(limits.lower[entry]), float(limits.upper[entry]), float(start[entry])
+            float(limits.lower[entry]), float(limits.upper[entry]), float(start[entry]), problem.size_of_chain
         )
         joint.set_angle(q, low + share(joint) * (high - low))
     return q

@@ -17,7 +17,11 @@ from ..errors import InputError
 from ..model.robot_model import RobotModel
 from ..problem.targets import Target
 from ..problem.tolerance import Tolerance, largest_of
+from ..shapes.avoid import Avoided
+from ..shapes.collisions import Collision
 from ..solvers.registry import Method
+from .detour import kept_free
+from .message import overlap
 from .native.codec import goals_of
 from .options import OPTION_NAMES, Options
 from .origin import Origin, turned_near
@@ -34,7 +38,7 @@ if TYPE_CHECKING:
 
 Array = NDArray[np.float64]
 
-_MISSING = ("trace", "restarts", "seed", "polish", "choose", "choose_weights", "avoid")
+_MISSING = ("trace", "restarts", "seed", "polish", "choose", "choose_weights")
 _KEYWORDS = ("q0", "rate", "velocity", *(name for name in OPTION_NAMES if name not in _MISSING))
 
 _TOLERANCE = Tolerance(1e-6, 1e-5)
@@ -46,12 +50,14 @@ class TrackerStatus(Enum):
     OK: the target is within tolerance. LIMITED: it is not yet, and further ticks will bring the frame nearer; the
     joints are at their speeds, or the iterations of one tick did not suffice, as is usual for `jt` and `ccd`. HELD:
     further ticks will not bring the frame nearer, as a limit, the arm's length or a singular place is in the way; the
-    frame stays at the nearest point that it found. If the target moves, the next tick decides anew.
+    frame stays at the nearest point that it found. BLOCKED: something would touch that is to be avoided, and the joints
+    stay before it, or it touches already. If the target moves, the next tick decides anew.
     """
 
     OK = "the target is reached"
     LIMITED = "on the way: the speeds of the joints or the iterations of one tick do not allow more"
     HELD = "the target is out of reach from here: as near to it as this branch allows"
+    BLOCKED = "what must not touch is in the way"
 
     def __str__(self) -> str:
         return self.value
@@ -61,15 +67,16 @@ class Tracker:
     """A frame that follows a moving target, as in teleoperation: `q = tracker(target)` once a tick.
 
     Each call moves the joints towards the target, by no more than their speeds allow within one tick, inside the
-    limits, and never to another branch. If the target is out of reach, the frame stays at the nearest point. Each
-    thread needs its own instance.
+    limits, and never to another branch. If the target is out of reach, the frame stays at the nearest point. If
+    something is to be avoided, no tick ends where it touches; where it touches at the start already, it never gets
+    deeper, and the target does not count as reached. Each thread needs its own instance.
 
     Attributes:
         robot: The robot.
         rate: The number of ticks per second [Hz].
         velocity: The largest velocities of the joints (n_joints,) [rad/s or m/s], in the order of `robot.joint_names`.
         targets: The targets that it was made with, whose kinds every target must have.
-        status: How the last tick went: OK, LIMITED or HELD.
+        status: How the last tick went: OK, LIMITED, HELD or BLOCKED.
         position_error: The largest position error after the last tick [m]; None without a position.
         orientation_error: The largest orientation error, likewise [rad].
         engine: "python" or "native".
@@ -90,6 +97,7 @@ class Tracker:
         tolerance: Tolerance | ArrayLike | None = None,
         time_limit: float | None = None,
         engine: str = "auto",
+        avoid: Avoided = None,
         **solver_parameters: Any,
     ) -> None:
         """Compile the problem.
@@ -107,6 +115,8 @@ class Tracker:
             tolerance: The errors that count as reached (metres, radians); 1e-6 m and 1e-5 rad when None, so that slow
                 motions are followed smoothly.
             time_limit: Time limit for one tick [s].
+            avoid: What must not touch, as for `pinik.solve`; a World as it is now. Each tick's end is checked. What
+                lies between two ticks is not looked at.
             **solver_parameters: Parameters of the solver.
 
         Raises:
@@ -118,6 +128,7 @@ class Tracker:
         options = Options.of(
             method, solver_parameters, limits=limits, locked=locked, max_iterations=max_iterations,
             tolerance=_TOLERANCE if tolerance is None else tolerance, time_limit=time_limit, engine=engine, restarts=0,
+            avoid=avoid,
         )  # fmt: skip
         if isinstance(targets, str):
             targets = Target(targets, placement=robot.placement(targets, robot.neutral()))
@@ -145,6 +156,21 @@ class Tracker:
         """The present angles by joint name [rad or m]; continuous joints are unwound, from the angles of the start."""
         return self.robot.angles(self._q) | self._turned
 
+    @property
+    def collisions(self) -> tuple[Collision, ...]:
+        """What is in the way if the status is BLOCKED, the deepest first; empty otherwise.
+
+        It is what touches at `q`, or if nothing touches there, what would touch at the end of the whole tick.
+        """
+        guard = self._prepared.question.guard
+        return () if guard is None or self._touching is None else tuple(guard.collisions(self._touching))
+
+    @property
+    def message(self) -> str:
+        """How the last tick went, in words; it names what is in the way."""
+        collisions = self.collisions
+        return f"{self.status}: {overlap(collisions)}" if collisions else str(self.status)
+
     def reset(self, q: ArrayLike | Mapping[str, float] | None) -> None:
         """Go on from another configuration, such as a measured one; it is moved inside the limits.
 
@@ -161,6 +187,7 @@ class Tracker:
         self._turned = dict(origin.turned)
         self._keep(self._prepared.question.limits.wrap(origin.q))
         self.status = TrackerStatus.OK
+        self._touching: Array | None = None
         self.position_error: float | None = None
         self.orientation_error: float | None = None
 
@@ -191,9 +218,9 @@ class Tracker:
         came_to = self._track.tick_at(self._q, self._most, place)
         if came_to is None:  # the engine does not accept the target without conversion
             came_to = self._track.tick(self._q, self._most, goals_of(self._prepared.as_asked(target)))
-        q, reached, approaches, position, orientation = came_to
+        q, reached, approaches, touching, position, orientation = came_to
         self._keep(q)
-        self._judge(reached, approaches)
+        self._judge(reached, approaches, touching)
         self.position_error = None if math.isnan(position) else position
         self.orientation_error = None if math.isnan(orientation) else orientation
         return self._q.copy()
@@ -201,15 +228,20 @@ class Tracker:
     def _tick(self, asked: tuple[Target, ...]) -> None:
         """One tick of the Python engine."""
         assert self._walk is not None
-        stride = self._walk.tick(asked, self._q, self._most)
+        question = self._prepared.question
+        stride = kept_free(self._walk, asked, self._walk.tick(asked, self._q, self._most), self._q, self._most)
         self._keep(stride.q.copy())
         errors = measure_errors(self.robot, asked, self._q, self._prepared.options.tolerance)
-        self._judge(all_within(errors, self._prepared.question), stride.approaches)
+        reached = all_within(errors, question) and not question.touches(self._q)
+        self._judge(reached, stride.approaches, stride.touching)
         self.position_error, self.orientation_error = largest_of(errors)
 
-    def _judge(self, reached: bool, approaches: bool) -> None:
+    def _judge(self, reached: bool, approaches: bool, touching: Array | None) -> None:
+        self._touching = None if reached else touching
         if reached:
             self.status = TrackerStatus.OK
+        elif touching is not None:
+            self.status = TrackerStatus.BLOCKED
         else:
             self.status = TrackerStatus.LIMITED if approaches else TrackerStatus.HELD
 

@@ -43,6 +43,7 @@ class Stride(NamedTuple):
         iterations: Of all runs.
         restarts: The number of restarts.
         approaches: Whether the targets, missed in a tick, will be nearer after further ticks.
+        touching: Where something touches that kept the tick from going on (nq,); None if nothing did.
     """
 
     ended: Status
@@ -50,19 +51,25 @@ class Stride(NamedTuple):
     iterations: int
     restarts: int
     approaches: bool = False
+    touching: Array | None = None
 
 
 class Walk:
     """The Python engine for a path: it goes from point to point, and keeps to its branch wherever that is possible.
 
     Each thread needs its own instance.
+
+    Attributes:
+        question: The kinds of the targets, and the options.
+        kinematics: The kinematics of the current targets.
+        way_out: The way out of slight touches.
     """
 
     def __init__(self, question: Question) -> None:
         self.question = question
         self.kinematics = Kinematics.of(question.problem)
         self._starts = Starts(self.kinematics, question.limits, question.options.seed)
-        self._way_out = WayOut(question, self.kinematics)
+        self.way_out = WayOut(question, self.kinematics)
         self._iterations, self._restarts, self._deadline = 0, 0, math.inf
 
     def __call__(self, targets: tuple[Target, ...], q: Array, number: int) -> Stride:
@@ -116,19 +123,19 @@ class Walk:
         self.kinematics.retarget(targets)
         plain = self._run(q, self._pace_of_a_tick)
         assert plain.status is not None
-        near, ticks = not is_jump(self.kinematics, q, plain.q), self._largest_excess(q, plain.q, most)
+        near, ticks = not is_jump(self.kinematics, q, plain.q), self.largest_excess(q, plain.q, most)
         if near and ticks <= 1.0:
             approaches = plain.status in (Status.MAX_ITERATIONS, Status.TIME_LIMIT)
             return Stride(plain.status, plain.q, self._iterations, 0, approaches)
         leads, before = near and plain.status is Status.CONVERGED, self._residual(q)
         there, first = self._straight(targets, q, most, plain if near else None)
         if leads:
-            if self._largest_excess(there, plain.q, most) > ticks - 0.5:
-                there = self._within(q, plain.q, most)
+            if self.largest_excess(there, plain.q, most) > ticks - 0.5:
+                there = self.within(q, plain.q, most)
         elif self._residual(there) >= before:
             there = self._down(q, first, most, before)
         least = TO_THE_END.progress
-        approaches = self._largest_excess(q, there, most) >= least or self._residual(there) <= (1.0 - least) * before
+        approaches = self.largest_excess(q, there, most) >= least or self._residual(there) <= (1.0 - least) * before
         return Stride(plain.status, there, self._iterations, 0, approaches)
 
     @property
@@ -154,7 +161,7 @@ class Walk:
         self.kinematics.loose = False
         at = self.kinematics.linearize(q)
         first, _ = advance(question.solver, self.kinematics, question.limits, at, question.options.tolerance)
-        excess, pace = self._largest_excess(q, first, most), self._pace_of_a_tick
+        excess, pace = self.largest_excess(q, first, most), self._pace_of_a_tick
         if excess > 1.0:
             aim = between(present(self.kinematics, targets, q), targets, 1.0 / excess)
             self.kinematics.retarget(aim)
@@ -163,29 +170,29 @@ class Walk:
         if state is None:
             _, state = self._creep(aim, q, pace)
         self.kinematics.retarget(targets)
-        return (q if state is None else self._within(q, state.q, most)), first
+        return (q if state is None else self.within(q, state.q, most)), first
 
     def _down(self, q: Array, first: Array, most: Array, before: float) -> Array:
         """A part of the first step after which the residual is below `before`; `q` if there is none."""
-        there = self._within(q, first, most)
+        there = self.within(q, first, most)
         for _ in range(CREEP_HALVINGS):
             if self._residual(there) < before:
                 return there
-            there = self._shortened(q, there, 0.5)
+            there = self.shortened(q, there, 0.5)
         return q
 
-    def _largest_excess(self, before: Array, after: Array, most: Array) -> float:
+    def largest_excess(self, before: Array, after: Array, most: Array) -> float:
         """The largest change of a joint with one axis, relative to the largest that is allowed."""
         joints = {coordinate.joint for coordinate in self.question.problem.coordinates}
         changes = [abs(joint_change(j, before, after)) / float(most[j.idx_v]) for j in joints if j.has_one_axis]
         return max(changes, default=0.0)
 
-    def _within(self, before: Array, after: Array, most: Array) -> Array:
+    def within(self, before: Array, after: Array, most: Array) -> Array:
         """The configuration on the way from one to another where no change is larger than allowed."""
-        excess = self._largest_excess(before, after, most)
-        return self._shortened(before, after, 1.0 / excess) if excess > 1.0 else after
+        excess = self.largest_excess(before, after, most)
+        return self.shortened(before, after, 1.0 / excess) if excess > 1.0 else after
 
-    def _shortened(self, before: Array, after: Array, part: float) -> Array:
+    def shortened(self, before: Array, after: Array, part: float) -> Array:
         """The configuration at a part of the way between two, inside the limits."""
         problem = self.question.problem
         q: Array = pinocchio.interpolate(problem.robot.model, before, after, part)
@@ -222,8 +229,15 @@ class Walk:
         """An answer at which nothing touches, after the way out if need be; else the state with COLLIDING."""
         if state.status is not Status.CONVERGED or not self.question.touches(state.q):
             return state
-        there, depth = self._way_out(state.q, q, self._deadline)
+        there, depth = self.way_out(state.q, q, self._deadline)
         return state._replace(q=there, status=Status.CONVERGED if depth < 0.0 else Status.COLLIDING)
+
+    def aside(self, targets: tuple[Target, ...], q: Array, near: Array) -> Array:
+        """The end of the way out of what touches at `q` (nq,), with the frames where they are there."""
+        self.kinematics.retarget(present(self.kinematics, targets, q))
+        there, _ = self.way_out(q, near, self._deadline)
+        self.kinematics.retarget(targets)
+        return there
 
     def _is_near(self, state: State, q: Array) -> bool:
         """Whether a run reached its targets without a jump away from `q`."""

@@ -55,6 +55,13 @@ class WayOut:
         """The depth of the deepest touch at q (nq,) [m]; −1 if nothing touches."""
         return _deepest(self._touches(q))
 
+    def is_isolated(self, q: Array) -> bool:
+        """Whether the targets leave no motion at an answer (nq,): whether their Jacobian has no kernel."""
+        self._kinematics.loose = False
+        J = self._kinematics.linearize(q).J[:, self._question.problem.free]
+        singular = np.linalg.svd(J, compute_uv=False)
+        return bool(np.sum(singular > SAME_RANK * singular.max(initial=0.0)) == J.shape[1])
+
     def __call__(self, q: Array, near: Array, deadline: float) -> tuple[Array, float]:
         """Go on from an answer at which something touches, as long as the touches become less deep.
 

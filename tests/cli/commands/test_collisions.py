@@ -63,7 +63,19 @@ def test_a_world_is_avoided_by_its_links(run, arm, tmp_path):
     answer = run("collisions", arm, "--world", tmp_path / "cell.urdf", "--json").json
     assert [one["pair"] for one in answer["collisions"]] == []
     assert answer["nearest"] == ["b", "wall"]
+    assert answer["nearest_with_world"] is True
     assert answer["clearance_m"] == pytest.approx(0.5 - 0.3 - 0.05, abs=1e-6)
+    assert run("collisions", arm, "--json").json["nearest_with_world"] is False
+
+
+def test_an_object_is_told_from_a_link_of_its_name(run, arm, tmp_path):
+    """The object c goes 0.2 m into b, whose ball ends at 0.8 m; the link c is free of a."""
+    box = '<collision><origin xyz="0.5 0 0.6"/><geometry><box size="0.2 0.2 1.0"/></geometry></collision>'
+    (tmp_path / "same.urdf").write_text(robot(link("c", box)))
+    words = ("collisions", arm, "--world", tmp_path / "same.urdf")
+    (touch,) = run(*words, "--json").json["collisions"]
+    assert (touch["pair"], touch["with_world"]) == (["b", "c"], True)
+    assert "b        the object c" in run(*words).out
 
 
 def test_the_srdf_that_is_written_disables_what_does_not_count(run, arm, tmp_path):

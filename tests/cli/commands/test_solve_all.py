@@ -12,6 +12,7 @@ import pytest
 import pinik
 from judge import is_good
 from robots import load_quietly
+from urdf_texts import joint, link, robot
 
 TWO_LINK = ("solve-all", "two_link", "--frame", "tip")
 POSE = ("solve-all", "ur5", "--frame", "tool0", "--position", "0.4", "0.1", "0.4", "--rpy", "180", "0", "90", "--deg")
@@ -31,24 +32,72 @@ def test_the_table_has_both_elbows(run, method):
     rows = {line.split()[0]: line.split()[2:] for line in result.out.splitlines() if line.startswith("joint")}
     found = sorted(zip(*([float(word) for word in rows[name]] for name in ("joint1", "joint2")), strict=True))
     assert np.array(found) == pytest.approx(np.degrees(sorted(elbows(0.4, 0.3))), abs=2e-3)
-    distance = [float(word) for word in re.search(r"^distance +deg (.*)$", result.out, re.MULTILINE)[1].split()]
-    assert distance == sorted(distance)
+    facts = re.findall(r"^(\d) +(joint\d) +(\S+) deg ", result.out, re.MULTILINE)
+    assert [number for number, _, _ in facts] == ["1", "2"]
+    for number, name, by in facts:
+        values = {joint: abs(float(rows[joint][int(number) - 1])) for joint in rows}
+        assert (name, float(by)) == (max(values, key=values.get), pytest.approx(max(values.values()), abs=1e-3))
+    assert float(facts[0][2]) <= float(facts[1][2])
+
+
+def test_a_slide_that_moves_most_is_told_in_metres(run, tmp_path):
+    """A slide along x carries a hinge about z with a bar of 0.4 m, whose end shall be at (1, 0.1)."""
+    names = ("base", "cart", "bar", "tip")
+    parts = [
+        joint("slide", "base", "cart", '<axis xyz="1 0 0"/>', kind="prismatic"),
+        joint("elbow", "cart", "bar", '<axis xyz="0 0 1"/>'),
+        joint("end", "bar", "tip", '<origin xyz="0.4 0 0"/>', kind="fixed", limit=""),
+    ]
+    (tmp_path / "r.urdf").write_text(robot(*map(link, names), *parts))
+    shown = run("solve-all", tmp_path / "r.urdf", "--frame", "tip", "--position", "1", "0.1", "0", "--deg").out
+    bend = math.asin(0.25)
+    assert re.search(rf"^1 +slide +{1.0 - 0.4 * math.cos(bend):.5f} m ", shown, re.MULTILINE)
+    assert re.search(rf"^2 +elbow +{math.degrees(math.pi - bend):.3f} deg ", shown, re.MULTILINE)
+
+
+POINT = ("solve-all", "panda", "--frame", "panda_hand_tcp", "--position", "0.4", "-0.3", "0.35")
+PANDA = (*POINT, "--rpy", "3.1", "0", "0.5")
+
+
+def test_families_are_lines_of_text_and_arcs_of_json(run):
+    told, shown = run(*PANDA, "--families", "--json").json, run(*PANDA, "--families").out
+    panda = load_quietly("panda")
+    families = panda.solve_all("panda_hand_tcp", [0.4, -0.3, 0.35], rpy=[3.1, 0, 0.5]).families
+    assert len(families) > 1
+    assert told["families"] == json.loads(json.dumps([family.to_dict() for family in families]))
+    lines = [line for line in shown.splitlines() if line.startswith("family")]
+    assert lines == [f"family {k}  {family}" for k, family in enumerate(families, 1)]
+    arcs = [np.array(arc["angles"]) for family in told["families"] for arc in family["arcs"]]
+    for branch in told["branches"]:  # lies on one of them, nearer than half of the space between two points
+        angles = np.array([branch["angles"][name] for name in told["families"][0]["joint_names"]])
+        gaps = [np.linalg.norm(arc - angles, axis=1).min() / np.linalg.norm(arc[1] - arc[0]) for arc in arcs]
+        assert min(gaps) < 0.51
+    assert "families" not in run(*PANDA, "--json").json
+    assert "family" not in run(*PANDA).out
+
+
+def test_where_there_are_no_families_it_says_why(run):
+    assert "no families: the answers are isolated" in run(*POSE, "--families").out
+    assert run(*POSE, "--families", "--json").json["families"] == []
+    assert "no families: the answers have more than one dimension" in run(*POINT, "--families").out
+    assert "famil" not in run(*TWO_LINK, "--position", "4", "0", "0", "--families").out
 
 
 def test_json_is_the_dictionary_of_the_branches(run):
     told = run(*POSE, "--json").json
-    robot = load_quietly("ur5")
-    branches = pinik.solve_all(robot, "tool0", position=[0.4, 0.1, 0.4], rpy=[math.pi, 0, math.pi / 2])
+    ur5 = load_quietly("ur5")
+    branches = pinik.solve_all(ur5, "tool0", position=[0.4, 0.1, 0.4], rpy=[math.pi, 0, math.pi / 2])
     expected = json.loads(json.dumps(branches.to_dict()))
     assert {**told, "time_s": 0} == {**expected, "time_s": 0}
     assert len(told["branches"]) == 8
     asked = {"frame": "tool0", "position": [0.4, 0.1, 0.4], "rpy": [math.pi, 0, math.pi / 2]}
-    assert all(is_good(robot, asked, np.array(row["q"]), (1e-8, 1e-8)) for row in told["branches"])
+    assert all(is_good(ur5, asked, np.array(row["q"]), (1e-8, 1e-8)) for row in told["branches"])
 
 
 def test_whole_turns_are_counted(run):
     text = run(*POSE).out
-    counts = re.search(r"^with whole turns +(.*)$", text, re.MULTILINE)[1].split()
+    assert "with whole turns" in text
+    counts = re.findall(r"^\d +\w+ +\S+ deg +\d+ +\d+ +(\d+)$", text, re.MULTILINE)
     branches = load_quietly("ur5").solve_all("tool0", [0.4, 0.1, 0.4], rpy=[math.pi, 0, math.pi / 2])
     assert [int(count) for count in counts] == [len(list(branches.wound(index))) for index in range(8)]
 

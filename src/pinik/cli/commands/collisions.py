@@ -106,6 +106,7 @@ def _pair_fields(pairs: CollisionPairs) -> dict[str, Any]:
 def _touch_fields(one: Collision) -> dict[str, Any]:
     return {
         "pair": list(one.pair),
+        "with_world": one.with_world,
         "depth_m": one.depth,
         "normal": one.normal.tolist(),
         "points": one.points.tolist(),
@@ -116,6 +117,7 @@ def _clearance_fields(nearest: Clearance) -> dict[str, Any]:
     return {
         "clearance_m": nearest.distance if math.isfinite(nearest.distance) else None,
         "nearest": None if nearest.pair is None else list(nearest.pair),
+        "nearest_with_world": nearest.with_world,
         "nearest_points": None if nearest.points is None else nearest.points.tolist(),
     }
 
@@ -134,11 +136,17 @@ def _emit(robot: Robot, pairs: CollisionPairs, touching: list[Collision], neares
     emit_table(("link", "link ", ""), rows)
     output.emit("")
     if touching:
-        emit_table(
-            ("touches", "", "depth [m]"), [(*one.pair, f"{one.depth:.4f}") for one in touching], numeric=("depth [m]",)
-        )
+        rows = [(*_names(one), f"{one.depth:.4f}") for one in touching]
+        emit_table(("touches", "", "depth [m]"), rows, numeric=("depth [m]",))
     elif nearest.pair is None:
         output.emit("nothing can touch: no pair counts")
     else:
-        first, second = nearest.pair
+        first, second = _names(nearest)
         output.emit(f"nothing touches; the nearest are {first} and {second}, {nearest.distance:.4f} m apart")
+
+
+def _names(both: Collision | Clearance) -> tuple[str, str]:
+    """The two names in words, where there are two; the second may be an object with the name of a link."""
+    assert both.pair is not None
+    link, other = both.pair
+    return link, f"the object {other}" if both.with_world else other

@@ -29,6 +29,14 @@ Restarts = Annotated[
         rich_help_panel="The solver",
     ),
 ]
+Families = Annotated[
+    bool,
+    typer.Option(
+        "--families",
+        help="Trace the curves on which the answers lie, if they have one dimension.",
+        rich_help_panel="The solver",
+    ),
+]
 
 
 def solve_all(
@@ -59,6 +67,7 @@ def solve_all(
     no_limits: given.NoLimits = False,
     avoid_self: AvoidSelf = False,
     world: WorldFile = None,
+    families: Families = False,
     root: Root = "fixed",
     package_dir: PackageDirs = None,
     xacro_arg: XacroArgs = None,
@@ -96,7 +105,7 @@ def solve_all(
     with failures_in_words(solver, method), named_by_option(options):
         branches = solve_targets(machine, asked, solver, **options)
     if as_json:
-        output.emit_json(branches.to_dict())
+        output.emit_json(branches.to_dict(families))
     else:
-        emit_branches(branches, units)
+        emit_branches(branches, units, families)
     return ExitStatus.ANSWERED if branches.success else ExitStatus.MISSED

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from dataclasses import asdict
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -86,6 +88,15 @@ class Arc:
 
     def __len__(self) -> int:
         return len(self.q)
+
+    def to_dict(self) -> dict[str, Any]:
+        """A dictionary for JSON."""
+        return {
+            "length": self.length,
+            "closed": self.closed,
+            "ends": [asdict(end) for end in self.ends],
+            "angles": self.angles.tolist(),
+        }
 
     def __repr__(self) -> str:
         return f"Arc({self})"

@@ -9,7 +9,7 @@ from ...engine import load
 from ...model import configurations, joint, limits
 from ...problem import problem, reach, slack, targets, tolerance
 from ...solvers import ccd, chaser, damped_least_squares, pseudo_inverse
-from .. import aims, attempts, changes, choice, run, search, spread, starts, walk, way_out
+from .. import aims, attempts, changes, choice, colliding, continuum, run, search, spread, starts, walk, way_out
 
 __all__ = ["CONSTANTS", "make_constants", "make_way_out"]
 
@@ -37,6 +37,8 @@ CONSTANTS = {
     "exact_part_of_chain": run.EXACT_SHARE_OF_CHAIN,
     "restarts_when_unreachable": attempts.RESTARTS_WHEN_UNREACHABLE,
     "exact_attempts": attempts.EXACT_ATTEMPTS,
+    "colliding_least": colliding.LEAST_ATTEMPTS,
+    "colliding_since": colliding.SINCE_NEW,
     "same_answer": choice.SAME_ANSWER,
     "nothing_new_share": choice.NOTHING_NEW_SHARE,
     "table_size": starts.SIZE,
@@ -53,6 +55,13 @@ CONSTANTS = {
     "search_approach": search.APPROACH,
     "search_basin": search.BASIN,
     "search_outside": search.OUTSIDE,
+    "search_spacing": search.SPACING,
+    "search_nearly_singular": search.NEARLY_SINGULAR,
+    "search_alike": search.ALIKE,
+    "continuum_singular": continuum.SINGULAR,
+    "continuum_aside": continuum.ASIDE,
+    "continuum_iterations": continuum.ITERATIONS,
+    "continuum_parts": continuum.PARTS,
     "jump_floor": changes.JUMP_FLOOR,
     "jump_factor": changes.JUMP_FACTOR,
     "jump_damping": changes.JUMP_DAMPING,
