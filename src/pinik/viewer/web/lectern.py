@@ -6,9 +6,11 @@ import json
 from collections.abc import Callable, Mapping
 from typing import Any
 
-from ...errors import InputError, PinikError
+from ...errors import InputError, PinikError, UnknownNameError
+from ..protocol.lessons import LESSONS
 from ..protocol.messages import checked, number_or_none, text, whole_number
 from ..protocol.race import race_message
+from ..protocol.setup import Setup, read_setup
 from ..protocol.thesis_walk import walk_to
 from ..simulation.race import MOST_PLACES, Race, enter, run_race
 from ..simulation.session import Session
@@ -16,7 +18,7 @@ from .later import Later
 from .readers import Readers
 from .seats import Tab
 
-__all__ = ["Lectern"]
+__all__ = ["Lectern", "scene_of"]
 
 _LARGEST_SEED = 2**31
 
@@ -73,6 +75,22 @@ class Lectern:
             tab.send(self._notice(f"the race ended early: {type(race).__name__}: {race}"))
         else:
             tab.send(json.dumps(race_message(race, seed)))
+
+
+def scene_of(message: Mapping[str, Any], session: Session) -> tuple[Setup, float]:
+    """The scene of a lesson or a comparison: its set-up, and the part of a curve's lap at which it begins.
+
+    Raises:
+        InputError, UnknownNameError: A field is wrong.
+    """
+    if message["type"] == "lesson":
+        name = checked("lesson", message, {"name": text})["name"]
+        if name not in LESSONS:
+            raise UnknownNameError("lesson", name, LESSONS)
+        return read_setup(LESSONS[name].setup), 0.0
+    fields = checked("comparison", message, {"number": text, "preset": text})
+    walk = walk_to(session, **fields)
+    return walk.setup, walk.phase
 
 
 def _places(what: str, value: Any) -> int:

@@ -8,21 +8,19 @@ from collections.abc import Callable
 from typing import Any
 
 from ...echoes import shortened
-from ...errors import InputError, PinikError, UnknownNameError
+from ...errors import InputError, PinikError
 from ...robot import Robot
 from ..protocol.frames import FrameMaker
-from ..protocol.lessons import LESSONS
 from ..protocol.messages import any_text, apply, checked, parse, text, whole_number
 from ..protocol.recording import Recording
 from ..protocol.robot_message import robot_message
 from ..protocol.robots import RobotMenu
 from ..protocol.setup import Setup, apply_setup, read_setup, write_setup
 from ..protocol.state import hello_message, session_state
-from ..protocol.thesis_walk import walk_to
 from ..simulation.session import Session
 from .animation import animation_page
 from .later import Later
-from .lectern import Lectern
+from .lectern import Lectern, scene_of
 from .pace import Pace
 from .readers import Readers
 from .robot_loader import RobotLoader
@@ -191,16 +189,11 @@ class Show:
                 self._load(fields["name"], fields["root"], {})
             case "setup":
                 self._set_up(read_setup(checked("setup", message, {"setup": any_text})["setup"]))
-            case "lesson":
-                name = checked("lesson", message, {"name": text})["name"]
-                if name not in LESSONS:
-                    raise UnknownNameError("lesson", name, LESSONS)
-                self._begin_anew(read_setup(LESSONS[name].setup))
-            case "comparison":
-                fields = checked("comparison", message, {"number": text, "preset": text})
-                walk = walk_to(self.session, **fields)
-                self._begin_anew(walk.setup)
-                self.session.motion.start_at(walk.phase)
+            case "lesson" | "comparison":
+                setup, phase = scene_of(message, self.session)
+                self._change(Session.reset)
+                self._set_up(setup)
+                self.session.motion.start_at(phase)
             case kind:
                 motion = self.session.motion.kind
                 self._change(lambda session: apply(session, message))
@@ -221,11 +214,6 @@ class Show:
     def _cast(self) -> tuple[int, list[str]]:
         """Return what the layout of a frame depends on: the number of instances and the balls."""
         return self.session.view, [ball.frame for ball in self.session.balls]
-
-    def _begin_anew(self, setup: Setup) -> None:
-        """Set up a scene with robots and balls where they begin."""
-        self._change(Session.reset)
-        self._set_up(setup)
 
     def _set_up(self, setup: Setup) -> None:
         robot = self.session.robot
