@@ -11,7 +11,7 @@ pinocchio_version: str = "4.1.0"
 
 coal_version: str = "3.0.3"
 
-abi: str = "d06a6684f1616356"
+abi: str = "0ac7017ea631f6be"
 
 class JointKind(enum.Enum):
     revolute = 0

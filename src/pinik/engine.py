@@ -12,7 +12,7 @@ import pinocchio
 
 __all__ = ["ABI", "load"]
 
-ABI = "d06a6684f1616356"
+ABI = "0ac7017ea631f6be"
 """The digest of the module's stub, which identifies its signatures; the module contains the same digest
 (src/native/bindings/abi.hpp)."""
 

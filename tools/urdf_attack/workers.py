@@ -89,6 +89,9 @@ class Worker:
     def _answer(self) -> Outcome:
         waited = 0
         try:
+            if not self._pipe.poll(PATIENCE * MACHINE):
+                return self._replaced("hung", "the input was not even made")
+            self._pipe.recv()  # it is made, which may take longer than reading it
             before = self._processor_time()
             while not self._pipe.poll(PATIENCE):
                 waited += 1
@@ -129,4 +132,5 @@ def _serve(pipe: Connection, sandbox: Sandbox) -> None:
             return
         cases = [asked] if isinstance(asked, Case) else (case_of(asked[0], number) for number in asked[1])
         for case in cases:
+            pipe.send("made")
             pipe.send(judge(case))

@@ -5,6 +5,6 @@ namespace pinik {
 
 // Identifies the signatures of the module: the digest of its stub, as tests/solving/test_native.py computes it. It must
 // equal ABI in pinik/engine.py, which refuses a module from another build.
-constexpr const char* abi = "d06a6684f1616356";
+constexpr const char* abi = "0ac7017ea631f6be";
 
 }  // namespace pinik

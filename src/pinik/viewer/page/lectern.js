@@ -73,7 +73,7 @@ export class Lectern {
     /** Ask for explanations while their tab can be seen. */
     _ask() {
         const instance = this._teach.shows("explain") ? this._explain.index : null;
-        if (instance === null) this._showTurn(0, null);
+        if (instance === null) this._explain.forget();
         if (!this._teach.shows("race")) this._race.stop();
         if (instance === this._asked) return;
         this._asked = instance;
