@@ -245,7 +245,7 @@ def test_a_new_parameter_and_new_limits_are_explained_as_if_for_the_first_time()
     robot = load_quietly("double_pendulum_simple")
     kept = Explainer()
     home = home_configuration(robot)
-    target = [pinik.Target("link3", [0.0375, 0.1, 0.17])]
+    target = [pinik.Target("link3", [0.0375, 0.08, 0.2])]
     values = {}
     for damping, limits in [(0.1, True), (0.7, True), (0.7, False), (0.1, True), (0.2, True), (0.3, True), (0.4, False)]:
         solver = pinik.DampedLeastSquares(damping=damping)
