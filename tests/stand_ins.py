@@ -38,6 +38,8 @@ GOOD = {
     "run": ({"on": True}, {"on": "truth"}),
     "look": ({"name": "axes", "on": True}, {"name": "name", "on": "truth"}),
     "step": ({}, {}),
+    "step_iteration": ({"instance": 0}, {"instance": "index or null"}),
+    "line_up": ({"position": [0.3, 0.1, 0.8]}, {"position": "point"}),
     "reset": ({}, {}),
     "begin_anew": ({}, {}),
     "statistics": ({"cover": "all"}, {"cover": "name"}),

@@ -57,10 +57,14 @@ class PseudoInverse(JacobianSolver):
     def direction(self, J: Array, e: Array, pull: Array | None = None, lightest: float = 1.0) -> Array:
         """J†e, plus (I − J†J)·pull for a pull (nv,); `lightest` is the smallest row weight divided by the largest."""
         left, sigma, right = np.linalg.svd(J, full_matrices=False)
-        rank = int((sigma > max(self.cutoff * lightest, SMALLEST_CUTOFF) * sigma[:1].sum()).sum())
+        rank = int((sigma > self.smallest_kept(sigma, lightest)).sum())
         basis = right[:rank]  # (rank, nv): the row space
         dq: Array = (left[:, :rank].T.dot(e) / sigma[:rank]).dot(basis)
         return dq if pull is None else dq + pull - basis.T.dot(basis.dot(pull))
+
+    def smallest_kept(self, sigma: Array, lightest: float = 1.0) -> float:
+        """τ [m], up to which singular values (k,) are dropped; `lightest` as for `direction`."""
+        return max(self.cutoff * lightest, SMALLEST_CUTOFF) * float(sigma[:1].sum())
 
     def step(self, at: Linearization, kinematics: Kinematics) -> Array:
         """The step, with the pull towards the rest posture if one is set."""

@@ -16,13 +16,25 @@ from ..motion.tracks import lay_track, random_configuration
 from ..robot import Robot
 from .steps import LAP, PROGRAM, Chase, Rules, in_pieces
 
-__all__ = ["COMPARISONS", "CURVE", "LAP", "Comparison", "Row", "bones", "chain_length", "compare", "places"]
+__all__ = [
+    "COMPARISONS",
+    "CURVE",
+    "HOME_PHASE",
+    "LAP",
+    "Comparison",
+    "Row",
+    "bones",
+    "chain_length",
+    "compare",
+    "places",
+]
 
 Array = NDArray[np.float64]
 
 CURVE = "eight"
 """The curve of comparisons 1 and 3; the thesis does not describe its own curve."""
-_HOME_PHASE = 0.25  # where the eight crosses itself, at the frame's home position
+HOME_PHASE = 0.25
+"""The part of the lap after which the curve crosses itself, at the frame's home position."""
 _BOX_OF = 1000  # number of reachable places that the box encloses
 
 
@@ -105,7 +117,7 @@ def places(robot: Robot, frame: str, motion: str, steps: int, seed: int, lap: in
     home = home_configuration(robot)
     if motion == "curve":
         track = lay_track(robot, frame, CURVE, robot.placement(frame, home).translation)
-        return np.array([track.at((_HOME_PHASE + step / lap) % 1.0) for step in range(1, steps + 1)])
+        return np.array([track.at((HOME_PHASE + step / lap) % 1.0) for step in range(1, steps + 1)])
     rng = np.random.default_rng([seed, 0])
 
     def reachable() -> Array:

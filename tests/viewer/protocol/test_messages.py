@@ -39,6 +39,7 @@ NO_VECTOR = [
 ]
 NO_VECTOR += [[[1, 2, 3]], [[1], [2], [3]], [1, 2, math.inf], [1, 2, 10**400], [[1, 2], 3, 4], [[]] * 3, [1, 2, {}]]
 WRONG = {
+    "index or null": [*(wrong for wrong in NO_NUMBER if wrong is not None), 1.0, 0.5, -1, 12, 10**30],
     "index": [*NO_NUMBER, 1.0, 0.5, -1, 12, 10**30, 10**400],
     "count": [*NO_NUMBER, 3.0, 0, -1, 1001, 10**400],
     "number": [*NO_NUMBER, 0, -1, 0.9e-6, 101, 10**400, math.inf, -math.inf],
@@ -167,7 +168,8 @@ def test_every_type_of_the_documentation_is_tried_here():
     table = PROTOCOL.read_text("utf-8").split("## From the page")[1]
     rows = dict(re.findall(r"^\| `(\w+)` \| (.*?) \|", table, re.MULTILINE))
     answers = {"find_answers", "take_answer", "find_self_motion", "move_along"}
-    elsewhere = {"type", "robot", "setup", "drawn", *answers}  # the table's head, and what the show answers
+    teaching = {"lesson", "comparison", "explain", "race", "bones"}
+    elsewhere = {"type", "robot", "setup", "drawn", *answers, *teaching}  # the table's head, and what the show answers
     assert set(rows) - elsewhere == set(GOOD)
     for kind, (fields, _) in GOOD.items():
         assert set(re.findall(r"`(\w+)`", rows[kind])) == set(fields)

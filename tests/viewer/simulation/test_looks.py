@@ -5,6 +5,7 @@ from __future__ import annotations
 import pytest
 
 import pinik
+from pinik.viewer.simulation.another_robot import with_robot
 from pinik.viewer.simulation.looks import LOOKS, Looks
 from pinik.viewer.simulation.session import Session
 from robots import load_quietly
@@ -33,4 +34,4 @@ def test_another_robot_and_a_reset_keep_the_looks(arm):
     session = Session(arm, ["dls"])
     session.looks.switch("axes", True)
     session.reset()
-    assert list(session.with_robot(load_quietly("two_link")).looks) == ["axes"]
+    assert list(with_robot(session, load_quietly("two_link")).looks) == ["axes"]

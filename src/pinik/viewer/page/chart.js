@@ -1,39 +1,50 @@
-/** A small live chart: one line per instance over the last seconds. */
+/** A live chart: one line per instance over the last seconds. A click enlarges it; pointing at it says the values. */
 
-const LEFT = 34; // [px] for the labels of the axis
-const RIGHT = 6;
-const TOP = 6;
-const BOTTOM = 16;
+import { figure, logarithmicScale } from "pinik/chart_scale.js";
+import { ChartReadout } from "pinik/chart_readout.js";
+
+const SMALL = { left: 36, right: 6, top: 6, bottom: 16, font: 10 }; // [px]
+const LARGE = { left: 62, right: 18, top: 12, bottom: 30, font: 14 };
+const WIDTHS = [6, 4.4, 2.9, 1.2]; // [px] of the four lines: where they coincide, each still shows beside the next
 
 export class Chart {
-    /** @param options value(sample) in the chart's unit, logarithmic, least (the axis ends at this value or above) */
-    constructor(canvas, theme, { value, logarithmic, least }) {
-        Object.assign(this, {
-            _canvas: canvas,
-            _theme: theme,
-            _value: value,
-            _logarithmic: logarithmic,
-            _least: least,
-        });
-        this._range = null;
+    /** @param options value(sample) in the chart's unit, words(value) with its unit, decades (the fewest on the axis) */
+    constructor(canvas, theme, { value, words, decades }) {
+        Object.assign(this, { _canvas: canvas, _theme: theme, _value: value, _decades: decades, _names: [] });
+        this._readout = new ChartReadout(canvas, theme, (sample) => words(value(sample)));
+    }
+
+    /** Name the instances in the legend. */
+    setState({ instances }) {
+        this._names = instances.map(({ method }) => method);
+        this._readout.setNames(this._names);
     }
 
     /** @param mark the value of a dashed line, or null */
     draw(history, mark) {
         const pen = this._begin();
         if (!pen) return;
-        const area = { left: LEFT, right: this._width - RIGHT, top: TOP, bottom: this._height - BOTTOM };
-        const scale = this._scale(history.series, mark);
+        const { left, right, top, bottom } = this._margins;
+        const area = { left, right: this._width - right, top, bottom: this._height - bottom };
+        const values = history.series.flat().map(this._value).filter(Number.isFinite);
+        const scale = logarithmicScale(values, mark, this._decades);
         const y = (value) => area.bottom - scale.part(value) * (area.bottom - area.top);
         const x = (time) => area.right - ((history.now - time) / history.seconds) * (area.right - area.left);
-        this._axes(pen, area, scale.ticks, x, y, history);
+        this._axes(pen, area, scale, x, y, history);
         if (mark !== null) this._mark(pen, area, y(mark));
-        pen.lineWidth = 1.6;
         pen.lineJoin = "round";
         history.series.forEach((samples, i) => {
-            pen.strokeStyle = this._theme.color(`instance-${i}`);
+            pen.lineWidth = WIDTHS[i] * (this._readout.grown ? 1.2 : 0.8);
+            pen.strokeStyle = pen.fillStyle = this._theme.color(`instance-${i}`);
             this._line(pen, samples, x, y);
+            this._beyond(pen, samples, scale, x, area);
         });
+        const seconds = (at) => history.now - ((area.right - at) / (area.right - area.left)) * history.seconds;
+        this._pointer(pen, area, this._readout.show(history, seconds), x);
+    }
+
+    get _margins() {
+        return this._readout.grown ? LARGE : SMALL;
     }
 
     _begin() {
@@ -46,46 +57,37 @@ export class Chart {
         const pen = this._canvas.getContext("2d");
         pen.setTransform(ratio, 0, 0, ratio, 0, 0);
         pen.clearRect(0, 0, width, height);
-        pen.font = "10px system-ui, sans-serif";
+        pen.font = `${this._margins.font}px system-ui, sans-serif`;
         return pen;
     }
 
-    _scale(series, mark) {
-        const values = series
-            .flat()
-            .map(this._value)
-            .filter((value) => Number.isFinite(value));
-        return this._logarithmic ? logarithmicScale(values, mark) : linearScale(values, this._least);
-    }
-
-    _axes(pen, area, ticks, x, y, history) {
-        pen.fillStyle = this._theme.color("faint");
+    _axes(pen, area, { ticks, between }, x, y, history) {
+        pen.fillStyle = this._theme.color("soft-ink");
         pen.strokeStyle = this._theme.color("hair");
         pen.lineWidth = 1;
         pen.textAlign = "right";
         pen.textBaseline = "middle";
+        if (this._readout.grown) {
+            pen.save();
+            pen.globalAlpha = 0.45;
+            for (const value of between) across(pen, area, y(value));
+            pen.restore();
+        }
         for (const tick of ticks) {
-            const at = Math.round(y(tick)) + 0.5;
-            stroke(pen, [
-                [area.left, at],
-                [area.right, at],
-            ]);
-            pen.fillText(figure(tick), area.left - 5, at);
+            across(pen, area, y(tick));
+            pen.fillText(figure(tick), area.left - 6, y(tick));
         }
         pen.textAlign = "center";
         pen.textBaseline = "alphabetic";
         for (const back of this._width > 260 ? [8, 6, 4, 2] : [8, 4])
-            pen.fillText(`−${back} s`, x(history.now - back), this._height - 3);
+            pen.fillText(`−${back} s`, x(history.now - back), this._height - this._margins.font * 0.4);
     }
 
     _mark(pen, area, at) {
         pen.save();
         pen.strokeStyle = this._theme.color("good");
         pen.setLineDash([4, 3]);
-        stroke(pen, [
-            [area.left, at],
-            [area.right, at],
-        ]);
+        across(pen, area, at);
         pen.restore();
     }
 
@@ -103,36 +105,35 @@ export class Chart {
         }
         pen.stroke();
     }
+
+    /** Small triangles at the upper edge for values beyond it. */
+    _beyond(pen, samples, { top }, x, area) {
+        for (const sample of samples) {
+            if (!(this._value(sample) > top)) continue;
+            const at = x(sample.time);
+            pen.beginPath();
+            pen.moveTo(at - 4, area.top + 6);
+            pen.lineTo(at, area.top - 1);
+            pen.lineTo(at + 4, area.top + 6);
+            pen.fill();
+        }
+    }
+
+    _pointer(pen, area, time, x) {
+        if (time === null) return;
+        pen.strokeStyle = this._theme.color("faint");
+        pen.lineWidth = 1;
+        pen.beginPath();
+        pen.moveTo(x(time), area.top);
+        pen.lineTo(x(time), area.bottom);
+        pen.stroke();
+    }
 }
 
-function stroke(pen, points) {
+function across(pen, area, y) {
+    const at = Math.round(y) + 0.5;
     pen.beginPath();
-    points.forEach(([x, y], k) => (k ? pen.lineTo(x, y) : pen.moveTo(x, y)));
+    pen.moveTo(area.left, at);
+    pen.lineTo(area.right, at);
     pen.stroke();
-}
-
-function figure(tick) {
-    if (tick >= 1000) return `${tick / 1000}k`;
-    if (tick >= 0.001 || tick === 0) return String(Number(tick.toPrecision(2)));
-    return tick.toExponential(0).replace("e-", "e−");
-}
-
-/** Whole decades, from two below the mark to one that contains every value. */
-function logarithmicScale(values, mark) {
-    const decade = (value, round) => round(Math.log10(value));
-    const low = decade(mark, Math.floor) - 2;
-    const high = Math.max(decade(Math.max(...values, mark), Math.ceil), low + 4);
-    const step = Math.ceil((high - low) / 4);
-    const ticks = Array.from({ length: Math.floor((high - low) / step) + 1 }, (_, k) => 10 ** (low + k * step));
-    return { ticks, part: (value) => Math.max(0, (Math.log10(Math.max(value, 1e-12)) - low) / (high - low)) };
-}
-
-/** From zero to a round number above 98 % of the values, so that one outlier does not flatten the rest. */
-function linearScale(values, least) {
-    const sorted = [...values].sort((a, b) => a - b);
-    const usual = sorted[Math.floor(0.98 * (sorted.length - 1))] ?? 0;
-    const wanted = Math.max(1.1 * usual, least);
-    const power = 10 ** Math.floor(Math.log10(wanted));
-    const top = [1, 2, 4, 5, 10].map((factor) => factor * power).find((value) => value >= wanted);
-    return { ticks: [0, top / 2, top], part: (value) => Math.min(value / top, 1.02) };
 }

@@ -8,6 +8,7 @@ import { Connection } from "pinik/connection.js";
 import { Copying } from "pinik/copying.js";
 import { Controls } from "pinik/controls.js";
 import { byId } from "pinik/elements.js";
+import { Lectern } from "pinik/lectern.js";
 import { isFrame } from "pinik/frame.js";
 import { Grab } from "pinik/grab.js";
 import { watchHands } from "pinik/hands.js";
@@ -31,6 +32,7 @@ import { Targets } from "pinik/targets.js";
 import { Theme } from "pinik/theme.js";
 import { THREE } from "pinik/three.js";
 import { Undo } from "pinik/undo.js";
+import { length, microseconds } from "pinik/words.js";
 
 const CHARTS = 100; // [ms] between two drawings of the charts
 
@@ -67,6 +69,8 @@ class Page {
         this.history = new History();
         this._drawnCharts = 0;
         this._unanswered = [];
+        this.lectern = new Lectern(this);
+        Object.assign(this._on, this.lectern.handlers);
         this._makeCharts();
         this._makeHands();
         this._makeButtons();
@@ -79,12 +83,13 @@ class Page {
     _on = {
         hello: (hello) => {
             this.hello = hello;
-            for (const part of [this.show, this.controls, this.cards, this.table, this.lookMenu]) part.setHello(hello);
+            for (const part of [this.show, this.controls, this.cards, this.table, this.lookMenu, this.lectern]) part.setHello(hello);
         },
         robot: (robot) => {
             this.show.setRobot(robot);
             for (const part of [this.targets, this.joints, this.undo, this.surroundings]) part.setRobot(robot);
             this.answers.clear();
+            this.lectern.setRobot();
             this.notices.warnings(robot.warnings);
             this.robot = robot;
             this._showLoading();
@@ -94,12 +99,13 @@ class Page {
             this.undo.setState(state);
             document.title = `${state.robot} – pinik`;
             this._showSettings(state);
-            this.table.setState(state);
+            for (const part of [this.table, this._errorChart, this._timeChart]) part.setState(state);
             this.show.setState(state);
             this.obstacles.setState(state);
             this.answers.setState(state);
             this._showLoading();
             this.notices.watched(state.watched);
+            this.lectern.setState(state);
             this.address.show(state.setup);
         },
         shapes: (shapes) => {
@@ -118,7 +124,10 @@ class Page {
         },
         answers: (answers) => answers.generation === this.robot.generation && this.answers.showAll(answers),
         self_motion: (motion) => motion.generation === this.robot.generation && this.answers.showMotion(motion),
-        error: ({ message }) => this.notices.error(message),
+        error: ({ message }) => {
+            this.notices.error(message);
+            this.lectern.fail();
+        },
     };
 
     _showSettings(state) {
@@ -162,12 +171,13 @@ class Page {
     _makeCharts() {
         this._errorChart = new Chart(byId("error-chart"), this.theme, {
             value: ({ error }) => error * 1000,
-            logarithmic: true,
+            words: (millimetres) => length(millimetres / 1000),
+            decades: 4,
         });
         this._timeChart = new Chart(byId("time-chart"), this.theme, {
-            value: ({ seconds }) => seconds * 1000,
-            logarithmic: false,
-            least: 0.2,
+            value: ({ seconds }) => seconds * 1e6,
+            words: (micros) => microseconds(micros / 1e6),
+            decades: 2,
         });
     }
 

@@ -4,13 +4,15 @@ import { byId } from "pinik/elements.js";
 import { addPresets } from "pinik/presets.js";
 import { Show } from "pinik/show.js";
 import { Theme } from "pinik/theme.js";
+import { inflated, pieces, unpackedFrames } from "pinik/unpack.js";
 
 const TAIL = 90; // number of earlier frames that a trail shows
 
 class Player {
+    /** @param recording the recording with its frames and commands unpacked */
     constructor(recording) {
         this._show = new Show({ canvas: byId("canvas"), labels: byId("labels") }, new Theme(), { played: true });
-        this._frames = bytesOf(recording.frames).buffer;
+        this._frames = recording.frames;
         this._size = recording.frame_bytes;
         this._count = Math.floor(this._frames.byteLength / Math.max(this._size, 1));
         this._rate = recording.frames_per_second;
@@ -21,7 +23,7 @@ class Player {
         this._show.setHello(recording.hello);
         this._show.setRobot(recording.robot);
         this._show.setState(recording.state);
-        for (const command of recording.commands) this._show.command(bytesOf(command));
+        for (const command of recording.commands) this._show.command(command);
         this._show.setShapes(recording.shapes);
         this._bind();
         this._play(this._count > 1);
@@ -80,8 +82,13 @@ class Player {
     }
 }
 
-function bytesOf(base64) {
-    return Uint8Array.from(atob(base64), (character) => character.charCodeAt(0));
+async function read(recording) {
+    const [planes, commands] = await Promise.all([inflated(recording.frames), inflated(recording.commands)]);
+    return {
+        ...recording,
+        frames: unpackedFrames(planes, recording.frame_bytes),
+        commands: pieces(commands, recording.command_bytes),
+    };
 }
 
-window.pinik = { player: new Player(JSON.parse(byId("recording").textContent)) };
+window.pinik = { player: new Player(await read(JSON.parse(byId("recording").textContent))) };

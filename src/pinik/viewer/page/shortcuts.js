@@ -12,7 +12,13 @@ export function shortcuts(page) {
     const nudge = (event) => page.nudge.press(event.key, targets.selected, event.shiftKey);
     return [
         { keys: [" "], shown: ["Space"], title: "start or stop", act: () => controls.toggleRun() },
-        { keys: ["."], title: "make one step", act: () => controls.step() },
+        {
+            keys: ["."],
+            title: "make one step; one iteration while Explain is open",
+            act: () => page.lectern.iterate() || controls.step(),
+        },
+        { keys: ["e"], title: "explain, or close", act: () => page.lectern.toggle() },
+        { keys: [","], title: "play the turns of a sweep", act: () => page.lectern.replay() },
         { keys: ["r"], title: "reset", act: () => send("reset") },
         { keys: ["1", "2", "4"], title: "number of robots side by side", act: ({ key }) => controls.view(Number(key)) },
         {

@@ -32,6 +32,12 @@ export function duration(seconds) {
     return seconds < 0.0009995 ? `${significant(seconds * 1e6)} µs` : `${significant(seconds * 1000)} ms`;
 }
 
+/** A time [s], in microseconds below a millisecond. */
+export function microseconds(seconds) {
+    if (seconds === null || !Number.isFinite(seconds)) return NOTHING;
+    return seconds < 1e-3 ? `${significant(seconds * 1e6)} µs` : `${significant(seconds * 1000)} ms`;
+}
+
 export function count(value) {
     if (value === null || !Number.isFinite(value)) return NOTHING;
     return value >= 100 ? value.toFixed(0) : value.toFixed(1);

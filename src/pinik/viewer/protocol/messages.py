@@ -15,7 +15,17 @@ from ..simulation.session import Session
 from .pasting import angles_by_joint, paste_angles
 from .reading import read_json
 
-__all__ = ["FARTHEST", "RANGES", "any_text", "apply", "checked", "parse", "text", "whole_number"]
+__all__ = [
+    "FARTHEST",
+    "RANGES",
+    "any_text",
+    "apply",
+    "checked",
+    "number_or_none",
+    "parse",
+    "text",
+    "whole_number",
+]
 
 RANGES: dict[str, tuple[float, float]] = {
     "speed": (0.1, 100.0),
@@ -110,8 +120,12 @@ def whole_number(what: str, value: Any) -> int:
     return value
 
 
-def _instance_or_none(what: str, value: Any) -> int | None:
-    return None if value is None else whole_number(what, value)
+def number_or_none(what: str, value: Any) -> int | None:
+    """Check that a value is a whole number that is not negative, or null."""
+    number = None if value is None else whole_number(what, value)
+    if number is not None and number < 0:
+        raise InputError(f"{what} must not be negative; got {number}")
+    return number
 
 
 def _in_range(name: str, *, whole: bool = False) -> Check:
@@ -220,6 +234,8 @@ _MESSAGES: dict[str, tuple[dict[str, Check], Callable[..., None]]] = {
     "pause_on_miss": ({"on": _truth}, _pause_on_miss),
     "look": ({"name": text, "on": _truth}, lambda s, name, on: s.looks.switch(name, on)),
     "step": ({}, _single_step),
+    "line_up": ({"position": _point}, Session.line_up),
+    "step_iteration": ({"instance": number_or_none}, lambda s, instance: s.step_iteration(instance)),
     "reset": ({}, Session.reset),
     "begin_anew": ({}, lambda s: s.scores.begin_anew(s.view)),
     "statistics": ({"cover": text}, lambda s, cover: s.scores.cover(cover)),
@@ -240,8 +256,8 @@ _MESSAGES: dict[str, tuple[dict[str, Check], Callable[..., None]]] = {
     "remove_obstacle": (_BALL, _on_obstacles(Obstacles.remove)),
     "effector": ({**_BALL, "mode": text}, Session.set_mode),
     "add_effector": ({"frame": text}, Session.add_ball),
-    "angles": ({"instance": _instance_or_none, "angles": angles_by_joint}, set_angles),
+    "angles": ({"instance": number_or_none, "angles": angles_by_joint}, set_angles),
     "balls_lead": ({}, lambda s: s.leading.hold((), ())),
-    "paste": ({"instance": _instance_or_none, "text": any_text}, paste_angles),
+    "paste": ({"instance": number_or_none, "text": any_text}, paste_angles),
     "remove_effector": (_BALL, lambda s, index: s.balls.remove(index)),
 }

@@ -14,9 +14,11 @@ from ..simulation.motion import MOTIONS
 from ..simulation.session import STEPS_PER_SECOND, VIEWS, Session
 from ..simulation.statistics import WINDOWS, Summary
 from ..simulation.swinging import LOOKED_AT, swinging
+from .lessons import LESSONS
 from .messages import FARTHEST, RANGES
 from .parameters import describe_parameters, tolerance_of
 from .robots import ROOTS
+from .thesis_walk import published_table
 
 __all__ = ["hello_message", "session_state"]
 
@@ -42,6 +44,8 @@ def hello_message(version: str, methods: dict[str, type[Solver]], own_robots: li
         "windows": [{"name": name, "title": title} for name, title in WINDOWS.items()],
         "looks": [{"name": name, **look._asdict()} for name, look in LOOKS.items()],
         "ranges": {**{name: list(ends) for name, ends in RANGES.items()}, "reach": FARTHEST},
+        "lessons": [{"name": name, **lesson._asdict()} for name, lesson in LESSONS.items()],
+        "thesis": published_table(),
         "statuses": list(STATUSES),
         "steps_per_second": STEPS_PER_SECOND,
     }

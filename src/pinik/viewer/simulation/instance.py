@@ -161,6 +161,7 @@ class Instance:
         self._targets: tuple[Target, ...] = ()
         self._avoided: Avoid | None = None
         self._trouble = self._blocked = ""
+        self._paused = False
 
     def step(self, targets: Sequence[Target], seconds: float = math.inf) -> None:
         """Follow the targets for one simulation step, for about `seconds` at most.
@@ -187,6 +188,7 @@ class Instance:
                     time=0.0, iterations=0, joint_updates=0, jump=0.0, idle=True, cut_off=False
                 )
             return
+        self._paused = False
         began, before, former = self._clock(), self.q, self._state if self._pursuit else None
         try:
             state = self._kept_free(self._run(asked, began + seconds), asked)
@@ -209,6 +211,18 @@ class Instance:
             jump=float(np.abs(pinocchio.difference(self.robot.model, before, state.q)).max(initial=0.0)),
             cut_off=state.status is None,
         )
+
+    def step_iteration(self, targets: Sequence[Target]) -> None:
+        """Take one iteration instead of a whole step, which does not count.
+
+        Nothing happens if all targets are reached, or if the method cannot solve for them.
+        """
+        for _ in range(2):  # the first one only begins a run, if none is under way
+            self.step(targets, 0.0)
+            if self.status != Status.TIME_LIMIT.name or (self.last and self.last.iterations > 0):
+                break
+        self.counted = False
+        self._paused = self.status == Status.TIME_LIMIT.name
 
     def _run(self, targets: tuple[Target, ...], deadline: float) -> State:
         if self._pursuit is None:
@@ -280,6 +294,8 @@ class Instance:
         verdict = judge(question, self._targets, self.q, Status[self.status])
         active = question.active_limits(self.q) if question.options.limits else {}
         words = explain(question, self._targets, verdict, active)
+        if self._paused and self._state is not None:
+            words = words.replace("out of time,", f"between two iterations, {self._state.iteration} taken,", 1)
         off = largest_of(verdict.errors)
         if self._blocked:
             words = f"waits, since every answer that was found touches something: {self._blocked}"

@@ -60,6 +60,10 @@ class Motion:
             raise UnknownNameError("curve", name, CURVES)
         self.curve = name
 
+    def start_at(self, phase: float) -> None:
+        """Go on along the curve after this part of its lap, from 0 to 1."""
+        self._phase = phase % 1.0
+
     def advance(self, balls: Sequence[Ball], seconds: float) -> None:
         """Move the balls by one step of `seconds`."""
         if not self.moves(balls):

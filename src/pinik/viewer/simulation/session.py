@@ -56,6 +56,7 @@ class Session:
         leading: The instances whose joints lead instead of the balls.
         misses: Whether the session pauses on a miss, and the last one.
         looks: What the picture shows besides robots and balls.
+        home: The pose in which the robots begin (nq,).
         running: Whether `tick` takes a step.
         steps: The number of steps since the last reset.
         scores: The statistics of the visible instances.
@@ -105,9 +106,9 @@ class Session:
         self.leading, self.misses = Leading(), Misses()
         self.motion = Motion(robot, seed)
         self.seed, self.clock = seed, clock
-        self._home = home_configuration(robot)
+        self.home = home_configuration(robot)
         self.contacts, self.obstacles = Contacts(robot), Obstacles()
-        self.instances = [Instance(robot, s, self._home, self.settings, clock, self.contacts) for s in solvers]
+        self.instances = [Instance(robot, s, self.home, self.settings, clock, self.contacts) for s in solvers]
         self.balls = Balls(robot)
         self.scores = Scoreboard(clock)
         self.set_view(view)
@@ -165,10 +166,38 @@ class Session:
         if self.misses.look(self.seen, targets, jumped=self.motion.kind == "random"):
             self.running = False
 
+    def step_iteration(self, index: int | None = None) -> None:
+        """Stop, and let one visible instance, or all, take one iteration towards the balls, which stay where they are.
+
+        Raises:
+            InputError: There is no such instance.
+        """
+        chosen = self.seen if index is None else [self._instance(index)]
+        self.running = False
+        self._still_steps = 0
+        for instance in chosen:
+            instance.step_iteration(self.balls.targets)
+
+    def line_up(self, position: ArrayLike) -> None:
+        """Stop, with all robots in the pose in which they begin, and the first ball that is on at a position (3,) [m].
+
+        Raises:
+            InputError: The position is not three finite numbers, or no ball is on.
+        """
+        index = next((k for k, ball in enumerate(self.balls) if ball.mode == "on"), None)
+        if index is None:
+            raise InputError("no ball is on")
+        self.move_ball(index, position)
+        self.running = False
+        self._still_steps = 0
+        for instance in self.instances:
+            instance.put(self.home)
+        self.scores.begin_anew(self.view)
+
     def reset(self) -> None:
         """Return the robots and balls to where they began, and clear the statistics."""
         for instance in self.instances:
-            instance.put(self._home)
+            instance.put(self.home)
         for ball in self.balls:
             ball.go_home()
         self.motion.restart()

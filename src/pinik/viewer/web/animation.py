@@ -11,6 +11,7 @@ from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
+from ..protocol.packed_frames import deflated, packed_frames
 from ..protocol.recording import FRAMES_PER_SECOND, Recording
 from .scene import Shapes, meshcat_script
 
@@ -43,13 +44,13 @@ def animation_page(
         "robot": robot,
         "shapes": shapes.message(robot["generation"]),
         "state": state,
-        "frames": _base64(recording.frames),
+        "frames": _base64(packed_frames(recording.frames, recording.frame_bytes)),
         "frame_bytes": recording.frame_bytes,
         "frames_per_second": FRAMES_PER_SECOND,
     }
     pieces = {
         "title": html.escape(f"{robot['name']} – pinik").encode(),
-        "recording": b'%s, "commands": %s}' % (_json_in_html(document)[:-1], _commands(shapes)),
+        "recording": b"%s, %s" % (_json_in_html(document)[:-1], _commands(shapes)),
     }
     player = _player(page, max(file.stat().st_mtime_ns for file in page.iterdir()))
     return b"".join(pieces[part] if isinstance(part, str) else part for part in player)
@@ -77,8 +78,12 @@ def _player(page: Path, changed: int) -> list[bytes | str]:
 
 @lru_cache(maxsize=1)
 def _commands(shapes: Shapes) -> bytes:
-    """Return the commands of a robot's shapes as JSON, in base64."""
-    return _json_in_html(list(map(_base64, shapes.commands)))
+    """Return the end of the recording's JSON: the commands of a robot's shapes, deflated, and the length of each."""
+    packed = {
+        "commands": _base64(deflated(b"".join(shapes.commands))),
+        "command_bytes": list(map(len, shapes.commands)),
+    }
+    return _json_in_html(packed)[1:]
 
 
 def _base64(data: bytes) -> str:

@@ -53,6 +53,11 @@ class Seats:
         """Forget a tab; nothing happens if it is not there."""
         self._seats.pop(tab, None)
 
+    def is_late(self, tab: Tab) -> bool:
+        """Whether a tab has frames to answer before it is sent more."""
+        seat = self._seats.get(tab)
+        return seat is not None and seat.is_late
+
     def send(self, message: Message) -> None:
         """Send a message to every tab, late or not."""
         for tab in self._seats:

@@ -26,7 +26,9 @@ from .additions import Additions
 from .animation import animation_page
 from .answers import Answers
 from .later import Later
+from .lectern import Lectern, scene_of
 from .pace import Pace
+from .readers import Readers
 from .reload import reloaded
 from .robot_loader import RobotLoader
 from .scene import Shapes
@@ -61,6 +63,8 @@ class Show:
         menu = RobotMenu(session.robot)
         self._loader = RobotLoader(menu, later)
         self._later, self._clock, self._seats = later, clock, Seats()
+        self._readers = Readers(self._seats.is_late)
+        self._lectern = Lectern(self._readers, later, _notice)
         self._hello = hello_message(version, session.methods, menu.own_names)
         self._generation = 0
         self._pace = Pace(clock)
@@ -132,6 +136,7 @@ class Show:
     def leave(self, tab: Tab) -> None:
         """Remove a tab."""
         self._seats.remove(tab)
+        self._lectern.leave(tab)
 
     def receive(self, tab: Tab, message_text: str) -> None:
         """Do what a tab asks, or send it the reason why that is impossible."""
@@ -140,6 +145,9 @@ class Show:
             if message["type"] == "drawn":
                 checked("drawn", message, {"step": whole_number})
                 self._seats.drawn(tab, lambda: self._frame, lambda: json.dumps(self.state()))
+                self._readers.catch_up(tab, self.session, self._generation)
+            elif self._lectern.receive(tab, message, self.session):
+                self._state_due = True
             else:
                 self.do(message)
         except PinikError as error:
@@ -178,6 +186,7 @@ class Show:
         self._state_sent = self._clock()
         if self._seats:
             self._seats.offer_state(json.dumps(self.state()))
+        self._readers.send(self.session, self._generation)
 
     def look_at_files(self) -> bool:
         """Look at the watched files while somebody watches; return whether there is anything new to send."""
@@ -228,6 +237,11 @@ class Show:
                 self._change(lambda session: self._answers.move_along(session, **fields))
             case "setup":
                 self._set_up(read_setup(checked("setup", message, {"setup": any_text})["setup"]))
+            case "lesson" | "comparison":
+                setup, phase = scene_of(message, self.session)
+                self._change(Session.reset)
+                self._set_up(setup)
+                self.session.motion.start_at(phase)
             case kind:
                 before = self._leads()
                 self._change(lambda session: apply(session, message))

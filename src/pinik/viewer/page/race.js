@@ -1,0 +1,110 @@
+/** The tab with the race: all begin in the same pose, at the same moment, at the same target. */
+
+import { make, say } from "pinik/elements.js";
+import { Copy } from "pinik/copy.js";
+import { length, microseconds } from "pinik/words.js";
+
+export class RaceTab {
+    /** @param acts race(places, seed), lineUp(position), iterate() */
+    constructor({ race, lineUp, iterate }) {
+        Object.assign(this, { _lineUp: lineUp, _iterate: iterate });
+        const start = (testid, words, places) => {
+            const button = make("button", { type: "button", className: places ? "primary" : "", dataset: { testid } }, words);
+            button.addEventListener("click", () => {
+                this._wait(true);
+                race(places, Math.floor(Math.random() * 1e6));
+            });
+            return button;
+        };
+        this._starts = [start("race-ten", "Ten random targets", 10), start("race-here", "The balls as they are", 0)];
+        this._words = make("p", { className: "hint", role: "status", dataset: { testid: "race-words" } },
+            "Every method solves from the same pose, for the same targets, with the same tolerance and limits. ",
+            "Each time is the median of five solves, measured apart and in turn.");
+        this._table = make("table", { className: "race-table", dataset: { testid: "race-table" } });
+        this._card = make("pre", { className: "card-text", dataset: { testid: "race-card" } });
+        this._copy = new Copy(() => this._card.textContent, "race-copy");
+        this._watch = make("button", { type: "button", className: "soft", dataset: { testid: "race-watch" } }, "Watch iteration by iteration");
+        this._watch.addEventListener("click", () => this._show());
+        this._which = make("select", { className: "small", aria: { label: "Target to watch" } });
+        this._result = make("div", { hidden: true }, this._table,
+            make("div", { className: "line" }, this._which, this._watch),
+            make("div", { className: "title" }, make("h4", {}, "Result card"), this._copy.element), this._card);
+        this.element = make("div", { className: "race" }, make("div", { className: "pair" }, ...this._starts), this._words, this._result);
+    }
+
+    _wait(waits) {
+        for (const button of this._starts) button.disabled = waits;
+        if (waits) say(this._words, "The race is on …");
+    }
+
+    /** An error may have ended the race. */
+    fail() {
+        this._wait(false);
+    }
+
+    setResult(race) {
+        this._wait(false);
+        this._race = race;
+        this._result.hidden = false;
+        say(this._words, this._sentence(race));
+        say(this._card, race.card);
+        this._which.replaceChildren(...race.places.map((_, k) => make("option", { value: k }, race.random ? `Target ${k + 1}` : "These balls")));
+        this._fill(race);
+    }
+
+    _sentence({ runners, places }) {
+        const [best] = [...runners].sort((a, b) => b.wins - a.wins);
+        if (!best?.wins) return "Nobody arrived.";
+        if (places.length === 1) return `${best.method} arrived first.`;
+        return `${best.method} arrived first at ${best.wins} of ${places.length} targets.`;
+    }
+
+    /** One row for each target: who arrived after how many iterations and which time. */
+    _fill({ runners, places }) {
+        const head = make("tr", {}, make("th", { scope: "col" }, ""), ...runners.map(({ method }) => make("th", { scope: "col" }, method)));
+        const rows = places.map((_, k) => {
+            const there = runners.filter(({ finishes }) => finishes[k]?.reached);
+            const first = Math.min(...there.map(({ finishes }) => finishes[k].time));
+            return make("tr", {}, make("th", { scope: "row" }, String(k + 1)),
+                ...runners.map(({ finishes, refusal }) => this._cell(finishes[k], first, refusal)));
+        });
+        const total = make("tr", { className: "total" }, make("th", { scope: "row" }, "first"),
+            ...runners.map(({ wins }) => make("td", {}, String(wins))));
+        this._table.replaceChildren(make("thead", {}, head), make("tbody", {}, ...rows, total));
+    }
+
+    _cell(finish, first, refusal) {
+        if (!finish) return make("td", { title: refusal, className: "missed" }, "–");
+        if (!finish.reached) return make("td", { className: "missed", title: `${finish.iterations} iterations` }, `${length(finish.error)} short`);
+        const cell = make("td", { className: finish.time === first ? "first" : "" }, microseconds(finish.time), make("small", {}, ` ${finish.iterations}`));
+        cell.title = `${finish.iterations} iterations${finish.time === first ? ", the first to arrive" : ""}`;
+        return cell;
+    }
+
+    /** Line the robots up, and let them all iterate in step, so that one sees who arrives after how many iterations. */
+    _show() {
+        clearInterval(this._timer);
+        const k = Number(this._which.value);
+        this._lineUp(this._race.places[k]);
+        const most = Math.max(...this._race.runners.map(({ finishes }) => Math.min(finishes[k]?.iterations ?? 0, 400)));
+        let taken = 0;
+        this._timer = setInterval(() => {
+            if (taken >= most) {
+                clearInterval(this._timer);
+                return;
+            }
+            this._iterate();
+            taken += 1;
+            say(this._words, `Iteration ${taken} of ${most}: ${this._arrived(k, taken)}`);
+        }, Math.max(60, Math.min(400, 6000 / most)));
+    }
+
+    _arrived(k, taken) {
+        const there = this._race.runners.filter(({ finishes }) => finishes[k]?.reached && finishes[k].iterations <= taken);
+        return there.length ? `${there.map(({ method }) => method).join(", ")} arrived.` : "nobody has arrived yet.";
+    }
+
+    stop() {
+        clearInterval(this._timer);
+    }
+}
