@@ -33,12 +33,11 @@ export class Labels {
         while (this._chips.length < texts.length) this._chips.push(this._make(this._chips.length));
         while (this._chips.length > texts.length) this._chips.pop().chip.remove();
         texts.forEach(({ title, method, words, note, tone }, i) => {
-            const { chip, name, state, extra } = this._chips[i];
+            const { name, state, extra } = this._chips[i];
             say(name, this._narrow ? method : title);
             say(state, words);
             say(extra, note);
             state.dataset.tone = tone;
-            chip.dataset.tone = tone;
         });
     }
 

@@ -21,6 +21,7 @@ from ...robot import Robot
 from ...shapes.avoid import Avoid
 from ...solvers.base import Solver
 from ...solving.message import explain
+from ...solving.native.module import engine_for
 from ...solving.options import Options
 from ...solving.pursuit import Pursuit, pursue
 from ...solving.question import Question
@@ -268,7 +269,7 @@ class Instance:
     @property
     def engine(self) -> str:
         """The engine that steps it: "native" or "python"."""
-        return "python" if self._pursuit is None else self._pursuit.engine
+        return engine_for(self._solver, "auto")
 
     @property
     def moves(self) -> bool:
