@@ -1,0 +1,67 @@
+"""Collisions, obstacles and other answers in the page's panel."""
+
+from __future__ import annotations
+
+import pytest
+
+from judge import plain_placement
+
+
+@pytest.fixture
+def desk(open_panel):
+    opened = open_panel("panda", methods=("dls", "ccd"), running=True)
+    opened.page.locator("#around-block > summary").click()
+    opened.page.locator("#answers-block > summary").click()
+    return opened
+
+
+def test_an_obstacle_is_put_down_resized_moved_and_removed(desk):
+    desk.click("add-box")
+    state = desk.until(lambda s: len(s["obstacles"]) == 1)
+    assert state["obstacles"][0]["kind"] == "box"
+    desk.until(lambda s: s["collisions"]["on"])
+    desk.type("obstacle-0-x", 0.9)
+    desk.until(lambda s: s["obstacles"][0]["position"][0] == 0.9)
+    desk.type("obstacle-0-height", 0.4)
+    desk.until(lambda s: s["obstacles"][0]["size"][2] == 0.4)
+    desk.click("add-sphere")
+    desk.until(lambda s: [each["kind"] for each in s["obstacles"]] == ["box", "sphere"])
+    desk.click("remove-obstacle-0")
+    desk.until(lambda s: [each["kind"] for each in s["obstacles"]] == ["sphere"])
+    desk.expect("obstacle-0-radius").to_have_count(1)
+
+
+def test_what_touches_is_named_and_then_avoided(desk):
+    ball = desk.state["balls"][0]["position"]
+    desk.click("add-sphere")
+    desk.until(lambda s: s["collisions"]["on"] and not s["collisions"]["loading"])
+    for axis, coordinate in zip("xyz", (0.35, 0.0, 0.75), strict=True):
+        desk.type(f"obstacle-0-{axis}", coordinate)
+    desk.until(lambda s: s["instances"][0]["touching"])
+    desk.expect("collisions-words").to_contain_text("obstacle 1")
+    desk.click("avoid")
+    state = desk.until(lambda s: not any(each["touching"] for each in s["instances"]))
+    assert state["collisions"]["avoid"]
+    desk.expect("collisions-words").to_have_text("Nothing touches")
+    assert desk.until(desk.is_followed)["balls"][0]["position"] == ball
+
+
+def test_an_answer_is_taken_by_its_number(desk):
+    before = desk.state["instances"][0]["angles"]
+    desk.click("find-answers")
+    desk.expect("answer-3").to_have_count(1)
+    desk.expect("answers-words").to_contain_text("answers")
+    desk.click("answer-3")
+    state = desk.until(lambda s: s["instances"][0]["angles"] != before and s["instances"][0]["status"] == "CONVERGED")
+    after = state["instances"][0]["angles"]
+    assert max(abs(after[name] - before[name]) for name in before) > 0.01
+    (q, _) = desk.view.configurations
+    at = plain_placement(desk.view.robot, state["balls"][0]["frame"], q).translation
+    assert at == pytest.approx(state["balls"][0]["position"], abs=2e-4)
+
+
+def test_a_robot_without_collision_shapes_says_so(open_panel):
+    desk = open_panel("arm", methods=("dls",), running=True)
+    desk.page.locator("#around-block > summary").click()
+    desk.click("collisions")
+    desk.expect("collisions-words").to_contain_text("no collision shapes")
