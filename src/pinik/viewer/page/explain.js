@@ -15,7 +15,7 @@ const VALUES = {
 };
 const SENTENCES = {
     ccd: "Joint after joint, from the tip to the base, turns the effector as near to the ball as its circle allows. " +
-        "Seen from the joint, the effector is at 𝐩c and the ball at 𝐩d; 𝐚 is its axis.",
+        "In 𝐩, the index c is for the way from the joint to the effector, and d for the way to the ball; 𝐚 is the joint’s axis.",
     jt: "Every joint moves in proportion to how much it would help alone: down the gradient, with one factor α for all.",
     pinv: "The shortest step that removes the whole linear residual. A small σ makes its gain 1/σ large.",
     dls: "Like the pseudo-inverse, but λ holds the gain of small singular values down.",
