@@ -1,8 +1,8 @@
 from __future__ import annotations
 
 import dataclasses
-import re
 import itertools
+import re
 import shlex
 import subprocess
 import sys
