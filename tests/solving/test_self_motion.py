@@ -691,3 +691,14 @@ def test_the_dictionary_of_more_dimensions_has_configurations_and_no_arcs(panda)
     for row in told["angles"]:
         q = panda.configuration(dict(zip(told["joint_names"], row, strict=True)))
         assert np.linalg.norm(panda.placement(TIP, q).translation - place) < 1e-7
+
+
+@pytest.mark.parametrize("q", [[0.0] * 6, [0.1, 0.0, 0.0, 0.0, 0.0, 0.0], [0.0, 1e-6, 0.0, 0.0, 0.0, 0.0]])
+def test_a_limit_at_the_seam_of_a_closed_curve_is_no_obstacle(q):
+    """The stretched ur5 turns about its parallel wrist axes; the curve begins where a joint passes a limit."""
+    robot = load_quietly("ur5")
+    target = Target("tool0", placement=robot.placement("tool0", q))
+    motion = robot.self_motion([target], q)
+    assert motion.dimension == 1
+    assert len(motion) > 10
+    assert_certified(robot, [target], motion.q[::10])

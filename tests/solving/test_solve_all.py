@@ -464,3 +464,15 @@ class TestWords:
         ]
         assert copy.errors == branches.errors
         assert len(pickle.dumps(branches)) < len(pickle.dumps(branches.robot)) + 50_000
+
+
+@every_engine
+@pytest.mark.parametrize("method", ["ccd", "pinv", "dls"])
+def test_each_method_finds_the_eight_answers_of_a_ur5(engine, method):
+    """A solve stops inside the tolerance; a search goes on until an answer is exact, with any method."""
+    robot = load_quietly("ur5")
+    place = robot.placement("tool0", [0.3, -1.0, 1.2, 0.4, 0.7, 0.5])
+    found = robot.solve_all("tool0", placement=place, method=method, engine=engine)
+    assert len(found) == 8
+    for q in found:
+        assert is_good(robot, [Target("tool0", placement=place)], q, (1e-7, 1e-7))

@@ -258,7 +258,8 @@ def _sharpened(question: Question) -> Question:
     size = problem.size_of_chain
     problem.terms = tuple([dataclasses.replace(term, tolerance=_sharp(term.tolerance, size)) for term in problem.terms])
     problem.is_wide = False
-    return dataclasses.replace(question, problem=problem)
+    options = dataclasses.replace(question.options, tolerance=_sharp(question.options.tolerance, size))
+    return dataclasses.replace(question, problem=problem, options=options)
 
 
 def _sharp(tolerance: Tolerance, size_of_chain: float) -> Tolerance:

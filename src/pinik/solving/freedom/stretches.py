@@ -108,7 +108,10 @@ class _Cutter:
         self._turning = limits.turning[self._entries]
         self._near = q[self._entries]
         crossings = [_Event(crossing.at, crossing.conditioning) for crossing in curve.crossings]
-        self._events = sorted([*self._passings(), *crossings], key=lambda event: event.at)
+        events = [*self._passings(), *crossings]
+        if curve.closed:  # an event at the seam may lie a rounding beyond the round
+            events = [event._replace(at=event.at % curve.length) for event in events]
+        self._events = sorted(events, key=lambda event: event.at)
         self._values = self._middles()
 
     def _passings(self) -> Iterator[_Event]:
