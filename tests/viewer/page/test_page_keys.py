@@ -114,7 +114,7 @@ def test_the_help_lists_every_key_and_opens_and_closes_by_keys(desk):
     desk.expect("help-dialog").to_be_hidden()
     desk.page.keyboard.press("?")
     desk.expect("help-dialog").to_be_visible()
-    tested = ["Space", ".", "r", "1", "2", "4", "m", "c", "+", "−", "l", "p", "b", "←", "→", "↑", "↓"]
+    tested = ["Space", ".", "e", ",", "r", "1", "2", "4", "m", "c", "+", "−", "l", "p", "b", "←", "→", "↑", "↓"]
     tested += ["Page ↑", "Page ↓", "o", "v", "0", "h", "w", "f", "t", "?"]
     assert desk.part("help-dialog").locator("dt kbd").all_inner_texts() == tested
     assert all(desk.part("help-dialog").locator("dd").all_inner_texts())

@@ -148,6 +148,7 @@ def test_everything_that_can_be_operated_has_a_name_to_be_read_aloud(open_panel)
     desk = open_panel("arm", METHODS)
     for i in range(4):
         desk.part(f"parameters-{i}").locator("summary").click()
+    desk.click("level-0-all")
     desk.choose("param-0-stiffness", "bone3_x")
     desk.part("orientation").check()
     desk.expect("param-0-stiffness-bone3_x").to_be_visible()
