@@ -115,6 +115,13 @@ class Problem:
         """The weight of a squared orientation error [rad²] in a squared distance [m²]."""
         return (RADIAN * self.size_of_chain) ** 2
 
+    def moved(self, q: NDArray[np.float64], dq: NDArray[np.float64]) -> NDArray[np.float64]:
+        """The configuration (nq,) after a motion dq (nv,) from `q`, where joints that are held keep exact values."""
+        moved: NDArray[np.float64] = pinocchio.integrate(self.model, q, dq)
+        if self.held_entries is not None:
+            moved[self.held_entries] = q[self.held_entries]
+        return moved
+
     def _frame(self, target: Target) -> int:
         """The index of the target's frame, or of a new frame at its tool."""
         frame_id = self.robot.frame_id(target.frame)

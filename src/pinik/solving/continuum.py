@@ -105,10 +105,7 @@ class Continuum:
         problem = self._kinematics.problem
         dq = np.zeros(problem.model.nv)
         dq[self._free] = step / self._scales
-        moved: Array = pinocchio.integrate(problem.model, q, dq)
-        if problem.held_entries is not None:
-            moved[problem.held_entries] = q[problem.held_entries]
-        return moved
+        return problem.moved(q, dq)
 
 
 def _directions(dimension: int) -> list[Array]:

@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 
 import numpy as np
-import pinocchio
 from numpy.typing import NDArray
 
 from ..checks import FARTHEST
@@ -62,10 +61,7 @@ def _stepped(solver: JacobianSolver, kinematics: Kinematics, at: Linearization, 
         scale *= solver.max_step / largest
     if scale != 1.0:
         dq = dq * scale
-    q: Array = pinocchio.integrate(kinematics.model, at.q, dq)
-    if problem.held_entries is not None:
-        q[problem.held_entries] = at.q[problem.held_entries]
-    return q
+    return problem.moved(at.q, dq)
 
 
 def _step_along_limits(

@@ -115,7 +115,7 @@ class WayOut:
         largest = float(np.abs(step).max())
         dq = np.zeros(len(problem.free))
         dq[problem.free] = step * min(1.0, LONGEST_STEP / largest)
-        return np.asarray(limits.clip(self._integrated(q, dq)))
+        return np.asarray(limits.clip(self._question.problem.moved(q, dq)))
 
     def _derivatives(self, q: Array, touches: Sequence[Touch]) -> Array:
         """By how much each touch (rows) opens as each free coordinate (columns) moves.
@@ -131,18 +131,11 @@ class WayOut:
             for sign in (1.0, -1.0):
                 dq = np.zeros(model.nv)
                 dq[coordinate] = sign * PROBE
-                pinocchio.forwardKinematics(model, data, self._integrated(q, dq))
+                pinocchio.forwardKinematics(model, data, self._question.problem.moved(q, dq))
                 for row, (touch, points) in enumerate(zip(touches, own, strict=True)):
                     first, second = (data.oMi[j].act(p) for j, p in zip(touch.joints, points, strict=True))
                     G[row, column] += sign * float(np.dot(touch.normal, second - first)) / (2.0 * PROBE)
         return G
-
-    def _integrated(self, q: Array, dq: Array) -> Array:
-        there: Array = pinocchio.integrate(self._kinematics.model, q, dq)
-        held = self._question.problem.held_entries
-        if held is not None:
-            there[held] = q[held]
-        return there
 
     def _reached(self, start: Array, near: Array, deadline: float) -> Array | None:
         """The configuration near `start` that reaches the targets again; None if there is none or the time is up."""

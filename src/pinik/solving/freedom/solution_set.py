@@ -77,7 +77,7 @@ class SolutionSet:
         self._local = threading.local()
         self.free = np.flatnonzero(problem.free & ~_single(question))
         self.scales = joint_scales(problem)[self.free]
-        self._model, self._held = problem.model, problem.held_entries
+        self._model = problem.model
         self._turning = np.flatnonzero(question.limits.turning)
         self.rank = self._usual_rank()
 
@@ -135,10 +135,7 @@ class SolutionSet:
         """`q` after a motion (n,)."""
         dq = np.zeros(self._model.nv)
         dq[self.free] = direction / self.scales
-        moved: Array = pinocchio.integrate(self._model, q, dq)
-        if self._held is not None:
-            moved[self._held] = q[self._held]
-        return moved
+        return self.question.problem.moved(q, dq)
 
     def difference(self, a: Array, b: Array) -> Array:
         """The motion (n,) from one configuration to another."""
