@@ -42,7 +42,10 @@ LONGEST = 600
 NOT_MUTATED = ("src/pinik/description/xacro_process.py",)
 # The quickest tests that cover each room; a mutant that outlives them may still die in the whole suite.
 TESTS = {
-    "solvers": ["tests/solvers", "tests/solving/test_within.py", "tests/solving/test_at_once.py"],
+    "solvers": [
+        *("tests/solvers", "tests/closed_form/test_robot_bones.py"),
+        *("tests/solving/test_within.py", "tests/solving/test_at_once.py"),
+    ],
     "problem": ["tests/problem", "tests/solving/test_within.py", "tests/solving/test_scale.py"],
     "solving": [
         "tests/solving",

@@ -1,5 +1,6 @@
 from __future__ import annotations
 
+from collections.abc import Iterator
 from pathlib import Path
 from xml.etree import ElementTree
 
@@ -17,6 +18,14 @@ OWN = ["arm", "lion", "two_link"]
 BROKEN = "ur3_empty"
 # The files that address meshes which no installation has.
 MESHES_ELSEWHERE = {"romeo_laas_small"}
+
+
+@pytest.fixture(autouse=True)
+def read_anew() -> Iterator[None]:
+    """The catalogue remembers what it read; no test takes over what another one found."""
+    robot_catalog._urdf_files.cache_clear()
+    yield
+    robot_catalog._urdf_files.cache_clear()
 
 
 def test_the_catalogue_has_every_file_of_example_robot_data_once_and_pinik_s_own() -> None:
@@ -132,18 +141,14 @@ def test_the_installed_folder_comes_before_the_checkout_s(tmp_path: Path, monkey
     (tmp_path / "urdf" / "checkout.urdf").touch()
     package.mkdir(parents=True)
     monkeypatch.setattr(robot_catalog, "__file__", str(package / "description" / "catalog.py"))
-    robot_catalog._urdf_files.cache_clear()
     assert "checkout" in catalog()
     (package / "urdf").mkdir()
     (package / "urdf" / "installed.urdf").touch()
     robot_catalog._urdf_files.cache_clear()
     assert "installed" in catalog()
     assert "checkout" not in catalog()
-    robot_catalog._urdf_files.cache_clear()
 
 
 def test_without_example_robot_data_pinik_s_own_robots_remain(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(robot_catalog, "example_robot_data", lambda: None)
-    robot_catalog._urdf_files.cache_clear()
     assert catalog() == OWN
-    robot_catalog._urdf_files.cache_clear()

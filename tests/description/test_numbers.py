@@ -93,6 +93,12 @@ def test_what_can_be_read_in_two_ways_or_in_none_is_refused_with_them(text, coun
     assert len(str(caught.value)) < 200
 
 
+def test_of_two_ways_to_read_a_text_no_third_is_named():
+    with pytest.raises(NumberError) as caught:
+        read_numbers("1,000 0 0", (3,), "length")
+    assert str(caught.value) == 'can be read in two ways: as "1 0 0" or as "1000 0 0"'
+
+
 @given(st.lists(st.floats(allow_nan=False, allow_infinity=False), min_size=1, max_size=4))
 def test_plain_numbers_are_read_exactly_and_without_a_word(values):
     reading = read_numbers(" ".join(map(repr, values)), (len(values),), "length")

@@ -455,17 +455,18 @@ def test_a_named_pipe_is_refused_in_words_and_nobody_waits_for_its_other_end(tmp
 
 
 @pytest.mark.parametrize(
-    "inside",
+    ("inside", "element"),
     [
-        '<xi:include href="other.urdf"/>',
-        '<x:include xmlns:x="http://www.w3.org/2001/XInclude" href="other.urdf"/>',
-        '<include xmlns="http://www.w3.org/2001/XInclude" href="other.urdf"/>',
-        '<link name="b"><x:fallback xmlns:x="http://www.w3.org/2001/XInclude"/></link>',
+        ('<xi:include href="other.urdf"/>', "<xi:include>"),
+        ('<x:include xmlns:x="http://www.w3.org/2001/XInclude" href="other.urdf"/>', "<x:include>"),
+        ('<include xmlns="http://www.w3.org/2001/XInclude" href="other.urdf"/>', "<include>"),
+        ('<link name="b"><x:fallback xmlns:x="http://www.w3.org/2001/XInclude"/></link>', "<x:fallback>"),
     ],
 )
-def test_xinclude_is_refused_as_an_external_reference(inside: str) -> None:
-    with pytest.raises(RobotLoadError, match=r"external references \(XInclude\) are refused"):
+def test_xinclude_is_refused_as_an_external_reference(inside: str, element: str) -> None:
+    with pytest.raises(RobotLoadError, match=r"external references \(XInclude\) are refused") as caught:
         urdf.read(robot(link("a"), inside))
+    assert caught.value.element == element
 
 
 def test_an_include_of_another_kind_is_none_of_our_business() -> None:

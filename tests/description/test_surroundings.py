@@ -145,6 +145,7 @@ def test_a_workspace_of_links_is_opened(tmp_path: Path, monkeypatch: pytest.Monk
         ("package://arm/Meshes/Base.STL", "meshes/Base.STL'"),
         ("../meshes/base.stl", "there is 'Base.STL'"),
         ("../meshes/bass.stl", "there is no such file"),
+        ("../Meshes", "there is no such file"),
         ("package://arm/meshes/bass.stl", "there is no such file"),
         ("package://legs/meshes/base.stl", "no package 'legs' was found"),
         ("package://ARM/meshes/Base.STL", "no package 'ARM' was found, but there is 'arm'"),

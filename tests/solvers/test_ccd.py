@@ -436,6 +436,20 @@ def test_a_leader_turns_to_the_side_of_its_target_and_stops_at_its_limit_and_at_
     assert swept(text, [target], {}, max_step=0.15)["lead"] == pytest.approx(0.15 * side, abs=1e-12)
 
 
+@pytest.mark.parametrize("part", [1.0, 0.5])
+def test_a_leader_of_a_follower_that_slides_as_well_goes_its_part_of_the_way_in_one_step(part):
+    """Leader and follower move the tip by 1.5 times the leader's slide, so that 0.4 m of it reach 0.6 m."""
+    slide = {"kind": "prismatic", "limit": limited(-3, 3)}
+    follow = '<mimic joint="lead" multiplier="0.5"/>'
+    text = robot_text(
+        *(link(name) for name in ("base", "upper", "tip")),
+        joint("lead", "base", "upper", '<axis xyz="1 0 0"/>', **slide),
+        joint("z_follow", "upper", "tip", '<axis xyz="1 0 0"/>', follow, **slide),
+    )
+    lead = swept(text, [Target("tip", [0.6, 0.0, 0.0])], {}, stiffness={"lead": part})["lead"]
+    assert lead == pytest.approx(0.4 * part, abs=1e-12)
+
+
 def test_the_joints_that_are_held_are_those_of_stiffness_zero():
     assert CCD(stiffness={"a": 0.0, "b": 1.0, "c": 0.5, "d": 0.0}).held == ("a", "d")
 

@@ -23,10 +23,18 @@ NEVER = Tolerance(1e-30, 1e-30)
 WIDE = 0.2  # [rad]
 
 
-def chaser(robot: pinik.Robot, target: Target, q: np.ndarray, *, alpha: float = 1.0, loose: bool = False) -> Chaser:
+def chaser(
+    robot: pinik.Robot,
+    target: Target,
+    q: np.ndarray,
+    *,
+    alpha: float = 1.0,
+    max_residual: float = math.inf,
+    loose: bool = False,
+) -> Chaser:
     kinematics = Kinematics(robot, [target])
     pinocchio.forwardKinematics(kinematics.model, kinematics.data, q)
-    return Chaser(kinematics.rows[0], alpha, math.inf, loose)
+    return Chaser(kinematics.rows[0], alpha, max_residual, loose)
 
 
 def unit(rng: np.random.Generator) -> np.ndarray:
@@ -93,6 +101,52 @@ def test_axes_that_are_not_loose_are_drawn_all_the_way(ur5):
     R = random_rotation(rng)
     target = Target("tool0", rotation=R, tolerance=(1.0, WIDE))
     np.testing.assert_array_equal(chaser(ur5, target, ur5.random(rng))._drawn_axes(), R)
+
+
+BOX = np.array([0.03, 0.002, 0.01])  # [m]
+
+
+@pytest.mark.parametrize("max_residual", [math.inf, 0.04])
+@pytest.mark.parametrize("kind", ["ball", "box", "box along a rotation", "whole", "free along y"])
+def test_a_position_is_drawn_to_the_near_edge_of_what_is_allowed_and_at_most_d_max_far(ur5, kind, max_residual):
+    rng = np.random.default_rng(5)
+    edge = SHARE * BOX
+    drawn_at_all = set()
+    for _ in range(100):
+        q = ur5.random(rng)
+        here = ur5.placement("tool0", q)
+        axes = random_rotation(rng) if kind == "box along a rotation" else np.eye(3)
+        away = rng.uniform(-2.0, 2.0, 3) * BOX  # from goal to effector, along the axes of the target
+        goal = here.translation - axes @ away
+        rotation = axes if kind == "box along a rotation" else None
+        tolerance = (0.03 if kind == "ball" else BOX.tolist(), 1.0)
+        position = [goal[0], None, goal[2]] if kind == "free along y" else goal
+        target = Target("tool0", position, rotation=rotation, tolerance=tolerance)
+        loose = kind in ("ball", "box", "box along a rotation")
+        drawn = chaser(ur5, target, q, max_residual=max_residual, loose=loose)._drawn_goal()
+        length = np.linalg.norm(away)
+        near = {  # the nearest allowed position, seen from the goal
+            "ball": away * min(1.0, SHARE * 0.03 / length),
+            "whole": np.zeros(3),
+            "free along y": away * [0.0, 1.0, 0.0],
+        }.get(kind, np.clip(away, -edge, edge))
+        left = axes @ (near - away)
+        distance = np.linalg.norm(left)
+        drawn_at_all.add(drawn is not None)
+        if distance == 0.0:
+            assert drawn is None
+            continue
+        np.testing.assert_allclose(drawn, here.translation + left * min(1.0, max_residual / distance), atol=1e-12)
+    assert drawn_at_all == ({True, False} if loose else {True})
+
+
+@pytest.mark.parametrize("beside", [0.0, 1e-7])
+def test_an_axis_at_the_point_that_it_should_point_at_points_there(ur5, beside):
+    q = ur5.random(6)
+    here = ur5.placement("tool0", q)
+    one = chaser(ur5, Target("tool0", axis="x", at=here.translation + beside * here.rotation[:, 1]), q)
+    assert one.angle() < 1e-15
+    assert one.within(Tolerance(1e-30, 1e-15))
 
 
 HINGES = robot_text(

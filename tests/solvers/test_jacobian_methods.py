@@ -13,6 +13,9 @@ import pinik
 from engines import needs_native
 from judge import assert_good
 from pinik import DampedLeastSquares, JacobianTranspose, PseudoInverse
+from robots import load_quietly
+from urdf_texts import joint, link
+from urdf_texts import robot as robot_text
 
 
 @st.composite
@@ -277,6 +280,21 @@ def test_the_cutoff_is_relative_to_the_largest_singular_value_and_to_the_lightes
     assert np.count_nonzero(expected) == kept
     dq = PseudoInverse(cutoff=0.001).direction(J, e, None, lightest)
     np.testing.assert_allclose(dq, expected, rtol=1e-12, atol=0.0)
+
+
+def test_with_a_rest_posture_a_light_target_is_served_as_without():
+    """Two slides with a target each, one of a thousandth of the other's weight; neither has a null space."""
+    slide = {"kind": "prismatic", "limit": '<limit lower="-1" upper="1" effort="1" velocity="1"/>'}
+    axis = '<axis xyz="0 0 1"/>'
+    robot = load_quietly(
+        robot_text(*map(link, "abc"), joint("up", "a", "b", axis, **slide), joint("off", "a", "c", axis, **slide))
+    )
+    targets = [pinik.Target("b", [0.0, 0.0, 0.3]), pinik.Target("c", [0.0, 0.0, -0.2], weight=1e-3)]
+    kinematics = pinik.Kinematics(robot, targets)
+    solver = PseudoInverse(cutoff=0.1, rest_posture={"up": 0.5, "off": 0.5})
+    step = solver.step(kinematics.linearize(robot.neutral()), kinematics)
+    wanted = robot.configuration({"up": 0.3, "off": -0.2})
+    np.testing.assert_allclose(step, wanted, atol=1e-12)
 
 
 def test_the_cutoff_does_not_grow_with_the_number_of_large_singular_values():

@@ -12,6 +12,7 @@ import pinik
 from engines import needs_native
 from judge import assert_good, assert_honest, judge, plain_placement
 from pinik import Target, Tolerance
+from pinik.solving import alone as alone_room
 from robots import load_quietly
 
 ENGINES = ["python", pytest.param("native", marks=needs_native)]
@@ -128,7 +129,10 @@ def test_a_height_beyond_reach_is_proved_unreachable_and_a_point_in_the_hole_of_
     assert_good(robot.solve("tip", [0.0, None, base[2]], relative_to=robot.frame_names[1]))
 
 
-def test_the_message_says_which_part_can_be_had_alone():
+@pytest.mark.parametrize("engine", ENGINES)
+def test_the_message_says_which_part_can_be_had_alone(engine, monkeypatch):
+    if engine == "python":
+        monkeypatch.setattr(alone_room, "why_not", lambda _: "it is left out in this test")
     robot = load_quietly("so101")
     M = robot.placement(HAND, robot.configuration({"elbow_flex": 0.4, "wrist_flex": 0.3}))
     sideways = M.rotation @ pinocchio.exp3(np.array([0.0, 0.9, 0.0]))

@@ -186,12 +186,26 @@ def test_flaws_carry_their_lines():
     assert only(text).line == 7
 
 
+def test_a_long_tag_is_quoted_by_its_beginning_and_its_end():
+    """In 60 characters, of which 15 are its end."""
+    tag = "t" * 100 + "e" * 100
+    assert f"<{44 * 't'}…{15 * 'e'}> in <origin> is unknown" in only(pair(f"<origin><{tag}/></origin>")).cause
+
+
 class TestUnits:
     @pytest.mark.parametrize("bounds", [(-90, 90), (0, 180), (-170, 170), (-360, 360), (-22.5, 45)])
     def test_limits_beyond_turns_in_whole_degrees_are_doubted(self, bounds):
         flaw = only(pair(limit=LIMIT.format(*bounds)))
         assert flaw.code == "limit-in-degrees"
         assert not flaw.edits
+
+    @pytest.mark.parametrize(("others", "words"), [(1, "another joint stays"), (2, "2 other joints stay")])
+    def test_limits_in_degrees_are_compared_with_those_of_the_other_joints(self, others, words):
+        bounds = [(-90, 90), (-1.5, 1.2), (-0.3, 0.4)][: others + 1]
+        joints = [joint(f"j{i}", "a", f"l{i}", limit=LIMIT.format(*ends)) for i, ends in enumerate(bounds)]
+        flaw = only(robot(link("a"), *(link(f"l{i}") for i in range(len(bounds))), *joints))
+        assert flaw.code == "limit-in-degrees"
+        assert flaw.cause.endswith(f"look like degrees, while {words} within 1.5 rad")
 
     @pytest.mark.parametrize("bounds", [(-3.14, 3.14), (-6.2832, 6.2832), (-12.5, 12.5), (-1e9, 1e9), (-62.83, 62.83)])
     def test_radians_and_joints_without_an_end_are_not(self, bounds):
