@@ -21,6 +21,7 @@ from .solvers.registry import Method
 from .solving import batch
 from .solving.answer import answer
 from .solving.branches import Branches
+from .solving.configuration import Given, as_configuration
 from .solving.native.recalling import recalling
 from .solving.self_motion import SelfMotion, self_motion
 from .solving.solution import Solution
@@ -79,7 +80,7 @@ class Robot(RobotModel):
         """
         return batch.jacobians(self, frame, Q, axes, relative_to)
 
-    def collisions(self, q: ArrayLike, world: World | None = None) -> list[Collision]:
+    def collisions(self, q: Given, world: World | None = None) -> list[Collision]:
         """What touches at a configuration: links of the robot, and links and objects of a world.
 
         Collisions are those of the `<collision>` shapes of the URDF, as coal computes them. Meshes are surfaces: what
@@ -88,13 +89,14 @@ class Robot(RobotModel):
         objects in it.
 
         Args:
-            q: The configuration (nq,).
+            q: The configuration (nq,); angles by joint name, with all other joints neutral; or a `Solution`.
             world: What stands around the robot.
 
         Returns:
             One `Collision` for each two links or link and object that touch, the deepest first; none if all is free.
 
         Raises:
+            UnknownNameError: There is no such joint.
             InputError: `q` is not a configuration of this robot, `world` is no `World`, or the robot has no collision
                 shapes.
             RobotLoadError: Its SRDF file cannot be read.
@@ -103,14 +105,14 @@ class Robot(RobotModel):
         Warns:
             UrdfWarning: A collision shape cannot be read, and nothing is said about it.
         """
-        return collisions(self, q, world)
+        return collisions(self, as_configuration(self, q), world)
 
-    def clearance(self, q: ArrayLike, world: World | None = None) -> Clearance:
+    def clearance(self, q: Given, world: World | None = None) -> Clearance:
         """How far the nearest two parts are apart at a configuration [m], with their names and nearest points.
 
         Arguments, errors and warnings are those of `collisions`, and so is what is compared.
         """
-        return clearance(self, q, world)
+        return clearance(self, as_configuration(self, q), world)
 
     @property
     def collision_pairs(self) -> CollisionPairs:
@@ -213,7 +215,7 @@ class Robot(RobotModel):
     def self_motion(
         self,
         targets: str | Target | Sequence[Target],
-        q: ArrayLike | Mapping[str, float] | Solution,
+        q: Given,
         *,
         position: Position | None = None,
         rotation: ArrayLike | None = None,

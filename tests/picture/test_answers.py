@@ -180,6 +180,19 @@ def test_a_solution_is_drawn_where_it_is(bars):
     assert (drawn == same).all()
 
 
+def test_an_answer_alone_is_drawn_with_its_own_robot(bars):
+    branches, solution = elbows(bars, [2.0, -2.0, 0.5]), bars.solve("tip", [0.6, 0.3, 0.0])
+    motion = bars.self_motion("tip", solution, position=[0.6, 0.3, 0.0])
+    for answer in (branches, solution, motion, [motion]):
+        assert (pinik.draw(answer, **BARE).pixels == pinik.draw(bars, answer, **BARE).pixels).all()
+    with pytest.raises(pinik.InputError, match="^q must be left out"):
+        pinik.draw(branches, solution)
+    for nothing in ([0.1, 0.2, 0.3], "bars", [1, motion], np.zeros((900, 3))):
+        with pytest.raises(pinik.InputError, match=r"^robot must be one that pinik\.load returned") as caught:
+            pinik.draw(nothing)
+        assert len(str(caught.value)) < 120
+
+
 # Self-motion
 
 

@@ -259,3 +259,24 @@ def test_nothing_to_compare_is_an_infinite_clearance():
     found = machine.clearance(machine.neutral())
     assert (found.distance, found.pair, found.points) == (np.inf, None, None)
     assert machine.collisions(machine.neutral()) == []
+
+
+def test_a_solution_and_angles_stand_for_their_configuration():
+    """A ball on a slide beside another at 1 m: both have a radius of 0.1 m."""
+    ball = '<collision><geometry><sphere radius="0.1"/></geometry></collision>'
+    machine = load_quietly(
+        robot(link("a"), link("b", ball), joint("x", "a", "b", '<axis xyz="1 0 0"/>', kind="prismatic"))
+    )
+    world = pinik.World()
+    world.add_sphere("other", 0.1, [1.0, 0.0, 0.0])
+    solution = machine.solve("b", position=[0.85, 0.0, 0.0])
+    for given in (solution, solution.angles, solution.q):
+        assert machine.clearance(given, world).distance == pytest.approx(-0.05, abs=1e-4)
+        [touch] = machine.collisions(given, world)
+        assert touch.depth == pytest.approx(0.05, abs=1e-4)
+    assert machine.clearance({"x": 0.5}, world).distance == pytest.approx(0.3)
+    for ask in (machine.collisions, machine.clearance):
+        with pytest.raises(pinik.UnknownNameError, match="joint 'nose'"):
+            ask({"nose": 1.0})
+        with pytest.raises(pinik.InputError, match="^q must be"):
+            ask(None)

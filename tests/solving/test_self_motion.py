@@ -614,6 +614,22 @@ def test_what_does_not_reach_the_targets_is_refused(panda):
     with pytest.raises(InputError, match="inside the limits"):
         pinik.self_motion(panda, Target(TIP, placement=panda.placement(TIP, outside)), outside)
     assert pinik.self_motion(panda, Target(TIP, placement=panda.placement(TIP, outside)), outside, limits=False).closed
+    outside[1] = -2.0
+    with pytest.raises(InputError) as caught:
+        pinik.self_motion(panda, TIP, outside)
+    assert "panda_joint2 at -2 is beyond its lower limit of -1.763 rad" in str(caught.value)
+    assert "panda_joint4 at 0.5 is beyond its upper limit of -0.0698 rad" in str(caught.value)
+    assert "panda_joint1" not in str(caught.value)
+
+
+def test_a_hinge_a_whole_turn_beyond_its_limit_is_not_blamed():
+    robot = load_quietly("ur5")
+    q = np.array([0.3, -1.0, 1.2, 0.4, 0.6, 0.5])
+    turned = q + np.array([2.0 * TURN, 0, 0, 0, 0, 0])
+    assert pinik.self_motion(robot, "tool0", turned).start == pytest.approx(q)
+    with pytest.raises(InputError) as caught:
+        pinik.self_motion(robot, "tool0", turned, position=[0.1, 0.2, 0.3])
+    assert "beyond" not in str(caught.value)
 
 
 def test_misuse_is_named(panda):
@@ -626,8 +642,12 @@ def test_misuse_is_named(panda):
         pinik.self_motion(panda, TIP, q, points=1)
     with pytest.raises(InputError, match="q must be"):
         pinik.self_motion(panda, TIP, None)
-    with pytest.raises(InputError, match="q0"):
+    with pytest.raises(InputError, match=r"^q must be .* got 'nearest'"):
         pinik.self_motion(panda, TIP, "nearest")
+    with pytest.raises(InputError, match=r"^q must be 8 finite numbers"):
+        pinik.self_motion(panda, TIP, np.full(8, np.nan))
+    with pytest.raises(InputError, match=r"^q must be within"):
+        pinik.self_motion(panda, TIP, np.full(8, 1e20))
     with pytest.raises(InputError, match="robot must be"):
         pinik.self_motion("panda", TIP, q)
     with pytest.raises(InputError, match="within"):

@@ -26,7 +26,7 @@ from .bodies import Body, bodies_of
 from .camera import Camera, look_from
 from .obstacles import obstacles_of
 from .picture import Picture
-from .poses import Drawable, Pose, links_of, poses_of
+from .poses import Answer, Drawable, Pose, links_of, poses_of, whose
 from .render import render
 from .solids import ball
 
@@ -43,7 +43,7 @@ _SOLID = (-1, 1.0)  # the layer of all that is opaque
 
 
 def draw(
-    robot: Robot,
+    robot: Robot | Answer,
     q: Drawable | None = None,
     *,
     balls: ArrayLike = (),
@@ -65,7 +65,7 @@ def draw(
     ghosts; reading the meshes of a large robot adds a second or two the first time.
 
     Args:
-        robot: The robot.
+        robot: The robot. An answer that knows its own, such as `Branches`, may be given alone: `draw(branches)`.
         q: One configuration (nq,) or several (n, nq); the robot's rest configuration when None. Or an answer: a
             `Solution`; `Branches`, of which the first is solid and the others are ghosts, each in its own tint; a
             `SelfMotion`, as a fan of ghosts that fade with the way from its solid start; or several of them, such as
@@ -96,8 +96,7 @@ def draw(
     Warns:
         UrdfWarning: Some shapes could not be read and are left out.
     """
-    if not isinstance(robot, Robot):
-        raise InputError(f"robot must be one that pinik.load returned; got {robot!r}")
+    robot, q = whose(robot, q)
     size = checked_size(size)
     if world is not None and not isinstance(world, World):
         raise InputError(f"must be a pinik.World; got {world!r}", argument="world")

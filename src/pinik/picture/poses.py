@@ -18,11 +18,12 @@ from ..solving.self_motion import SelfMotion
 from ..solving.solution import Solution
 from .arguments import as_color, as_configurations
 
-__all__ = ["GHOSTS", "TINTS", "Drawable", "Pose", "links_of", "poses_of"]
+__all__ = ["GHOSTS", "TINTS", "Answer", "Drawable", "Pose", "links_of", "poses_of", "whose"]
 
 Array = NDArray[np.float64]
 
-Drawable: TypeAlias = ArrayLike | Solution | Branches | SelfMotion | Sequence[SelfMotion]
+Answer: TypeAlias = Solution | Branches | SelfMotion | Sequence[SelfMotion]
+Drawable: TypeAlias = ArrayLike | Answer
 
 TINTS = (
     "#1f6fc4", "#d97a00", "#0c9a72", "#b9559a", "#7a5fd0", "#94a81e", "#2a9db0",
@@ -64,6 +65,26 @@ def links_of(collisions: Iterable[Collision]) -> frozenset[str]:
     return frozenset(name for collision in collisions for name in collision.links)
 
 
+def whose(robot: Robot | Answer, shown: Drawable | None) -> tuple[Robot, Drawable | None]:
+    """The robot, and what is to be shown; an answer in the robot's place is shown with its own robot.
+
+    Raises:
+        InputError: There is no robot; or there are an answer in its place and something else to show.
+    """
+    if isinstance(robot, Robot):
+        return robot, shown
+    one = robot[0] if _are_motions(robot) else robot
+    if not isinstance(one, (Solution, Branches, SelfMotion)) or not isinstance(one.robot, Robot):
+        raise InputError(
+            f"must be one that pinik.load returned, or an answer with its own; got an object of type "
+            f"{type(robot).__name__!r}",
+            argument="robot",
+        )
+    if shown is not None:
+        raise InputError("must be left out, because the answer before it is what is drawn", argument="q")
+    return one.robot, robot
+
+
 def poses_of(robot: Robot, shown: Drawable | None) -> list[Pose]:
     """Configurations as they are; of several answers, the first as it is and the others as ghosts.
 
@@ -87,7 +108,7 @@ def _of(robot: Robot, poses: Iterator[Pose]) -> list[Pose]:
     return [replace(pose, q=robot.check_configuration(pose.q)) for pose in poses]
 
 
-def _are_motions(shown: Drawable | None) -> TypeGuard[Sequence[SelfMotion]]:
+def _are_motions(shown: object) -> TypeGuard[Sequence[SelfMotion]]:
     return isinstance(shown, (list, tuple)) and len(shown) > 0 and all(isinstance(one, SelfMotion) for one in shown)
 
 

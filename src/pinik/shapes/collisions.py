@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 from weakref import WeakKeyDictionary
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
 from ..description.flaw import Flaw, summarised
 from ..echoes import bounded
@@ -198,16 +198,14 @@ def shapes_of(robot: RobotModel) -> RobotShapes:
     return shapes
 
 
-def collisions(robot: RobotModel, q: ArrayLike, world: World | None = None) -> list[Collision]:
+def collisions(robot: RobotModel, q: Array, world: World | None = None) -> list[Collision]:
     """See `Robot.collisions`."""
-    values = robot.check_configuration(q)
-    return shapes_of(robot).guard(robot, _solids(world)).collisions(values)
+    return shapes_of(robot).guard(robot, _solids(world)).collisions(q)
 
 
-def clearance(robot: RobotModel, q: ArrayLike, world: World | None = None) -> Clearance:
+def clearance(robot: RobotModel, q: Array, world: World | None = None) -> Clearance:
     """See `Robot.clearance`."""
-    values = robot.check_configuration(q)
-    return shapes_of(robot).guard(robot, _solids(world)).clearance(values)
+    return shapes_of(robot).guard(robot, _solids(world)).clearance(q)
 
 
 def collision_pairs(robot: RobotModel) -> CollisionPairs:

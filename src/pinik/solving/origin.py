@@ -64,10 +64,10 @@ class Origin(NamedTuple):
         return cls(as_start(robot.check_configuration(q0, "q0")))
 
 
-def as_start(q: Array) -> Array:
+def as_start(q: Array, what: str = "q0") -> Array:
     """One or many configurations (…, nq) as starts; InputError where a joint is farther away than 1e9 rad or m."""
     if np.abs(q).max(initial=0.0) > FARTHEST:
-        raise InputError(f"must be within ±{FARTHEST:g} rad or m in each entry; got {q.tolist()}", argument="q0")
+        raise InputError(f"must be within ±{FARTHEST:g} rad or m in each entry; got {q.tolist()}", argument=what)
     return q
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -16,17 +16,18 @@ from ..model.robot_model import RobotModel
 from ..problem.target_values import Position
 from ..problem.targets import Target
 from ..problem.tolerance import Tolerance, largest_of
+from .configuration import Given, as_configuration
 from .freedom.arcs import Arc, arcs_of
+from .freedom.beginning import beginning
 from .freedom.dimension import Lone, regular_place
 from .freedom.family import Family
 from .freedom.settling import settle
-from .freedom.solution_set import Place, SolutionSet
+from .freedom.solution_set import SolutionSet
 from .freedom.spreading import Tree
 from .options import Options
-from .origin import Origin, unwound_path
+from .origin import unwound_path
 from .question import Question
-from .solution import Solution
-from .verdict import all_within, measure_errors
+from .verdict import measure_errors
 from .words import UNWEIGHTED, asked_targets
 
 __all__ = ["SelfMotion", "self_motion"]
@@ -40,7 +41,7 @@ _GROWN = 3
 def self_motion(
     robot: RobotModel,
     targets: str | Target | Sequence[Target],
-    q: ArrayLike | Mapping[str, float] | Solution,
+    q: Given,
     *,
     position: Position | None = None,
     rotation: ArrayLike | None = None,
@@ -91,9 +92,7 @@ def self_motion(
     """
     if not isinstance(robot, RobotModel):
         raise InputError(f"robot must be what pinik.load returns; got {robot!r}")
-    if q is None:
-        raise InputError("q must be a configuration that reaches the targets; got None")
-    given = q.q if isinstance(q, Solution) else Origin.of(robot, q, searches=False).q
+    given = as_configuration(robot, q)
     wanted = (
         position, rotation, rpy, quat_xyzw, quat_wxyz, placement, axis, direction, at, tool, relative_to, weight,
     )  # fmt: skip
@@ -173,7 +172,7 @@ class SelfMotion:
         errors = [largest_of(measure_errors(self.robot, self.targets, q, Tolerance())) for q in self.q]
         return np.array(errors, dtype=np.float64).reshape(-1, 2)
 
-    def contains(self, q: ArrayLike | Mapping[str, float], within: float = 1e-3) -> bool:
+    def contains(self, q: Given, within: float = 1e-3) -> bool:
         """Whether a configuration belongs to the same family: the set of solutions connected with `start`.
 
         Whole turns of hinges do not count, nor do the limits for a curve, which may leave them and come back. In more
@@ -181,14 +180,14 @@ class SelfMotion:
         missed.
 
         Args:
-            q: The configuration (nq,), or angles by joint name.
+            q: The configuration (nq,); angles by joint name, with all other joints neutral; or a `Solution`.
             within: The largest distance from the set [rad].
 
         Raises:
             UnknownNameError: There is no such joint.
             InputError: `q` is not a configuration of the robot, or `within` is not a positive number.
         """
-        asked = Origin.of(self.robot, q, searches=False).q
+        asked = as_configuration(self.robot, q)
         within = as_positive_number(within, "within", "radians")
         return self.known.reaches(asked, within)
 
@@ -239,7 +238,7 @@ def _explored(question: Question, given: Array, points: int) -> SelfMotion:
     """
     robot, targets = question.robot, question.problem.targets
     solutions = SolutionSet(question)
-    start = _start(solutions, given)
+    start = beginning(solutions, given)
     place = regular_place(solutions, start)
     if isinstance(place, Lone):
         alone = start.q[np.newaxis]
@@ -260,25 +259,3 @@ def _explored(question: Question, given: Array, points: int) -> SelfMotion:
     near = np.array([tree.places[k].q for k in chosen])
     q = np.array(settle(solutions, near, np.array([tree.tangents[k] for k in chosen])))
     return SelfMotion(robot, targets, dimension, start.q, q, complete=False, gap=gap, known=tree)
-
-
-def _start(solutions: SolutionSet, given: Array) -> Place:
-    """The place of the set nearest to a configuration inside the limits that reaches the targets within tolerance.
-
-    Raises:
-        InputError: It misses a target.
-    """
-    question = solutions.question
-    robot, targets = question.robot, question.problem.targets
-    q = question.limits.wrap(given)
-    errors = measure_errors(robot, targets, q, question.options.tolerance)
-    place = solutions.slide(q) if all_within(errors, question) else None
-    if place is None:
-        position, orientation = largest_of(errors)
-        missed = [f"{position:.3g} m" if position else "", f"{orientation:.3g} rad" if orientation else ""]
-        raise InputError(
-            f"must reach the targets inside the limits; it misses them by {' and '.join(filter(None, missed))}; "
-            "pinik.solve finds one that does",
-            argument="q",
-        )
-    return place
