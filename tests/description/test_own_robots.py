@@ -1,13 +1,19 @@
 """urdf/: the committed files are what the generator makes, and the robots are built as promised."""
 
+import itertools
 import math
 import subprocess
 import sys
 from pathlib import Path
 
+import coal  # noqa: F401  (pinocchio needs it to hand over shapes)
 import numpy as np
 import pinocchio
 import pytest
+import trimesh
+
+from pinik.shapes.meshes import load_shapes
+from robots import load_quietly
 
 ROOT = Path(__file__).parents[2]
 URDF = ROOT / "urdf"
@@ -181,3 +187,49 @@ def test_the_arms_collars_have_no_two_colours_in_one_plane(number):
     blue, silver = (ends_across(URDF / "meshes" / "arm" / f"bone{number}_{color}.obj") for color in ("blue", "silver"))
     assert len(blue) >= 2
     assert not blue & silver
+
+
+def boxes(points_of):
+    """Link → the corners (2, 3) of the box around its points [m]."""
+    return {link: np.array([np.min(found, axis=0), np.max(found, axis=0)]) for link, found in points_of.items()}
+
+
+def boxes_of_skin(name):
+    points = {}
+    for shape in load_shapes(load_quietly(name))[0]:
+        here = trimesh.transform_points(shape.mesh.vertices, shape.placement)
+        points.setdefault(shape.link, []).extend(here)
+    return boxes(points)
+
+
+def boxes_of_solids(name):
+    robot = model_of(name)
+    model = pinocchio.buildGeomFromUrdf(robot, str(URDF / f"{name}.urdf"), pinocchio.GeometryType.COLLISION)
+    points = {}
+    for part in model.geometryObjects:
+        part.geometry.computeLocalAABB()
+        frame, local = robot.frames[part.parentFrame], part.geometry.aabb_local
+        here = frame.placement.inverse() * part.placement
+        corners = itertools.product(*zip(local.min_, local.max_, strict=True))
+        points.setdefault(frame.name, []).extend(here.act(np.array(corner)) for corner in corners)
+    return boxes(points)
+
+
+@pytest.mark.parametrize(("name", "most"), [("arm", 0.042), ("lion", 0.020), ("two_link", 0.002)])
+def test_what_can_touch_lies_where_the_robot_is_seen(name, most):
+    """But for the balls in the arm's joints, which cover the forks of their neighbours too."""
+    seen, solid = boxes_of_skin(name), boxes_of_solids(name)
+    assert set(solid) == set(seen)
+    for link, (low, high) in solid.items():
+        assert (low >= seen[link][0] - most).all(), link
+        assert (high <= seen[link][1] + most).all(), link
+        assert np.prod(high - low) > 0.07 * np.prod(seen[link][1] - seen[link][0]), link
+
+
+@pytest.mark.parametrize("name", ["arm", "lion", "two_link"])
+def test_nothing_touches_in_the_poses_and_links_can_touch(name):
+    robot = load_quietly(name)
+    for q in (robot.neutral(), *robot.poses.values()):
+        assert robot.collisions(q) == []
+    if name != "arm":  # whose twelve hinges, 45 degrees to each side, cannot bend it back to itself
+        assert robot.collision_pairs.counting

@@ -256,11 +256,12 @@ def test_where_nothing_can_be_written_nothing_is_kept(finds, monkeypatch, tmp_pa
     assert len(finds) == 2
 
 
-def test_robots_without_collision_shapes_are_told_so(arm):
-    with pytest.raises(pinik.InputError, match="'arm' has no collision shapes"):
-        arm.collisions(arm.neutral())
+def test_robots_without_collision_shapes_are_told_so():
+    bare = load_quietly("asr_twodof")
+    with pytest.raises(pinik.InputError, match="'asr_twodof' has no collision shapes"):
+        bare.collisions(bare.neutral())
     with pytest.raises(pinik.InputError, match="no collision shapes"):
-        arm.collision_pairs  # noqa: B018
+        bare.collision_pairs  # noqa: B018
 
 
 def test_a_shape_that_cannot_be_read_is_said_and_the_others_still_collide(tmp_path):

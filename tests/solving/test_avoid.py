@@ -415,4 +415,4 @@ def test_anything_else_is_refused_in_words(value):
 
 def test_a_robot_without_collision_shapes_says_so():
     with pytest.raises(pinik.InputError, match="has no collision shapes"):
-        pinik.solve(load_quietly("arm"), "tip", position=[0.2, 0.2, 0.9], avoid="self")
+        pinik.solve(load_quietly("asr_twodof"), "Tip", position=[0.2, 0.2, 0.9], avoid="self")

@@ -236,4 +236,4 @@ def test_what_cannot_be_avoided_is_refused_in_words():
     with pytest.raises(pinik.InputError, match=r'avoid must be "self", a pinik\.World, or a list of these; got'):
         tracker_of(machine, START, "auto", "others")
     with pytest.raises(pinik.InputError, match="has no collision shapes"):
-        pinik.Tracker(load_quietly("arm"), "tip", avoid="self")
+        pinik.Tracker(load_quietly("asr_twodof"), "Tip", avoid="self")

@@ -10,7 +10,7 @@ import math
 from itertools import pairwise
 
 from . import arm_shapes
-from .description import ZERO, Description, Vector, mesh_visual
+from .description import ZERO, Description, Vector, box, cylinder, mesh_visual, sphere
 
 BASE_HEIGHT = 0.12  # [m], up to the first swing
 LENGTHS = (0.28, 0.25, 0.21, 0.17, 0.13, 0.16)  # [m], five segments and the gripper: 1.20 in all
@@ -39,6 +39,22 @@ def _dress(robot: Description) -> None:
             robot.links[f"knuckle{number}"].append(mesh_visual(path, material, scale=radius))
 
 
+def _make_solid(robot: Description) -> None:
+    """Add what can touch others: a ball in each joint, a cylinder around each segment, boxes for the hand."""
+    top = BASE_HEIGHT - arm_shapes.FOOT * RADII[0]
+    robot.solid("base", [cylinder(0.155, (0, 0, 0), (0, 0, 0.017)), cylinder(0.118, (0, 0, 0.017), (0, 0, top))])
+    for number, radius in enumerate(RADII, start=1):
+        robot.solid(f"knuckle{number}", [sphere(arm_shapes.FOOT * radius)])
+    for number, (near, far) in enumerate(pairwise(RADII), start=1):
+        start, end = arm_shapes.FOOT * near, LENGTHS[number - 1] - arm_shapes.FOOT * far
+        robot.solid(f"bone{number}", [cylinder(RIMS[number - 1], (0, start, 0), (0, end, 0))])
+    root, length = arm_shapes.FOOT * RADII[-1], LENGTHS[-1]
+    robot.solid("gripper", [box((0.068, 0.053, 0.200), (0.0, root + 0.0265, 0.0))])
+    for side in (1, -1):  # the fingers, whose pads hold a ball
+        inner, outer, bottom, end = arm_shapes.GRIP, 0.082, root + 0.047, length + 0.034
+        robot.solid("gripper", [box((0.036, end - bottom, outer - inner), (0, (bottom + end) / 2, side * (inner + outer) / 2))])
+
+
 def build() -> Description:
     robot = Description("arm", "A robot arm of seven segments; six of them swing about x and z.", arm_shapes.MATERIALS)
     robot.link("base")
@@ -54,6 +70,7 @@ def build() -> Description:
     robot.link("tip")
     robot.fixed(parent, "tip", xyz=xyz, rpy=TIP_UP)
     _dress(robot)
+    _make_solid(robot)
     robot.pose("relaxed", bone1_x=-18, bone2_x=32, bone3_x=28, bone4_x=30, bone5_x=24, bone6_x=12)
     robot.pose(
         "reach",

@@ -34,16 +34,41 @@ class Visual:
     rpy: Vector = ZERO
 
 
-def box(size: Vector, material: str, xyz: Vector = ZERO, rpy: Vector = ZERO) -> Visual:
-    return Visual(f'<box size="{vector(size)}"/>', material, xyz, rpy)
+@dataclass(frozen=True)
+class Collision:
+    """One shape of a link that other shapes can touch: a URDF geometry element, and where it sits."""
+
+    geometry: str
+    xyz: Vector = ZERO
+    rpy: Vector = ZERO
 
 
-def cylinder(radius: float, length: float, material: str, xyz: Vector = ZERO, rpy: Vector = ZERO) -> Visual:
-    return Visual(f'<cylinder radius="{number(radius)}" length="{number(length)}"/>', material, xyz, rpy)
+def box(size: Vector, xyz: Vector = ZERO, rpy: Vector = ZERO) -> Collision:
+    return Collision(f'<box size="{vector(size)}"/>', xyz, rpy)
 
 
-def sphere(radius: float, material: str, xyz: Vector = ZERO) -> Visual:
-    return Visual(f'<sphere radius="{number(radius)}"/>', material, xyz)
+def sphere(radius: float, xyz: Vector = ZERO) -> Collision:
+    return Collision(f'<sphere radius="{number(radius)}"/>', xyz)
+
+
+def cylinder(radius: float, start: Vector, end: Vector) -> Collision:
+    """A cylinder around the line from the middle of one face to that of the other."""
+    along = tuple(b - a for a, b in zip(start, end, strict=True))
+    middle = tuple((a + b) / 2 for a, b in zip(start, end, strict=True))
+    length, across = math.hypot(*along), math.hypot(along[0], along[1])
+    turn = (0.0, math.atan2(across, along[2]), math.atan2(along[1], along[0]) if across else 0.0)
+    geometry = f'<cylinder radius="{number(radius)}" length="{number(round(length, 6))}"/>'
+    return Collision(geometry, _rounded(middle), _rounded(turn))
+
+
+def capsule(radius: float, start: Vector, end: Vector) -> list[Collision]:
+    """A cylinder with round ends, whose middles are given; URDF has no such shape, so it is made of three."""
+    return [cylinder(radius, start, end), sphere(radius, start), sphere(radius, end)]
+
+
+def _rounded(values: Iterable[float]) -> Vector:
+    x, y, z = (round(value, 6) for value in values)
+    return x, y, z
 
 
 def mesh_visual(
@@ -63,6 +88,7 @@ class Description:
     summary: str
     materials: Mapping[str, tuple[float, float, float]] = field(default_factory=dict)
     links: dict[str, list[Visual]] = field(default_factory=dict)
+    collisions: dict[str, list[Collision]] = field(default_factory=dict)
     joints: list[str] = field(default_factory=list)
     moving: list[str] = field(default_factory=list)
     poses: dict[str, dict[str, float]] = field(default_factory=dict)
@@ -72,6 +98,10 @@ class Description:
         if name in self.links:
             raise ValueError(f"link {name!r} twice")
         self.links[name] = list(visuals)
+
+    def solid(self, link: str, shapes: Iterable[Collision]) -> None:
+        """Give a link what can touch others."""
+        self.collisions.setdefault(link, []).extend(shapes)
 
     def fixed(self, parent: str, child: str, xyz: Vector = ZERO, rpy: Vector = ZERO) -> None:
         self.joints.append(f'  <joint name="{child}_fixed" type="fixed">\n{_ends(parent, child, xyz, rpy)}  </joint>')
@@ -113,7 +143,8 @@ class Description:
         for name, rgb in self.materials.items():
             lines.append(f'  <material name="{name}"><color rgba="{vector((*rgb, 1.0))}"/></material>')
         for name, visuals in self.links.items():
-            if not visuals:
+            solids = self.collisions.get(name, [])
+            if not visuals and not solids:
                 lines.append(f'  <link name="{name}"/>')
                 continue
             lines.append(f'  <link name="{name}">')
@@ -122,6 +153,10 @@ class Description:
                     f"    <visual>{_origin(visual.xyz, visual.rpy)}<geometry>{visual.geometry}</geometry>"
                     f"<material name={quoteattr(visual.material)}/></visual>"
                 )
+            lines += [
+                f"    <collision>{_origin(solid.xyz, solid.rpy)}<geometry>{solid.geometry}</geometry></collision>"
+                for solid in solids
+            ]
             lines.append("  </link>")
         return "\n".join([*lines, *self.joints, "</robot>"]) + "\n"
 

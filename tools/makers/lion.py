@@ -9,7 +9,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 
-from . import lion_shapes
+from . import lion_shapes, lion_solids
 from .description import Description, Vector, mesh_visual
 from .lion_anatomy import (
     CHEST,
@@ -157,6 +157,8 @@ def build() -> Description:
     robot.link("tail_tip")
     robot.fixed(parent, "tail_tip", xyz=xyz)
     _dress(robot)
+    for link, solids in lion_solids.solids().items():
+        robot.solid(link, solids)
     for name, angles in POSES.items():
         robot.pose(name, **angles)
     return robot

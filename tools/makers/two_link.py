@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from .description import Description, Visual, mesh_visual
+from .description import Collision, Description, Visual, box, cylinder, mesh_visual
 from .sculpt import Mesh, joined, lathe, plate
 
 UPPER, LOWER = 0.5, 0.4  # [m], the lengths
@@ -63,6 +63,30 @@ def _shapes() -> dict[str, dict[str, Mesh]]:
     }  # fmt: skip
 
 
+def _solids() -> dict[str, list[Collision]]:
+    """For each link what can touch others: its beam with its round ends, and the pen's tip on the table."""
+
+    def beam(length: float, radius: float, end_radius: float, bottom: float, top: float) -> list[Collision]:
+        width = 2 * min(radius, end_radius)
+        return [
+            box((length, width, top - bottom), (length / 2, 0.0, (bottom + top) / 2)),
+            cylinder(radius, (0.0, 0.0, bottom), (0.0, 0.0, top)),
+            cylinder(end_radius, (length, 0.0, bottom), (length, 0.0, top)),
+        ]
+
+    return {
+        "base": [
+            cylinder(0.115, (0.0, 0.0, 0.0), (0.0, 0.0, 0.018)),
+            cylinder(0.052, (0.0, 0.0, 0.018), (0.0, 0.0, LOW)),
+        ],
+        "link1": beam(UPPER, SHOULDER, ELBOW, LOW + 0.002, MIDDLE),
+        "link2": [
+            *beam(LOWER, ELBOW, WRIST, MIDDLE + 0.003, HIGH),
+            cylinder(0.013, (LOWER, 0.0, 0.0), (LOWER, 0.0, HIGH + 0.034)),
+        ],
+    }
+
+
 def build() -> Description:
     robot = Description("two_link", "A planar arm of two hinges in the world's x-y plane.", MATERIALS)
     for link, surfaces in _shapes().items():
@@ -73,6 +97,8 @@ def build() -> Description:
             visuals.append(mesh_visual(path, material))
         robot.link(link, visuals)
     robot.link("tip")
+    for link, solids in _solids().items():
+        robot.solid(link, solids)
     limits = (-math.pi, math.pi)
     robot.revolute("joint1", "base", "link1", axis=(0, 0, 1), limits=limits)
     robot.revolute("joint2", "link1", "link2", axis=(0, 0, 1), limits=limits, xyz=(UPPER, 0, 0))

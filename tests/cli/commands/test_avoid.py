@@ -82,6 +82,6 @@ def test_what_cannot_be_avoided_is_said_in_words(run, files):
     missing = run("solve", files / "arm.urdf", *TIP, "--world", files / "none.urdf")
     assert missing.status == 3
     assert "--world" in missing.err
-    bare = run("solve", "arm", "--frame", "tip", "--position", 0.3, 0.1, 0.8, "--avoid-self")
+    bare = run("solve", "asr_twodof", "--frame", "Tip", "--position", 0.3, 0.1, 0.8, "--avoid-self")
     assert bare.status == 2
     assert "has no collision shapes" in bare.err

@@ -103,7 +103,7 @@ def test_where_no_pair_counts_it_says_so(run, tmp_path):
 @pytest.mark.parametrize(
     ("arguments", "status", "words"),
     [
-        (("arm",), 2, "'arm' has no collision shapes"),
+        (("asr_twodof",), 2, "'asr_twodof' has no collision shapes"),
         (("ur5", "--world", "nowhere.urdf"), 3, "--world nowhere.urdf: .*no such file"),
         (("ur5", "--write-srdf", "/nowhere/out.srdf"), 2, "--write-srdf /nowhere/out.srdf: no such folder"),
         (("ur5", "--set", "elbow=1"), 2, "no joint 'elbow'"),

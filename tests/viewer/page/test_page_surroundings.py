@@ -61,7 +61,7 @@ def test_an_answer_is_taken_by_its_number(desk):
 
 
 def test_a_robot_without_collision_shapes_says_so(open_panel):
-    desk = open_panel("arm", methods=("dls",), running=True)
+    desk = open_panel("asr_twodof", methods=("dls",), running=True)
     desk.page.locator("#around-block > summary").click()
     desk.click("collisions")
     desk.expect("collisions-words").to_contain_text("no collision shapes")

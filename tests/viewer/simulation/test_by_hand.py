@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 import pinocchio
 import pytest
@@ -103,6 +105,9 @@ def test_limits_hold_while_they_are_on_and_followers_and_roots_are_not_set():
         ({"panda_finger_joint2": 0.01}, "mimics 'panda_finger_joint1'"),
         ({"panda_joint1": 0.1, "panda_joint4": 1.0}, "panda_joint4"),
         ({"root_joint": 0.1}, "has no angle"),
+        ({"root_joint": [0, 0, 1]}, r"\(7,\)|7"),
+        ({"root_joint": [0, 0, 1, 0, 0, 0, 0]}, "must not be zero"),
+        ({"panda_joint1": [0, 0, 1, 0, 0, 0, 1]}, "panda_joint1"),
         ({"panda_joint44": 0.1}, "panda_joint4"),
         ({"panda_joint1": float("nan")}, "finite"),
         ({}, "no joint"),
@@ -135,3 +140,23 @@ def test_a_link_keeps_a_pose_that_leads_and_can_give_one_in_which_the_balls_lead
     for one in other.seen:
         found = arm.angles(one.q)
         assert (found["bone1_x"], found["bone2_x"]) == pytest.approx((0.4, -0.2))
+
+
+@pytest.mark.parametrize("root", ["free_flyer", "planar"])
+def test_a_link_keeps_where_a_root_that_can_move_leads(root):
+    two_link = load_quietly("two_link", root=root)
+    shown = session(two_link)
+    turn = [0.0, 0.0, math.sin(0.2), math.cos(0.2)]
+    set_angles(shown, None, {"joint1": 0.3, "root_joint": [0.4, -0.2, 0.0, *turn]})
+    q = shown.instances[0].q
+    data = two_link.model.createData()
+    pinocchio.forwardKinematics(two_link.model, data, q)
+    place = data.oMi[two_link.model.getJointId("root_joint")]
+    np.testing.assert_allclose(place.translation, [0.4, -0.2, 0.0], atol=1e-12)
+    np.testing.assert_allclose(place.rotation, pinocchio.rpy.rpyToMatrix(0.0, 0.0, 0.4), atol=1e-12)
+    other = session(two_link)
+    apply_setup(other, read_setup(write_setup(shown)))
+    np.testing.assert_allclose(other.instances[1].q, q, atol=1e-8)
+    assert led(other) == [0, 1]
+    with pytest.raises(pinik.InputError, match="plane"):
+        set_angles(session(load_quietly("two_link", root="planar")), None, {"root_joint": [0, 0, 1, 0, 0, 0, 1]})

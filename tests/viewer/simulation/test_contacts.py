@@ -120,8 +120,7 @@ def test_an_obstacle_that_is_put_onto_a_robot_drives_it_away():
 
 
 def test_a_robot_without_collision_shapes_says_so():
-    arm = load_quietly("arm")
-    shown = Session(arm, ["dls"], clock=Clock())
+    shown = Session(load_quietly("asr_twodof"), ["dls"], clock=Clock())
     shown.set_contacts(True, True)
     assert shown.contacts.waits
     with pytest.raises(pinik.InputError) as refusal:

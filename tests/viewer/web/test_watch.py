@@ -97,12 +97,22 @@ def test_a_faulty_file_is_said_in_words_over_the_last_good_robot_until_it_is_goo
 
 
 def test_what_the_robot_no_longer_has_is_dropped_and_its_new_name_is_on_the_menu(stage):
-    stage.show.session.add_ball("two")
+    before = stage.show.session
+    before.add_ball("two")
+    before.set_parameter(1, "stiffness", {"bend": 0.5})
+    before.change_settings(polish=True)
+    before.scores.cover("all")
+    before.misses.pause = True
     write(stage.path, arm(0.4, name="other").replace('"bend"', '"fold"').replace('"two"', '"second"'))
     stage.look()
     now = stage.show.session
     assert (now.robot.name, now.robot.joint_names) == ("other", ("turn", "fold"))
     assert "second" in now.robot.frame_names
+    assert "two" not in now.balls.frames
+    assert (now.settings.polish, now.scores.window, now.misses.pause) == (True, "all", True), "later parts are kept"
+    said = " ".join(m for m in stage.tab.sent if isinstance(m, str) and '"error"' in m[:20])
+    assert "the ball of 'two' is gone" in said
+    assert "bend" in said
     assert stage.show.state()["robot"] == "other"
     stage.show.receive(stage.tab, json.dumps({"type": "robot", "name": "other", "root": "planar"}))
     stage.later.do_all()

@@ -6,7 +6,7 @@ import { THREE } from "pinik/three.js";
 const SPHERE = new THREE.SphereGeometry(1, 40, 28);
 const NEEDLE = new THREE.ConeGeometry(0.22, 2, 20).rotateX(-Math.PI / 2).translate(0, 0, 1); // tip at the origin
 const HEAD = new THREE.SphereGeometry(0.8, 32, 20).translate(0, 0, 2.3);
-const HIDDEN = 0.22; // the opacity of the ring where parts of the robot hide it
+const HIDDEN = { ring: 0.3, ball: 0.5 }; // the opacity where parts of the robot hide something
 const AXIS = new THREE.CylinderGeometry(0.13, 0.13, 3, 12).translate(0, 1.5, 0);
 const ARROW = new THREE.ConeGeometry(0.34, 0.8, 16).translate(0, 3.2, 0);
 // The arms are drawn along y; these rotations about z and x [rad] turn two of them to x and z.
@@ -25,9 +25,15 @@ export class Ball {
         this.group.scale.setScalar(radius);
         this._skin = new THREE.MeshPhongMaterial({ shininess: 110, specular: 0x666666 });
         this._pinSkin = new THREE.MeshPhongMaterial({ shininess: 90, specular: 0x555555 });
-        this._sphere = mesh(SPHERE, this._skin);
+        this._veil = new THREE.MeshBasicMaterial({
+            ...{ transparent: true, opacity: HIDDEN.ball },
+            ...{ depthFunc: THREE.GreaterDepth, depthWrite: false },
+        });
+        this._sphere = new THREE.Group();
+        this._sphere.add(mesh(SPHERE, this._skin), veiled(SPHERE, this._veil));
         this._pin = new THREE.Group();
-        this._pin.add(mesh(NEEDLE, this._pinSkin), mesh(HEAD, this._pinSkin));
+        this._pinVeil = this._veil.clone();
+        for (const part of [NEEDLE, HEAD]) this._pin.add(mesh(part, this._pinSkin), veiled(part, this._pinVeil));
         this._triad = triad();
         [this._halo, this._glow] = [halo(true), halo(false)];
         this._freedom = new Freedom();
@@ -43,13 +49,13 @@ export class Ball {
         this._freedom.show(free);
         this._halo.visible = this._glow.visible = selected || near;
         this._halo.material.opacity = near ? 1 : 0.75;
-        this._glow.material.opacity = HIDDEN;
+        this._glow.material.opacity = HIDDEN.ring;
     }
 
     paint(theme) {
-        this._skin.color.set(theme.color("ball")).convertSRGBToLinear();
+        for (const skin of [this._skin, this._veil]) skin.color.set(theme.color("ball")).convertSRGBToLinear();
+        for (const skin of [this._pinSkin, this._pinVeil]) skin.color.set(theme.color("pin")).convertSRGBToLinear();
         this._freedom.paint(theme);
-        this._pinSkin.color.set(theme.color("pin")).convertSRGBToLinear();
         for (const ring of [this._halo, this._glow])
             ring.material.color.set(theme.color("halo")).convertSRGBToLinear();
     }
@@ -62,8 +68,7 @@ export class Ball {
     dispose() {
         this.group.parent?.remove(this.group);
         this._freedom.dispose();
-        this._skin.dispose();
-        this._pinSkin.dispose();
+        for (const skin of [this._skin, this._veil, this._pinSkin, this._pinVeil]) skin.dispose();
         for (const ring of [this._halo, this._glow]) ring.material.dispose();
     }
 }
@@ -71,6 +76,13 @@ export class Ball {
 function mesh(geometry, material) {
     const made = new THREE.Mesh(geometry, material);
     made.castShadow = true;
+    return made;
+}
+
+/** What of a part shows through the robot that hides it. */
+function veiled(geometry, material) {
+    const made = new THREE.Mesh(geometry, material);
+    made.renderOrder = 5;
     return made;
 }
 

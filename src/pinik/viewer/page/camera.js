@@ -26,6 +26,7 @@ export class Camera extends EventTarget {
         this.moved = false;
         this.offsets = [];
         this.captionHeight = 44; // [px]
+        this._rows = 1;
         this.together = false; // whether all instances stand in one place
         this._calm = matchMedia("(prefers-reduced-motion: reduce)");
         this._watchHand(stage.canvas);
@@ -57,14 +58,30 @@ export class Camera extends EventTarget {
         const { width, height, viewer } = this._stage;
         const half = Math.tan((viewer.camera.fov * Math.PI) / 360);
         const scale = (2 * half) / height; // tangent per pixel
-        const part = (size, margin) => Math.max(size / 2 - Math.min(margin, size / 4), 10) * scale;
-        const caption = this.captionHeight + 14;
+        const part = (size, margin) => Math.max(size / 2 - margin, 10) * scale;
+        const { left, right, top, bottom } = this._margins(rows);
         return {
-            left: part(width, SIDES),
-            right: part(width, SIDES),
-            top: part(height, BUTTONS + (rows > 1 ? caption : 0)),
-            bottom: part(height, caption),
+            left: part(width, left),
+            right: part(width, right),
+            top: part(height, top),
+            bottom: part(height, bottom),
         };
+    }
+
+    /** What is kept free around the robots for buttons and captions [px]. */
+    _margins(rows) {
+        const { width, height } = this._stage;
+        const caption = this.captionHeight + 14;
+        const side = Math.min(SIDES, width / 4);
+        const top = Math.min(BUTTONS + (rows > 1 ? caption : 0), height / 4);
+        return { left: side, right: side, top, bottom: Math.min(caption, height / 4) };
+    }
+
+    /** Whether a point of the picture lies in the outer half of what is kept free. */
+    isOutside({ x, y }) {
+        const { width, height } = this._stage;
+        const { left, right, top, bottom } = this._margins(this._rows);
+        return x < left / 2 || y < top / 2 || x > width - right / 2 || y > height - bottom / 2;
     }
 
     /** Arrange `count` instances and look at them all; `points` (Vector3s) are those of one instance. */
@@ -76,6 +93,7 @@ export class Camera extends EventTarget {
         const sphere = new THREE.Sphere().setFromPoints(arranged.everything);
         this._stage.lights.aim(sphere.center, 1.05 * sphere.radius, arranged.view.azimuth);
         this.sphere = sphere;
+        this._rows = arranged.rows;
         const goal = {
             ...arranged.view,
             target: arranged.camera.target,

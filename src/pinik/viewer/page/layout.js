@@ -3,10 +3,10 @@
 import { axesOf, fit } from "pinik/framing.js";
 import { THREE } from "pinik/three.js";
 
-const GAP = 0; // between neighbours, as a fraction of the width that they have ever covered
 const WORTH = 1.25; // how much nearer two rows must bring the camera, because one row is easier to compare
 const WORTH_TILTING = 2.2; // the same where two rows would tilt a view from the front or the side
 const STEEP = 0.5; // [rad] the least elevation of the camera for two rows
+const SLENDER = 0.5; // the least width of a column, as a fraction of a robot's height, where there is room for it
 const STEP_BACK = 0.85; // between two rows, as a fraction of what would separate them completely
 const FROM_ABOVE = 0.9; // the sine of the elevation from which rows are separated completely
 
@@ -14,7 +14,7 @@ const FROM_ABOVE = 0.9; // the sine of the elevation from which rows are separat
  * Arrange `count` copies of points (Vector3s) in a view.
  *
  * @param lens the lens for `fit`, a function of the number of rows
- * @returns {offsets, view, camera, everything}, with camera from `fit`
+ * @returns {offsets, view, camera, everything, rows}, with camera from `fit`
  */
 export function arrange(points, count, view, lens) {
     const row = candidate(points, count, count, view, lens(1));
@@ -24,15 +24,17 @@ export function arrange(points, count, view, lens) {
 }
 
 function candidate(points, count, columns, view, lens) {
-    const offsets = grid(points, count, columns, view);
+    const shape = (lens.left + lens.right) / (lens.top + lens.bottom);
+    const offsets = grid(points, count, columns, view, Math.min(SLENDER, (0.95 * shape) / columns));
     const everything = offsets.flatMap((offset) => points.map((point) => point.clone().add(offset)));
-    return { offsets, view, camera: fit(everything, view, lens), everything };
+    return { offsets, view, camera: fit(everything, view, lens), everything, rows: count / columns };
 }
 
-function grid(points, count, columns, view) {
-    const { right, up, ahead } = axesOf(view);
+/** @param slender the least width of a column, as a fraction of the height */
+function grid(points, count, columns, view, slender) {
+    const { right, up } = axesOf(view);
     const level = new THREE.Vector3(-Math.cos(view.azimuth), -Math.sin(view.azimuth), 0);
-    const column = (1 + GAP) * extent(points, right);
+    const column = Math.max(extent(points, right), slender * extent(points, up));
     // Seen from above, a row farther back appears higher, because the ground rises in the picture.
     const rise = Math.max(level.dot(up), 0.2);
     const part = rise > FROM_ABOVE ? 1 : STEP_BACK;

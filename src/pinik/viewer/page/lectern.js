@@ -8,8 +8,11 @@ import { ThesisTable } from "pinik/thesis_table.js";
 import { TurnMarks } from "pinik/turn_marks.js";
 
 export class Lectern {
-    /** @param page the page: connection, show, theme, state */
-    constructor(page) {
+    /**
+     * @param page the page: connection, show, theme, state
+     * @param onOpen called with the name of the tab that can be seen now, or "" if the drawer is closed
+     */
+    constructor(page, onOpen) {
         this._page = page;
         this._asked = null;
         this._explain = new Explain(page.theme, {
@@ -35,7 +38,10 @@ export class Lectern {
             { name: "lessons", title: "Lessons", element: this._lessons.element },
             { name: "thesis", title: "Table 4.1", element: this._thesis.element },
         ]);
-        this._teach.addEventListener("change", () => this._ask());
+        this._teach.addEventListener("change", () => {
+            this._ask();
+            onOpen(this._teach.isOpen ? this._teach.shown : "");
+        });
     }
 
     setHello(hello) {
@@ -105,6 +111,12 @@ export class Lectern {
 
     replay() {
         if (this._teach.shows("explain")) this._explain.replay();
+    }
+
+    /** Open one of the drawer's tabs, or close the drawer if there is none of that name. */
+    open(name) {
+        if (this._teach.has(name)) this._teach.open(name);
+        else if (this._teach.isOpen) this._teach.close();
     }
 
     toggle() {

@@ -23,6 +23,7 @@ import { Obstacles } from "pinik/obstacles.js";
 import { PictureDialog } from "pinik/picture.js";
 import { Presentation } from "pinik/presentation.js";
 import { addPresets } from "pinik/presets.js";
+import { RingAxes } from "pinik/ring_axes.js";
 import { Rings } from "pinik/rings.js";
 import { shortcuts } from "pinik/shortcuts.js";
 import { Show } from "pinik/show.js";
@@ -59,17 +60,23 @@ class Page {
         this.copying = new Copying(this.connection, this.joints);
         this.picture = new PictureDialog(this.show, this.theme);
         this.lookMenu = new LookMenu(this.connection);
-        this.presentation = new Presentation((on) => this.address?.showPresenting(on));
-        this.address = new Address(
-            (setup) => this.connection.send({ type: "setup", setup }),
-            (on) => this.presentation.turn(on),
-        );
+        const own = (name) => (value) => this.address?.showOwn(name, value);
+        this.presentation = new Presentation((on) => own("present")(on ? "on" : ""));
+        this.ringAxes = new RingAxes((choice) => {
+            own("rings")(choice === "world" ? choice : "");
+            this.show.stage.touch();
+        });
+        this.lectern = new Lectern(this, own("learn"));
+        this.address = new Address((setup) => this.connection.send({ type: "setup", setup }), {
+            present: (value) => this.presentation.turn(value === "on"),
+            rings: (value) => this.ringAxes.choose(value === "world" ? value : "local"),
+            learn: (value) => this.lectern.open(value),
+        });
         makeSearchable(byId("robot"), "Search robots");
         makeSearchable(byId("add-effector"), "Search frames");
         this.history = new History();
         this._drawnCharts = 0;
         this._unanswered = [];
-        this.lectern = new Lectern(this);
         Object.assign(this._on, this.lectern.handlers);
         this._makeCharts();
         this._makeHands();
@@ -182,16 +189,10 @@ class Page {
     }
 
     _makeHands() {
-        const isLocal = () => byId("ring-local").ariaPressed === "true";
-        for (const id of ["ring-local", "ring-world"])
-            byId(id).addEventListener("click", () => {
-                for (const own of ["ring-local", "ring-world"]) byId(own).ariaPressed = String(own === id);
-                this.show.stage.touch();
-            });
         // Before the balls, so that a ring beside a ball is taken first.
         this.rings = new Rings(this.show, {
             selected: () => this.targets.selected,
-            local: isLocal,
+            local: () => this.ringAxes.choice === "local",
             onTurn: (index, rpy) => {
                 this.connection.sendNewest(`turn ${index}`, { type: "orientation", index, on: true, rpy });
                 this.targets.turned(index, rpy);

@@ -4,7 +4,6 @@ import { Extent } from "pinik/extent.js";
 import { THREE } from "pinik/three.js";
 
 const LOOK = 300; // [ms] between two checks for something that left the picture
-const EDGE = 4; // [px] from the edge that something may come
 const HALO = 1.7; // the ring around a selected ball, in radii of the ball
 
 export class Sight {
@@ -65,13 +64,10 @@ export class Sight {
     }
 
     _someLeft() {
-        const { stage, instances } = this._show;
+        const { stage, instances, camera } = this._show;
         const points = this._points();
         return instances.some((_, i) =>
-            points.some((point) => {
-                const { x, y } = stage.project(point.clone().add(this._show.offset(i)));
-                return x < EDGE || y < EDGE || x > stage.width - EDGE || y > stage.height - EDGE;
-            }),
+            points.some((point) => camera.isOutside(stage.project(point.clone().add(this._show.offset(i))))),
         );
     }
 

@@ -35,6 +35,11 @@ export class Teach extends EventTarget {
         return this.isOpen && this.shown === name;
     }
 
+    /** Whether there is a tab of this name. */
+    has(name) {
+        return this._parts.some((part) => part.name === name);
+    }
+
     open(name = this.shown) {
         this.shown = name;
         this._drawer.hidden = false;

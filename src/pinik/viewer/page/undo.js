@@ -71,7 +71,7 @@ export class Undo {
         const { setup, instances, motion } = this._state;
         if (motion !== "hand" || setup.includes("&angles=")) return setup;
         const free = (angles) => Object.entries(angles).filter(([name]) => !this._followers.has(name));
-        const poses = instances.map(({ angles }, i) => [i, Object.fromEntries(free(angles))]);
+        const poses = instances.map(({ angles, placements }, i) => [i, { ...Object.fromEntries(free(angles)), ...placements }]);
         if (poses.some(([, angles]) => !Object.keys(angles).length)) return setup; // nothing moves
         return `${setup}&angles=${encodeURIComponent(JSON.stringify(Object.fromEntries(poses)))}&lead=balls`;
     }

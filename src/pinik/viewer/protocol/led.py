@@ -5,20 +5,28 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from typing import Any
 
+import numpy as np
+import pinocchio
+from numpy.typing import NDArray
+
 from ...echoes import QUOTED, shortened
 from ...errors import InputError
+from ...robot import Robot
 from ..simulation.session import Session
 
-__all__ = ["angle_messages", "led_angles"]
+__all__ = ["Pose", "angle_messages", "led_angles", "placements"]
 
 _ALL = "all"
 _DECIMALS = 9  # so that balls that follow are where they were to the digits of their own text
 
 
-def led_angles(session: Session) -> dict[str, dict[str, float]]:
+Pose = dict[str, float | list[float]]
+
+
+def led_angles(session: Session) -> dict[str, Pose]:
     """The angles of the instances whose joints lead: "all", or an instance's number → joint → angle [rad or m].
 
-    Followers are left out. The placement of a root that can move is not kept.
+    Floating and planar joints, such as a free root, have placements instead. Followers are left out.
     """
     led = session.leading.among(session.balls.targets)
     if led >= set(range(session.view)):
@@ -26,9 +34,16 @@ def led_angles(session: Session) -> dict[str, dict[str, float]]:
     return {str(index): _angles(session, index) for index in sorted(led) if index < session.view}
 
 
-def _angles(session: Session, index: int) -> dict[str, float]:
-    angles = session.robot.angles(session.instances[index].q)
-    return {name: round(angles[name], _DECIMALS) for name in session.robot.joint_names}
+def _angles(session: Session, index: int) -> Pose:
+    robot, q = session.robot, session.instances[index].q
+    angles = robot.angles(q)
+    return {name: round(angles[name], _DECIMALS) for name in robot.joint_names} | placements(robot, q)
+
+
+def placements(robot: Robot, q: NDArray[np.float64]) -> dict[str, list[float]]:
+    """Floating and planar joints, such as a free root → their placements [x, y, z, qx, qy, qz, qw] at q (nq,)."""
+    found = robot.joint_placements(q)
+    return {name: pinocchio.SE3ToXYZQUAT(placement).tolist() for name, placement in found.items()}
 
 
 def angle_messages(session: Session, wanted: Mapping[str, Any]) -> Iterator[dict[str, Any]]:

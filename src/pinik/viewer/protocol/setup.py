@@ -8,7 +8,7 @@ from typing import Any
 from urllib.parse import parse_qsl, quote, urlencode
 
 from ...echoes import QUOTED, shortened
-from ...errors import InputError, UnknownNameError
+from ...errors import InputError, PinikError, UnknownNameError
 from ...problem.tolerance import Tolerance
 from ..simulation.instance import StepSettings
 from ..simulation.session import Session
@@ -19,7 +19,7 @@ from .reading import read_json
 from .setup_balls import ball_messages, balls_text
 from .surroundings import collisions_messages, obstacle_messages, written_collisions, written_obstacles
 
-__all__ = ["Setup", "apply_setup", "read_setup", "write_setup"]
+__all__ = ["Setup", "apply_setup", "apply_what_fits", "read_setup", "write_setup"]
 
 Setup = dict[str, str]
 _LONGEST = 20_000
@@ -107,6 +107,27 @@ def apply_setup(session: Session, setup: Setup) -> None:
     """
     for message in _messages(session, setup):
         apply(session, message)
+
+
+def apply_what_fits(session: Session, setup: Setup) -> list[str]:
+    """Like `apply_setup`, but leave out what does not suit the robot; return the reasons.
+
+    Balls of frames that the robot does not have are left out, too.
+    """
+    notes: list[str] = []
+    if "balls" in setup:
+        balls = _parsed("balls", setup["balls"], list)
+        kept = [ball for ball in balls if ball[0] in session.robot.frame_names]
+        notes += [f"the ball of {ball[0]!r} is gone, as this frame is" for ball in balls if ball not in kept]
+        setup = {**setup, "balls": _compact(kept)}
+        if not kept:
+            del setup["balls"]
+    for message in _messages(session, setup):
+        try:
+            apply(session, message)
+        except PinikError as error:
+            notes.append(str(error))
+    return notes
 
 
 def _messages(session: Session, setup: Setup) -> Iterator[dict[str, Any]]:

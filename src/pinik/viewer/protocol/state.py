@@ -14,6 +14,7 @@ from ..simulation.motion import MOTIONS
 from ..simulation.session import STEPS_PER_SECOND, VIEWS, Session
 from ..simulation.statistics import WINDOWS, Summary
 from ..simulation.swinging import LOOKED_AT, swinging
+from .led import placements
 from .lessons import LESSONS
 from .messages import FARTHEST, RANGES
 from .parameters import describe_parameters, tolerance_of
@@ -116,5 +117,6 @@ def _instance_state(session: Session, index: int, instance: Instance, summary: S
         "active_limits": list(verdict.active_limits),
         "touching": [list(pair) for pair in instance.contacts.touching(instance.q)],
         "angles": instance.robot.angles(instance.q),
+        "placements": placements(instance.robot, instance.q),
         "statistics": summary._asdict(),
     }

@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
 import numpy as np
+import pinocchio
 from numpy.typing import NDArray
 
-from ...checks import as_finite_number
+from ...checks import as_finite_number, as_point, as_vector
 from ...errors import InputError
 from ...model.joint import WIDEST_RANGE, Joint
+from ...problem.target_values import rotation_of
 from ...robot import Robot
 from .session import Session
 
@@ -26,7 +28,7 @@ def angle_range(robot: Robot, joint: Joint) -> tuple[float, float] | None:
     return (lower, upper) if joint.nq < 2 and upper - lower <= WIDEST_RANGE else None
 
 
-def set_angles(session: Session, instance: int | None, angles: Mapping[str, float]) -> None:
+def set_angles(session: Session, instance: int | None, angles: Mapping[str, float | Sequence[float]]) -> None:
     """Set joints of one visible instance, or of all; they lead from now on, and the balls follow the first of them.
 
     All instances together take the pose of the first one, with these joints changed. The motion becomes "hand".
@@ -34,12 +36,14 @@ def set_angles(session: Session, instance: int | None, angles: Mapping[str, floa
     Args:
         session: The session.
         instance: The number of the instance, or None for all.
-        angles: Joint name → angle [rad], or position [m] for sliding joints. Joints that are not named stay.
+        angles: Joint name → angle [rad], position [m] for sliding joints, or for floating and planar joints, such as a
+            free root, the placement [x, y, z, qx, qy, qz, qw]. Joints that are not named stay.
 
     Raises:
         UnknownNameError: There is no such joint.
-        InputError: There is no such visible instance, no joint is named, one has no angle or follows another joint, or
-            an angle is not finite or is outside the limits while these are enforced.
+        InputError: There is no such visible instance, no joint is named, one has no angle or follows another joint, an
+            angle is not finite or is outside the limits while these are enforced, or a placement is none or leaves the
+            plane of its joint.
     """
     if instance is not None and not 0 <= instance < session.view:
         raise InputError(f"the visible instances are numbered from 0 to {session.view - 1}; got {instance}")
@@ -49,8 +53,12 @@ def set_angles(session: Session, instance: int | None, angles: Mapping[str, floa
     q = session.instances[led[0]].q.copy()
     for name, angle in angles.items():
         joint = session.robot.settable_joint(name)
-        _check(session, joint, as_finite_number(angle, f"the angle of joint {name!r}"))
-        joint.set_angle(q, float(angle))
+        if isinstance(angle, Sequence) and not joint.has_one_axis:
+            joint.set_placement(q, _placement(angle, f"the placement of joint {name!r}"))
+            continue
+        number = as_finite_number(angle, f"the angle of joint {name!r}")
+        _check(session, joint, number)
+        joint.set_angle(q, number)
     for index in led:
         session.instances[index].pose(q)
     session.set_motion("hand")
@@ -58,6 +66,14 @@ def set_angles(session: Session, instance: int | None, angles: Mapping[str, floa
         if ball.mode != "off":
             ball.follow(session.robot.placement(ball.frame, q))
     session.leading.hold(led, session.balls.targets)
+
+
+def _placement(numbers: Sequence[float], what: str) -> pinocchio.SE3:
+    """A placement from [x, y, z, qx, qy, qz, qw]."""
+    values = as_vector(numbers, 7, what, "x, y, z [m] and a quaternion xyzw")
+    rotation = rotation_of(f"{what}: ", None, None, values[3:], None)
+    assert rotation is not None
+    return pinocchio.SE3(rotation, as_point(values[:3], what))
 
 
 def _check(session: Session, joint: Joint, angle: float) -> None:

@@ -2,12 +2,9 @@
 
 from __future__ import annotations
 
-import contextlib
-
-from ...errors import PinikError
 from ...model.limits import Limits
 from ...robot import Robot
-from ..protocol.setup import apply_setup, read_setup, write_setup
+from ..protocol.setup import apply_what_fits, read_setup, write_setup
 from ..simulation.another_robot import with_robot
 from ..simulation.session import Session
 
@@ -17,15 +14,14 @@ __all__ = ["reloaded"]
 def reloaded(session: Session, robot: Robot) -> Session:
     """The session with the robot as it is in its file now.
 
-    Joints keep their angles, inside their new limits, and balls their frames and positions; what the robot no longer
-    has is dropped.
+    Joints keep their angles, inside their new limits, and balls their frames and positions. What the robot no longer
+    has is dropped, which the session's notes say.
     """
     other = with_robot(session, robot)
     setup = read_setup(write_setup(session))
     for part in ("angles", "lead"):  # whose joints may be gone; the poses are taken over below
         setup.pop(part, None)
-    with contextlib.suppress(PinikError):  # a ball's frame is gone, or a method no longer suits
-        apply_setup(other, setup)
+    other.notes = [*other.notes, *apply_what_fits(other, setup)]
     for old, new in zip(session.instances, other.instances, strict=True):
         q = new.q.copy()
         kept = session.robot.angles(old.q)

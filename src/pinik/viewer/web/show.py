@@ -206,6 +206,8 @@ class Show:
         if is_shown:
             try:
                 self._change_session(reloaded(self.session, robot.with_root(self.session.robot.root)), keeps_view=True)
+                for note in self.session.notes:
+                    self._seats.send(_notice(note))
             except PinikError as error:
                 self._seats.send(_notice(str(error)))
 
