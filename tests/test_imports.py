@@ -38,10 +38,11 @@ ONLY_THERE = {
     "distributed": {"scale.jobs.cluster"},
     "cloudpickle": {"scale.jobs.cluster"},
     "dask": set(),
+    "h5py": {"workspace.reuleaux"},
 }
 HEAVY = {
     "yourdfpy", "trimesh", "scipy", "PIL", "meshcat", "matplotlib", "typer", "rich", "tornado", "umsgpack",
-    "pyarrow", "dask", "distributed", "cloudpickle",
+    "pyarrow", "h5py", "dask", "distributed", "cloudpickle",
 }  # fmt: skip
 
 
