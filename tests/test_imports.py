@@ -35,8 +35,15 @@ ONLY_THERE = {
         f"viewer.web.{name}" for name in ("server", "tab", "door", "connection", "metronome", "later", "live_view")
     },
     "umsgpack": {"viewer.web.scene", "viewer.web.shape_cache"},
+    "distributed": {"scale.jobs.cluster"},
+    "cloudpickle": {"scale.jobs.cluster"},
+    "dask": set(),
+    "h5py": {"workspace.reuleaux"},
 }
-HEAVY = {"yourdfpy", "trimesh", "scipy", "PIL", "meshcat", "matplotlib", "typer", "rich", "tornado", "umsgpack"}
+HEAVY = {
+    "yourdfpy", "trimesh", "scipy", "PIL", "meshcat", "matplotlib", "typer", "rich", "tornado", "umsgpack",
+    "pyarrow", "h5py", "dask", "distributed", "cloudpickle",
+}  # fmt: skip
 
 
 @dataclass(frozen=True)

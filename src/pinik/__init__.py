@@ -41,7 +41,6 @@ from .solvers.transpose import JacobianTranspose
 from .solvers.two_bone import TwoBoneSolver
 from .solving.branches import Branches
 from .solving.front import iterate, prepare, solve
-from .solving.jumps import Excess, Jump
 from .solving.many import Solutions, solve_many
 from .solving.options import Options
 from .solving.prepared import Prepared
@@ -53,6 +52,8 @@ from .solving.track import Track, track
 from .solving.tracker import Tracker, TrackerStatus
 from .version import __version__ as __version__
 from .viewer.live import live
+from .workspace.front import reach
+from .workspace.reach_map import ReachMap
 
 __all__ = [
     "CCD",
@@ -63,13 +64,11 @@ __all__ = [
     "Collision",
     "DampedLeastSquares",
     "EngineError",
-    "Excess",
     "InputError",
     "InputWarning",
     "JacobianSolver",
     "JacobianTranspose",
     "Joint",
-    "Jump",
     "Kinematics",
     "Linearization",
     "MissingExtraError",
@@ -79,6 +78,7 @@ __all__ = [
     "PinikError",
     "Prepared",
     "PseudoInverse",
+    "ReachMap",
     "Robot",
     "RobotLoadError",
     "SelfMotion",
@@ -109,6 +109,7 @@ __all__ = [
     "load",
     "parameter",
     "prepare",
+    "reach",
     "self_motion",
     "solve",
     "solve_all",

@@ -33,7 +33,7 @@ from .state import Status
 from .verdict import measure_errors
 from .words import check_words
 
-__all__ = ["Solutions", "solve_many"]
+__all__ = ["Solutions", "solve_goals", "solve_many"]
 
 Array = NDArray[np.float64]
 
@@ -109,14 +109,23 @@ def solve_many(
     pattern, goals = read_questions(targets, places, tool, relative_to, count)
     starts, turned = _starts(robot, q0, len(goals))
     prepared = Prepared(robot, pattern, options) if pattern else None
-    outcomes = _nothing(robot) if prepared is None else _outcomes(prepared, goals, starts, is_nearest(q0), count)
+    outcomes = _nothing(robot) if prepared is None else solve_goals(prepared, goals, starts, is_nearest(q0), count)
     seconds = time.perf_counter() - began
     return Solutions(
         **vars(outcomes), total_time=seconds, prepared=prepared, _goals=goals, _starts=starts, _turned=turned
     )
 
 
-def _outcomes(prepared: Prepared, goals: Array, starts: Array, nearest: bool, threads: int) -> Outcomes:
+def solve_goals(prepared: Prepared, goals: Array, starts: Array, nearest: bool, threads: int) -> Outcomes:
+    """Solve for targets as numbers, as `native.codec.goals_of` encodes them; nothing is checked.
+
+    Args:
+        prepared: The compiled problem.
+        goals: The numbers of the targets (N, targets, 18).
+        starts: Starts (1, nq) or (N, nq).
+        nearest: Whether each first attempt starts near its target instead, from a table.
+        threads: The number of threads.
+    """
     if prepared.native is not None:
         return attempt_many(prepared.native, goals, starts, nearest, threads)
     if lands_at_once(prepared.question) and not nearest:

@@ -16,7 +16,7 @@ from ..problem.targets import Target, as_targets
 from ..rotations import as_rotations, as_se3
 from .native.codec import goals_of, read_places
 
-__all__ = ["read_questions"]
+__all__ = ["read_placements", "read_questions"]
 
 Array = NDArray[np.float64]
 
@@ -99,14 +99,14 @@ def _goals_at(places: Any, threads: int) -> tuple[Array, bool]:
     """
     read = read_places(places, threads)
     if read is None:
-        rotations, points = _read_places(places)
+        rotations, points = read_placements(places)
         return _as_goals(rotations, points), rotations is not None
     goals, doubtful = read
     if len(doubtful):
         try:
-            rotations, points = _read_places(places[doubtful], doubtful)
+            rotations, points = read_placements(places[doubtful], doubtful)
         except InputError:
-            _read_places(places)  # raises the error with the index of the place
+            read_placements(places)  # raises the error with the index of the place
             raise
         goals[doubtful] = _as_goals(rotations, points)
     return goals, places.ndim == 3
@@ -120,8 +120,19 @@ def _as_goals(rotations: Array | None, points: Array) -> Array:
     return goals
 
 
-def _read_places(places: Any, indices: NDArray[np.int64] | None = None) -> tuple[Array | None, Array]:
-    """(rotations (N, 3, 3) or None, points (N, 3) [m]); `indices` are those of the places, for warnings."""
+def read_placements(places: Any, indices: NDArray[np.int64] | None = None) -> tuple[Array | None, Array]:
+    """Read N places as rotations and points.
+
+    Args:
+        places: (N, 4, 4) homogeneous matrices, N SE3, or positions (N, 3) [m].
+        indices: The places' indices, for warnings; 0, 1, … when None.
+
+    Returns:
+        (the rotation matrices (N, 3, 3), or None if there are only positions; the points (N, 3) [m]).
+
+    Raises:
+        InputError: A place is faulty; the message names the first one's index.
+    """
     if isinstance(places, Sequence) and any(isinstance(place, pinocchio.SE3) for place in places):
         places = np.array([_matrix_of(place, f"places[{k}]") for k, place in enumerate(places)])
     numbers = as_numbers(places, "places")

@@ -35,7 +35,7 @@ from .state import Status
 from .verdict import all_within, measure_errors
 from .words import UNWEIGHTED, asked_targets
 
-__all__ = ["solve_all"]
+__all__ = ["find_all", "solve_all"]
 
 Array = NDArray[np.float64]
 
@@ -139,7 +139,7 @@ def solve_all(
         asked = asked_targets(targets, wanted, method, solver_parameters, ("q0", *_OPTIONS))
         prepared = prepared_for(robot, asked, method, given, solver_parameters, plain.key)
         start = prepared.question.limits.wrap(origin.q)
-        findings = (_in_closed_form if prepared.options.method.exact else _search)(prepared, asked, start)
+        findings = find_all(prepared, asked, start)
     instead = None
     if not len(findings.q):
         instead = prepared.answer(asked, origin, time.perf_counter() - findings.time)
@@ -150,7 +150,10 @@ def solve_all(
     return _branches(prepared, asked, start, origin.turned, findings, instead)
 
 
-def _search(prepared: Prepared, targets: tuple[Target, ...], start: Array) -> Findings:
+def find_all(prepared: Prepared, targets: tuple[Target, ...], start: Array) -> Findings:
+    """What a search for all answers comes to, for targets of the prepared kinds and a start (nq,) inside the limits."""
+    if prepared.options.method.exact:
+        return _in_closed_form(prepared, targets, start)
     if prepared.searcher is not None:
         return Findings(*prepared.searcher.search(start, goals_of(targets))[0])
     if shortfall(targets, prepared.question.bounds, prepared.options.tolerance) is not None:

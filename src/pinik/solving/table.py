@@ -15,7 +15,7 @@ from ..problem.problem import Problem
 from ..problem.rows import Rows
 from ..problem.targets import Target
 
-__all__ = ["Table", "configuration_at", "drawn_joints"]
+__all__ = ["Table", "configuration_at", "drawn_joints", "range_of"]
 
 Array = NDArray[np.float64]
 
@@ -114,12 +114,16 @@ def configuration_at(problem: Problem, limits: Limits, start: Array, share: Shar
     """
     q = start.copy()
     for joint in drawn_joints(problem):
-        entry = joint.idx_q
-        low, high = joint.range_to_draw_from(
-            float(limits.lower[entry]), float(limits.upper[entry]), float(start[entry]), problem.size_of_chain
-        )
+        low, high = range_of(joint, problem, limits, start)
         joint.set_angle(q, low + share(joint) * (high - low))
     return q
+
+
+def range_of(joint: Joint, problem: Problem, limits: Limits, start: Array) -> tuple[float, float]:
+    """The range from which a joint's angle is drawn [rad or m], for configurations about `start` (nq,)."""
+    entry = joint.idx_q
+    about, length = float(start[entry]), problem.size_of_chain
+    return joint.range_to_draw_from(float(limits.lower[entry]), float(limits.upper[entry]), about, length)
 
 
 def _wanted(target: Target) -> Array:
