@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import sys
 
 import pytest
 from hypothesis import HealthCheck, settings
@@ -19,6 +20,14 @@ settings.register_profile(
     print_blob=True,
 )
 settings.load_profile("pinik")
+
+
+def pytest_sessionfinish() -> None:
+    """Save what coverage has measured: a worker that takes long to end is killed, and would lose it."""
+    coverage = sys.modules.get("coverage")
+    measuring = coverage.Coverage.current() if coverage else None
+    if measuring:
+        measuring.save()
 
 
 @pytest.fixture(scope="session", autouse=True)

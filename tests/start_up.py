@@ -1,11 +1,17 @@
-"""A command in a process of its own, and the modules that it imported."""
+"""Commands in processes of their own, and the modules that they imported."""
 
 from __future__ import annotations
 
 import subprocess
 import sys
+from collections.abc import Mapping
 
 SOLVE = ["solve", "arm", "--frame", "tip", "--position", "0.3", "0.1", "0.8"]
+
+
+def unmeasured(environment: Mapping[str, str]) -> dict[str, str]:
+    """For a process in which coverage would be in the way, because it imports modules and writes a file."""
+    return {name: value for name, value in environment.items() if not name.startswith("COVERAGE_")}
 
 
 def modules_after(environment: dict[str, str], arguments: list[str]) -> set[str]:

@@ -7,6 +7,8 @@ import sys
 
 import pytest
 
+from start_up import unmeasured
+
 OLD = b"what was there before\n"
 PLOT = ("accuracy", "--problems", "1", "--digits", "1", "--joints", "3", "--plot", "out.svg")
 COMMANDS = {
@@ -24,7 +26,7 @@ def run_on_full_disk(environment, tmp_path):
         return subprocess.run(
             ["/bin/sh", "-c", 'ulimit -f 1; exec "$@"', "sh", sys.executable, "-m", "pinik", *arguments],
             cwd=tmp_path,
-            env=environment | {"PYTHONDONTWRITEBYTECODE": "1"},
+            env=unmeasured(environment) | {"PYTHONDONTWRITEBYTECODE": "1"},
             capture_output=True,
             text=True,
             timeout=60,

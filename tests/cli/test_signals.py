@@ -13,6 +13,7 @@ import time
 import pytest
 
 from pinik import interrupts
+from start_up import unmeasured
 
 # Tells when Python has come to the part of a command that pinik can answer for.
 TELLING = """
@@ -54,7 +55,7 @@ def started(environment, tmp_path):
             [sys.executable, "-c", USUAL, *how, *arguments],
             stdout=subprocess.PIPE,
             stderr=subprocess.PIPE,
-            env=environment | told | {"PYTHONPATH": path},
+            env=unmeasured(environment) | told | {"PYTHONPATH": path},
             pass_fds=[writing],
         )
         running.append(process)

@@ -36,6 +36,7 @@ STEPS_PER_SECOND = 60
 VIEWS = (1, 2, 4)
 # The share of a step's time that the solvers may take; the rest is for drawing and for messages from the page.
 _SOLVERS_SHARE = 0.7
+_SECONDS_OF_ONE_STEP = 0.25  # of all solvers together, if somebody asks for a single step, which nothing hurries
 _STILL_STEPS = 90  # a second and a half, which is longer than random motion pauses
 _DEFAULT_METHODS = ("ccd", "jt", "pinv", "dls")
 
@@ -152,7 +153,7 @@ class Session:
         """Advance the balls by 1/60 s, and let every visible instance chase them."""
         self._agree_on_terms()
         self.motion.advance(self.balls, 1.0 / STEPS_PER_SECOND)
-        share = _SOLVERS_SHARE / STEPS_PER_SECOND / self.view
+        share = (_SOLVERS_SHARE / STEPS_PER_SECOND if self.running else _SECONDS_OF_ONE_STEP) / self.view
         targets = self.balls.targets
         led = self.leading.among(targets)
         for index, instance in enumerate(self.seen):

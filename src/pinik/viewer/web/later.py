@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from typing import Any
@@ -26,6 +27,7 @@ def later_in_threads(loop: tornado.ioloop.IOLoop, workers: ThreadPoolExecutor) -
                 result = error
             loop.add_callback(then, result)
 
-        workers.submit(run)
+        with contextlib.suppress(RuntimeError):  # the process ends, so nobody waits for what would follow
+            workers.submit(run)
 
     return later
