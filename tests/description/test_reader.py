@@ -41,6 +41,11 @@ FAULTS = {
     "a lone surrogate": ('<robot name="\ud800"/>', None, "cannot be encoded"),
     "a bottomless nesting": ("<a>" * 50_000, None, "nested more than"),
     "too many elements": (f"<robot>{'<a/>' * 500_000}</robot>", None, "more than 500,000"),
+    "too many names": (
+        "".join(["<robot>", *(f'<link{i} name{i}="a"/>' for i in range(5_000)), "</robot>"]),
+        None,
+        "more than 10,000 different names",
+    ),
     "too many bytes": (f"<robot>{' ' * 2**24}</robot>", None, "too large"),
     "an SDF file": ('<sdf version="1.6"/>', "<sdf>", "SDF"),
     "an MJCF file": ("<mujoco/>", "<mujoco>", "MJCF"),

@@ -3,14 +3,17 @@
 from __future__ import annotations
 
 import difflib
+from itertools import product
+from string import ascii_lowercase
 
 import pytest
 
 import pinik
+from pinik.description import reader
 from pinik.description.lint.front import lint
 from pinik.description.slips import is_sure, meant
 from pinik.description.vocabulary import URDF
-from urdf_texts import joint, link, robot
+from urdf_texts import joint, link, pair, robot
 
 LIMIT = URDF["limit"].attributes
 ORIGIN = URDF["origin"].attributes
@@ -63,3 +66,16 @@ def test_a_slip_that_comes_again_or_of_one_letter_needs_no_search(monkeypatch):
     found = lint(text.encode(), description)
     assert sum(flaw.code.startswith("unknown-") for flaw in found) == 3 * 200
     assert len(searches) < 50
+
+
+def test_thousands_of_different_slips_are_compared_once_by_reader_and_lint_together(monkeypatch):
+    searches = []
+    search = difflib.SequenceMatcher.get_matching_blocks
+    monkeypatch.setattr(
+        difflib.SequenceMatcher, "get_matching_blocks", lambda self: searches.append(self) or search(self)
+    )
+    slips = [f"mul{first}ti{second}pl{third}er" for first, second, third in product(ascii_lowercase[:14], repeat=3)]
+    attributes = " ".join(f'{slip}="1"' for slip in slips)
+    text = pair(f'<mimic joint="k" {attributes}/>')
+    lint(text.encode(), reader.read(text))
+    assert len(searches) <= 1.1 * len(slips)

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import contextlib
 import time
+from itertools import product
+from string import ascii_lowercase
 
 import pytest
 
@@ -28,7 +30,17 @@ def read_package(tmp_path, manifest):
     return manifest_name(tmp_path)
 
 
+def misspelt(tag, attribute):
+    """An element with half a million attributes, each the given one with other letters between its own."""
+    first, second = attribute[:3], attribute[3:]
+    names = (
+        "".join((first, *letters[:2], second, *letters[2:], '="1"')) for letters in product(ascii_lowercase, repeat=4)
+    )
+    return f"<{tag} {' '.join(names)}/>"
+
+
 READS = {
+    "misspelt names": lambda _: load(pair(misspelt("dynamics", "friction"))),
     "comments without an end after a fault": lambda _: read_document(b"<robot name=<" + COMMENTS),
     "a comment to mend and white space": lambda _: read_document(b"<robot><!-- -- --></robot>" + b" " * COUNT),
     "declarations without an end": lambda _: declared_as_utf_8(b"<?xml " * COUNT),

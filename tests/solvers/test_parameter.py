@@ -7,7 +7,7 @@ import math
 import pytest
 
 from pinik.errors import InputError
-from pinik.solvers.parameter import JointValues, Parameter
+from pinik.solvers.parameter import JointValues, Parameter, max_step_parameter, parameter
 
 NUMBER = Parameter(0.5, "", low=0.25, high=2.0, name="gain")
 TIME = Parameter(1.0, "", unit="s", low=0.5, optional=True, name="pause")
@@ -50,3 +50,18 @@ def test_the_json_form_has_no_infinity_and_plain_dicts():
     assert REACH.plain(1.5) == 1.5
     assert type(JOINTS.plain(JointValues({"j": 1.0}))) is dict
     assert CHOICE.plain("a") == "a"
+
+
+def test_a_field_describes_its_parameter_by_all_that_it_was_given():
+    given = {"unit": "s", "low": 0.5, "high": 4.0, "slider": (1.0, 2.0), "optional": True, "unbounded": True}
+    field = parameter(1.5, "how long", choices=["a", "b"], symbol="t", level=3, **given)
+    described = Parameter(1.5, "how long", choices=("a", "b"), symbol="t", level=3, **given)
+    assert (field.default, field.metadata["parameter"]) == (1.5, described)
+
+
+def test_the_largest_step_has_the_default_of_its_method_no_end_and_a_least_value():
+    described = max_step_parameter(0.3).metadata["parameter"]
+    assert described.default == 0.3
+    assert described.check(None, "m") == math.inf
+    with pytest.raises(InputError, match=r"at least 1e-06 \[rad or m\]; got 1e-07"):
+        described.check(1e-7, "m")

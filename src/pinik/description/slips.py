@@ -17,6 +17,7 @@ __all__ = ["is_slip", "is_sure", "meant", "misspelt", "rivals"]
 _RESEMBLES = 0.7  # of 1: how much two names have in common
 _SURELY = 0.8  # so much that only a slip of the keyboard explains it
 _LETTERS = 4  # so many letters are needed for one of them to be wrong
+_REMEMBERED = 2**14  # comparisons; the reader and the lint ask for all unknown names of a document several times
 
 
 def meant(name: str, known: Collection[str], given: Collection[str] = ()) -> str | None:
@@ -74,7 +75,7 @@ def _shown(element: Element) -> str:
     return f"<{shortened(element.tag, QUOTED)}> (line {element.line})"
 
 
-@lru_cache(maxsize=1024)  # the reader and the lint ask for the same name several times
+@lru_cache(maxsize=_REMEMBERED)
 def _ranked(name: str, known: frozenset[str]) -> tuple[tuple[str, float], ...]:
     """The known names that a name resembles, the nearest first, each with its likeness."""
     likeness = _resembling(name, known)
@@ -83,7 +84,7 @@ def _ranked(name: str, known: frozenset[str]) -> tuple[tuple[str, float], ...]:
     return tuple((near, likeness[near]) for near in names)
 
 
-@lru_cache(maxsize=1024)
+@lru_cache(maxsize=_REMEMBERED)
 def _resembling(name: str, known: frozenset[str]) -> Mapping[str, float]:
     """The known names that a name may be a slip for, each with its likeness."""
     word = name.casefold()

@@ -9,9 +9,11 @@ from xml.parsers import expat
 
 __all__ = ["COMMENT", "BrokenXMLError", "DocumentError", "Element", "parse"]
 
-# The largest robot of the catalogue has 0.2 MB, 5,000 elements and 9 levels; these bounds stop XML bombs only.
+# The largest robots of the catalogue have 0.2 MB, 5,000 elements, 9 levels and 170 names; these bounds stop XML bombs
+# only.
 MAX_BYTES = 16 * 1024 * 1024
 MAX_ELEMENTS = 500_000
+MAX_NAMES = 10_000  # of elements and attributes; each one that URDF does not know is compared with those that it knows
 MAX_DEPTH = 100
 XINCLUDE = "http://www.w3.org/2001/XInclude"
 
@@ -98,6 +100,7 @@ class _Builder:
         self.end: int | None = None  # the offset of the tag that ends the root element
         self._open: list[Element] = []
         self._count = 0
+        self._names: set[str] = set()
         self._parser = parser
         self._lines_before = blank.count(b"\n")
         self._bytes_before = len(blank)
@@ -114,6 +117,10 @@ class _Builder:
             raise DocumentError(f"more than {MAX_ELEMENTS:,} XML elements", line=line)
         if len(self._open) == MAX_DEPTH:
             raise DocumentError(f"XML elements nested more than {MAX_DEPTH} deep", line=line)
+        self._names.add(tag)
+        self._names.update(attributes)
+        if len(self._names) > MAX_NAMES:
+            raise DocumentError(f"more than {MAX_NAMES:,} different names of XML elements and attributes", line=line)
         self._refuse_xinclude(tag, attributes, line)
         element = Element(tag, attributes, line, self._parser.CurrentByteIndex + self._bytes_before)
         if self._open:
