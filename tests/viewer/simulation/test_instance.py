@@ -13,7 +13,9 @@ import pinik
 from judge import is_inside, plain_placement
 from pinik.model.home import home_configuration
 from pinik.solvers.registry import make_solver
-from pinik.viewer.simulation.instance import STATUSES, Instance, StepSettings
+from pinik.viewer.simulation.instance import Instance
+from pinik.viewer.simulation.standing import STATUSES
+from pinik.viewer.simulation.step_settings import StepSettings
 from robots import load_quietly
 from stand_ins import Clock
 

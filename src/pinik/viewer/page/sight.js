@@ -67,6 +67,7 @@ export class Sight {
     _someLeft() {
         const { stage, instances, camera } = this._show;
         const points = this._points();
+        if (instances.length > 1 && camera.isCrowded(points)) return true;
         return instances.some((_, i) =>
             points.some((point) => camera.isOutside(stage.project(point.clone().add(this._show.offset(i))))),
         );
