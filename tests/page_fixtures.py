@@ -103,11 +103,12 @@ def open_desk(browser: Browser, tabs: Tabs) -> Iterator[OpenDesk]:
         until: str = DRAWN,
         viewport: dict[str, int] = WIDE,
         slow: bool = False,
+        watch: bool = False,
         **context: Any,
     ) -> Desk:
         """Open a view, by default stopped and by hand. With options for a browser context, its tab is not shared."""
         machine = robot if isinstance(robot, Path) else load_quietly(robot, root=root)
-        live = pinik.live(machine, methods, running=running, motion=motion, view=view, port=0)
+        live = pinik.live(machine, methods, running=running, motion=motion, view=view, port=0, watch=watch)
         views.append(live)
         if context:
             opened = new_context(browser, viewport=viewport, **context)

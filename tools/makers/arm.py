@@ -52,7 +52,8 @@ def _make_solid(robot: Description) -> None:
     robot.solid("gripper", [box((0.068, 0.053, 0.200), (0.0, root + 0.0265, 0.0))])
     for side in (1, -1):  # the fingers, whose pads hold a ball
         inner, outer, bottom, end = arm_shapes.GRIP, 0.082, root + 0.047, length + 0.034
-        robot.solid("gripper", [box((0.036, end - bottom, outer - inner), (0, (bottom + end) / 2, side * (inner + outer) / 2))])
+        middle = (0.0, (bottom + end) / 2, side * (inner + outer) / 2)
+        robot.solid("gripper", [box((0.036, end - bottom, outer - inner), middle)])
 
 
 def build() -> Description:

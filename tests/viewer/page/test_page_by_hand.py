@@ -107,6 +107,19 @@ def test_undo_and_redo_bring_back_settings_balls_poses_and_robots(open_panel):
     assert desk.until(lambda s: s["robot"] == "arm")
 
 
+def test_undo_brings_back_where_a_free_root_was(open_panel):
+    desk = open_panel("two_link", methods=("dls",), running=True, root="free_flyer")
+    state = desk.until(lambda s: s["instances"][0]["status"] == "CONVERGED")
+    before = state["instances"][0]["placements"]["root_joint"]
+    desk.agree()
+    desk.type("target-x", 3.0)
+    desk.until(lambda s: s["instances"][0]["placements"]["root_joint"][0] > before[0] + 1)
+    desk.agree()
+    desk.click("undo")
+    back = desk.until(lambda s: s["balls"][0]["position"][0] < 2 and s["instances"][0]["status"] == "CONVERGED")
+    np.testing.assert_allclose(back["instances"][0]["placements"]["root_joint"], before, atol=1e-3)
+
+
 def test_a_session_that_paused_on_a_miss_says_which_robot_missed(open_panel):
     desk = open_panel("arm", methods=("dls",), running=True)
     desk.part("pause-on-miss").click()

@@ -121,6 +121,25 @@ def test_the_presentation_shows_the_stage_alone_and_is_in_the_link(open_panel):
     assert "present" not in desk.address()
 
 
+def test_what_belongs_to_the_tab_is_in_its_link(open_panel):
+    desk = open_panel("arm", ("dls", "ccd"))
+    desk.view.send("orientation", index=0, on=True, rpy=[0, 0, 0])
+    desk.click("teach")
+    desk.click("tab-lessons")
+    desk.click("ring-world")
+    desk.wait(lambda: {"learn=lessons", "rings=world"} <= set(desk.page.url.partition("#")[2].split("&")))
+    link = desk.page.url.partition("#")[2]
+    desk.visit(desk.view, link.replace("motion=hand", "motion=curve"), until="window.pinik?.ready")
+    desk.until(lambda s: s["motion"] == "curve")
+    desk.expect("tab-lessons").to_have_attribute("aria-selected", "true")
+    desk.expect("ring-world").to_have_attribute("aria-pressed", "true")
+    assert desk.toasts.count() == 0, "the session was told of what belongs to the tab"
+    desk.click("teach-close")
+    desk.wait(lambda: "learn" not in desk.page.url)
+    desk.visit(desk.view, "learn=nothing", until="window.pinik?.ready")
+    desk.expect("teach-drawer").to_be_hidden()
+
+
 def test_captions_cover_no_ball(open_desk):
     desk = open_desk("lion", METHODS, root="free_flyer", motion="curve")
     stage = desk.page.locator("#canvas").bounding_box()

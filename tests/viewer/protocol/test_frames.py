@@ -11,8 +11,8 @@ import pytest
 from by_hand import axis, limit, origin
 from judge import plain_placement
 from pinik.viewer.protocol.frames import FrameMaker
-from pinik.viewer.simulation.instance import STATUSES
 from pinik.viewer.simulation.session import Session
+from pinik.viewer.simulation.standing import STATUSES
 from robots import load_quietly
 from stand_ins import Clock, read_frame
 from urdf_texts import joint, link

@@ -13,8 +13,8 @@ from pinik.description.catalog import catalog
 from pinik.motion.curves import CURVES
 from pinik.viewer.protocol.messages import RANGES
 from pinik.viewer.protocol.state import hello_message, session_state
-from pinik.viewer.simulation.instance import STATUSES
 from pinik.viewer.simulation.session import Session
+from pinik.viewer.simulation.standing import STATUSES
 from pinik.viewer.web.show import Show
 from robots import load_quietly
 from stand_ins import Clock, Later

@@ -13,7 +13,8 @@ from judge import plain_placement
 from pinik.model.home import home_configuration
 from pinik.solvers.registry import make_solver
 from pinik.viewer.simulation.explainer import Explainer
-from pinik.viewer.simulation.instance import Instance, StepSettings
+from pinik.viewer.simulation.instance import Instance
+from pinik.viewer.simulation.step_settings import StepSettings
 from robots import load_quietly
 from stand_ins import Clock
 

@@ -13,7 +13,9 @@ import pinik
 from judge import is_inside, plain_placement
 from pinik.model.home import home_configuration
 from pinik.solvers.registry import make_solver
-from pinik.viewer.simulation.instance import STATUSES, Instance, StepSettings
+from pinik.viewer.simulation.instance import Instance
+from pinik.viewer.simulation.standing import STATUSES
+from pinik.viewer.simulation.step_settings import StepSettings
 from robots import load_quietly
 from stand_ins import Clock
 
@@ -22,6 +24,17 @@ REACHABLE = [0.3, 0.1, 0.8]
 
 
 @dataclass(frozen=True, kw_only=True)
+class Lame(pinik.JacobianSolver):
+    """Never moves; counts how often it is asked."""
+
+    name = "lame"
+    calls = []  # noqa: RUF012 - the test's handle
+
+    def direction(self, J, e):
+        self.calls.append(len(e))
+        return np.zeros(J.shape[1])
+
+
 class Tenth(pinik.JacobianSolver):
     """A tenth of the transpose's step; counts its calls."""
 
@@ -358,3 +371,27 @@ def test_a_jump_of_a_free_root_is_measured_in_its_tangent():
 def test_every_status_a_solve_can_have_is_listed():
     solved = ("CONVERGED", "STALLED", "MAX_ITERATIONS", "TIME_LIMIT", "UNREACHABLE", "COLLIDING")
     assert ("IDLE", *solved, "FAILED", "REFUSED") == STATUSES
+
+
+def test_a_method_that_stalled_in_its_place_is_asked_again_only_when_something_changes(arm):
+    one = instance(arm, Lame)
+    target = [pinik.Target("tip", REACHABLE)]
+
+    def asked():
+        Lame.calls.clear()
+        one.step(target)
+        return len(Lame.calls) > 0
+
+    assert [asked() for _ in range(4)] == [True, True, False, False]
+    assert (one.status, one.counted, one.last.iterations, one.last.reached) == ("STALLED", False, 0, False)
+    assert one.last.error == pytest.approx(distance(arm, one.q, "tip", REACHABLE))
+    target = [pinik.Target("tip", REACHABLE)]
+    assert asked(), "the target moved"
+    asked()
+    assert not asked()
+    one.settings = StepSettings(limits=False)
+    assert asked()
+    asked()
+    assert not asked()
+    one.put(arm.random(np.random.default_rng(1)))
+    assert asked()

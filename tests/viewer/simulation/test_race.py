@@ -10,9 +10,9 @@ from judge import is_inside, plain_placement
 from pinik.model.home import home_configuration
 from pinik.solvers.registry import make_solver
 from pinik.viewer.simulation.balls import Balls
-from pinik.viewer.simulation.instance import StepSettings
 from pinik.viewer.simulation.race import enter, run_race
 from pinik.viewer.simulation.race_card import card
+from pinik.viewer.simulation.step_settings import StepSettings
 
 ALL = ("ccd", "jt", "pinv", "dls")
 

@@ -1,7 +1,7 @@
 /** The camera: presets, framing, and smooth transitions. */
 
 import { axesOf } from "pinik/framing.js";
-import { arrange } from "pinik/layout.js";
+import { arrange, extent } from "pinik/layout.js";
 import { THREE } from "pinik/three.js";
 
 export const PRESETS = {
@@ -12,6 +12,7 @@ export const PRESETS = {
     top: { title: "Top", azimuth: 0, elevation: Math.PI / 2 - 0.01 },
 };
 
+const CROWDED = 1.12; // how much wider robots may become before they are moved apart
 const GLIDE = 480; // [ms]
 const DRAG = 4; // [px] that a pressed pointer moves before it counts as a drag
 const SIDES = 16; // [px] left and right of the robots
@@ -26,7 +27,7 @@ export class Camera extends EventTarget {
         this.moved = false;
         this.offsets = [];
         this.captionHeight = 44; // [px]
-        this._rows = 1;
+        [this._rows, this._column] = [1, Infinity];
         this.together = false; // whether all instances stand in one place
         this._calm = matchMedia("(prefers-reduced-motion: reduce)");
         this._watchHand(stage.canvas);
@@ -84,6 +85,11 @@ export class Camera extends EventTarget {
         return x < left / 2 || y < top / 2 || x > width - right / 2 || y > height - bottom / 2;
     }
 
+    /** Whether robots that extend to these points (Vector3s) come into each other's place. */
+    isCrowded(points) {
+        return !this.together && extent(points, axesOf(PRESETS[this.preset]).right) > CROWDED * this._column;
+    }
+
     /** Arrange `count` instances and look at them all; `points` (Vector3s) are those of one instance. */
     frame(points, count, preset = this.preset, smoothly = true) {
         if (!points.length || !this._stage.width) return;
@@ -94,6 +100,7 @@ export class Camera extends EventTarget {
         this._stage.lights.aim(sphere.center, 1.05 * sphere.radius, arranged.view.azimuth);
         this.sphere = sphere;
         this._rows = arranged.rows;
+        this._column = arranged.column;
         const goal = {
             ...arranged.view,
             target: arranged.camera.target,

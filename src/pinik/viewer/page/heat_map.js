@@ -48,7 +48,9 @@ export class HeatMap {
         const gap = () => make("b");
         const lines = rows.flatMap((row, r) => [label(row, "row"), ...this._cells[r], gap(), this._e[r]]);
         const heads = columns.map((name) => make("span", { className: "column", title: name }, make("em", {}, name)));
+        const longest = Math.min(18, Math.max(...columns.map((name) => name.length)));
         this.element.style.setProperty("--columns", columns.length);
+        this.element.style.setProperty("--head", `${14 + 5.2 * longest}px`);
         this.element.replaceChildren(
             gap(), ...heads, gap(), make("span", { className: "column" }, make("em", {}, "e")),
             ...lines,

@@ -5,6 +5,7 @@ import { make, say } from "pinik/elements.js";
 
 const GAP = 6; // [px]
 const NARROW = 165; // [px] a label with less room than this shows the method's short name
+const SMALL = 620; // [px] and so it does in a picture that is less wide than this
 const WIDEST = 230; // [px]
 const [HEIGHT, NARROW_HEIGHT] = [44, 34]; // [px]
 const LEAST = 84; // [px]
@@ -23,9 +24,10 @@ export class Labels {
         this.scale = Number(getComputedStyle(this._element).getPropertyValue("--caption-scale")) || 1;
     }
 
-    /** The height of a caption [px]. */
+    /** The height of the tallest caption [px]. */
     get height() {
-        return (this._narrow ? NARROW_HEIGHT : HEIGHT) * this.scale;
+        const least = (this._narrow ? NARROW_HEIGHT : HEIGHT) * this.scale;
+        return Math.max(least, ...this._chips.map(({ chip }) => chip.offsetHeight));
     }
 
     /** @param texts {title, method, words, note, tone} of each instance */
@@ -88,7 +90,7 @@ export class Labels {
             LEAST * this.scale,
             Math.min(WIDEST * this.scale, space - GAP, width - 2 * GAP),
         );
-        this._narrow = most < NARROW * this.scale;
+        this._narrow = most < NARROW * this.scale || width < SMALL * this.scale;
         this._element.classList.toggle("narrow", this._narrow);
         this._element.style.setProperty("--most", `${most}px`);
     }

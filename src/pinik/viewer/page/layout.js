@@ -14,7 +14,7 @@ const FROM_ABOVE = 0.9; // the sine of the elevation from which rows are separat
  * Arrange `count` copies of points (Vector3s) in a view.
  *
  * @param lens the lens for `fit`, a function of the number of rows
- * @returns {offsets, view, camera, everything, rows}, with camera from `fit`
+ * @returns {offsets, view, camera, everything, rows, column}, with camera from `fit` and the distance of columns
  */
 export function arrange(points, count, view, lens) {
     const row = candidate(points, count, count, view, lens(1));
@@ -25,16 +25,17 @@ export function arrange(points, count, view, lens) {
 
 function candidate(points, count, columns, view, lens) {
     const shape = (lens.left + lens.right) / (lens.top + lens.bottom);
-    const offsets = grid(points, count, columns, view, Math.min(SLENDER, (0.95 * shape) / columns));
+    const { right, up } = axesOf(view);
+    const slender = Math.min(SLENDER, (0.95 * shape) / columns);
+    const column = Math.max(extent(points, right), slender * extent(points, up));
+    const offsets = grid(points, count, columns, view, column);
     const everything = offsets.flatMap((offset) => points.map((point) => point.clone().add(offset)));
-    return { offsets, view, camera: fit(everything, view, lens), everything, rows: count / columns };
+    return { offsets, view, camera: fit(everything, view, lens), everything, rows: count / columns, column };
 }
 
-/** @param slender the least width of a column, as a fraction of the height */
-function grid(points, count, columns, view, slender) {
+function grid(points, count, columns, view, column) {
     const { right, up } = axesOf(view);
     const level = new THREE.Vector3(-Math.cos(view.azimuth), -Math.sin(view.azimuth), 0);
-    const column = Math.max(extent(points, right), slender * extent(points, up));
     // Seen from above, a row farther back appears higher, because the ground rises in the picture.
     const rise = Math.max(level.dot(up), 0.2);
     const part = rise > FROM_ABOVE ? 1 : STEP_BACK;
@@ -48,7 +49,8 @@ function grid(points, count, columns, view, slender) {
     });
 }
 
-function extent(points, axis) {
+/** How far points (Vector3s) extend along an axis. */
+export function extent(points, axis) {
     const along = points.map((point) => point.dot(axis));
     return Math.max(...along) - Math.min(...along);
 }

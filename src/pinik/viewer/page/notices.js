@@ -32,19 +32,19 @@ export class Notices {
     /** Say what is wrong with the watched file, or that it is good again. */
     watched(file) {
         const fault = file?.fault ?? null;
+        if (fault === (this._fault ?? null)) return;
         const strip = byId("watched");
         clearTimeout(this._mended);
+        this._fault = fault;
         if (fault) say(strip, `${fault}. You see the robot as it last was.`);
-        else if (this._fault) {
-            say(strip, `${file.file} is good again.`);
+        else {
+            say(strip, `${file?.file ?? "The file"} is good again.`);
             this._mended = setTimeout(() => {
                 strip.hidden = true;
             }, GOOD);
         }
         strip.classList.toggle("good", !fault);
-        if (fault || this._fault) strip.hidden = false;
-        else if (!strip.classList.contains("good")) strip.hidden = true;
-        this._fault = fault;
+        strip.hidden = false;
     }
 
     /** @param words what is being loaded, or "" */

@@ -26,7 +26,7 @@ export class Show {
         this.balls = new Balls();
         this._theme = theme;
         this._shapes = new Shapes(this.stage.viewer, "shapes");
-        [this.instances, this.base] = [[], []];
+        [this.instances, this.base, this.also] = [[], [], []];
         this._captions = new Captions(labels, this);
         this._pointers = new Pointers(labels, this);
         this.look = new Look(labels, this);
@@ -37,10 +37,7 @@ export class Show {
         theme.addEventListener("change", () => this._paint());
         this.camera.addEventListener("offsets", () => this._moveInstances());
         this.stage.onTick((now) => this._tick(now));
-        this.stage.onResize = () => {
-            this.camera.captionHeight = this._captions.measure();
-            if (!this.camera.moved) this.frameAll(false);
-        };
+        this.stage.onResize = () => !this.camera.moved && this.frameAll(false);
         this.stage.onRefine = (fine) => this.instances.forEach(({ robot }) => robot.refine(fine));
         this.stage.onDrawn = () => this._afterDrawing();
     }
@@ -102,8 +99,10 @@ export class Show {
         this._showBalls();
         this.look.setState(state);
         this.instances.forEach((instance, i) => instance.robot.redden(touched(state, i)));
-        const asked = ({ balls, motion, curve, view, looks }) =>
-            [motion, curve, view, looks?.includes("overlay"), balls.map((ball) => ball.mode + ball.frame)].join();
+        const asked = ({ balls, motion, curve, view, looks, obstacles }) => {
+            const placed = ["overlay", "ellipsoid"].map((look) => looks?.includes(look)); // it makes captions taller
+            return [motion, curve, view, placed, balls.map((ball) => ball.mode + ball.frame), obstacles?.length].join();
+        };
         if (before && this._framed && asked(before) !== asked(state)) {
             this._sight.ask();
             this._sight.forget();
@@ -189,6 +188,13 @@ export class Show {
         this.stage.recast();
     }
 
+    /** Keep more in the picture: points (Vector3s) in an instance's own world. */
+    showAlso(points) {
+        this.also = points;
+        if (points.length && !this.camera.moved) this._sight.ask();
+        this.stage.touch();
+    }
+
     /** The position of instance `i`: a Vector3. */
     offset(i) {
         return this.camera.offsets[i] ?? new THREE.Vector3();
@@ -197,6 +203,11 @@ export class Show {
     /** Look at everything, smoothly or at once. */
     frameAll(smoothly = true, preset = this.camera.preset) {
         if (this.instances.length) this._sight.all(smoothly, preset);
+    }
+
+    /** The height of the captions [px]. */
+    get captionHeight() {
+        return this._captions.measure();
     }
 
     /** The robot's shapes, as `Shapes.parts` returns them; null before they arrive. */

@@ -45,6 +45,7 @@ export class Sight {
     all(smoothly, preset) {
         const { camera, stage, instances, ground, robot } = this._show;
         this._pending = false;
+        camera.captionHeight = this._show.captionHeight;
         camera.frame(this._points(), instances.length, preset, smoothly);
         const { center, radius } = camera.sphere;
         stage.ground.lay(ground, center.x, center.y, radius, robot.size);
@@ -66,6 +67,7 @@ export class Sight {
     _someLeft() {
         const { stage, instances, camera } = this._show;
         const points = this._points();
+        if (instances.length > 1 && camera.isCrowded(points)) return true;
         return instances.some((_, i) =>
             points.some((point) => camera.isOutside(stage.project(point.clone().add(this._show.offset(i))))),
         );
@@ -75,7 +77,7 @@ export class Sight {
     _points() {
         const { instances, balls, state, ballRadius } = this._show;
         this._extent.add(instances.flatMap((instance) => instance.robot.corners()));
-        const points = this._extent.points;
+        const points = [...this._extent.points, ...this._show.also];
         state.balls.forEach((ball, k) => {
             const position = balls.places[k]?.position;
             if (ball.mode === "off" || !position) return;
@@ -85,8 +87,19 @@ export class Sight {
             }
             points.push(...sparse(ball.curve));
         });
+        for (const obstacle of state.obstacles ?? []) points.push(...cornersOf(obstacle));
         return points;
     }
+}
+
+/** The corners of the box around an obstacle, as Vector3s. */
+function cornersOf({ kind, size, position }) {
+    const halves = kind === "box" ? size.map((edge) => edge / 2) : Array(3).fill(size[0]);
+    return [-1, 1].flatMap((x) =>
+        [-1, 1].flatMap((y) =>
+            [-1, 1].map((z) => new THREE.Vector3(...[x, y, z].map((side, k) => position[k] + side * halves[k]))),
+        ),
+    );
 }
 
 /** Every fourth point of a curve, as Vector3s. */

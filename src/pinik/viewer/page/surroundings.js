@@ -86,9 +86,10 @@ export class Surroundings {
         close.dataset.testid = `remove-obstacle-${k}`;
         close.setAttribute("aria-label", `Remove obstacle ${k + 1}`);
         close.addEventListener("click", () => this._send("remove_obstacle", { index: k }));
-        const head = make("div", { className: "line obstacle-head" }, make("span", {}, `${k + 1} ${kind}`), close);
-        const places = make("div", { className: "trio" }, ...inputs.slice(0, 3));
-        const sizes = make("div", { className: "trio" }, ...inputs.slice(3));
+        const head = make("div", { className: "line obstacle-head" }, make("span", {}, `Obstacle ${k + 1}, a ${kind} [m]`), close);
+        const fields = inputs.map((input, i) => make("label", { className: "field" }, make("span", {}, names[i]), input));
+        const places = make("div", { className: "trio" }, ...fields.slice(0, 3));
+        const sizes = make("div", { className: "trio" }, ...fields.slice(3));
         return { row: make("li", {}, head, places, sizes), inputs };
     }
 

@@ -8,8 +8,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...robot import Robot
-from ..simulation.instance import STATUSES, Instance
+from ..simulation.instance import Instance
 from ..simulation.session import Session
+from ..simulation.standing import STATUSES
 from .packing import InstanceBlock, JointPlacements, pack_frame
 
 __all__ = ["FrameMaker"]

@@ -10,6 +10,7 @@ from ...echoes import QUOTED, shortened
 from ...errors import InputError, UnknownNameError
 from ...problem.tolerance import Tolerance
 from ..simulation.by_hand import set_angles
+from ..simulation.by_iteration import line_up, step_iteration
 from ..simulation.obstacles import Obstacles
 from ..simulation.session import Session
 from .pasting import angles_by_joint, paste_angles
@@ -234,8 +235,8 @@ _MESSAGES: dict[str, tuple[dict[str, Check], Callable[..., None]]] = {
     "pause_on_miss": ({"on": _truth}, _pause_on_miss),
     "look": ({"name": text, "on": _truth}, lambda s, name, on: s.looks.switch(name, on)),
     "step": ({}, _single_step),
-    "line_up": ({"position": _point}, Session.line_up),
-    "step_iteration": ({"instance": number_or_none}, lambda s, instance: s.step_iteration(instance)),
+    "line_up": ({"position": _point}, line_up),
+    "step_iteration": ({"instance": number_or_none}, step_iteration),
     "reset": ({}, Session.reset),
     "begin_anew": ({}, lambda s: s.scores.begin_anew(s.view)),
     "statistics": ({"cover": text}, lambda s, cover: s.scores.cover(cover)),

@@ -10,8 +10,8 @@ from urllib.parse import parse_qsl, quote, urlencode
 from ...echoes import QUOTED, shortened
 from ...errors import InputError, PinikError, UnknownNameError
 from ...problem.tolerance import Tolerance
-from ..simulation.instance import StepSettings
 from ..simulation.session import Session
+from ..simulation.step_settings import StepSettings
 from .led import angle_messages, led_angles
 from .messages import apply
 from .parameters import changed_parameters, describe_parameters

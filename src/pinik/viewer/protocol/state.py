@@ -8,10 +8,11 @@ from typing import Any
 from ...description.catalog import catalog
 from ...motion.curves import CURVES
 from ...solvers.base import Solver
-from ..simulation.instance import STATUSES, Instance
+from ..simulation.instance import Instance
 from ..simulation.looks import LOOKS
 from ..simulation.motion import MOTIONS
 from ..simulation.session import STEPS_PER_SECOND, VIEWS, Session
+from ..simulation.standing import STATUSES
 from ..simulation.statistics import WINDOWS, Summary
 from ..simulation.swinging import LOOKED_AT, swinging
 from .led import placements

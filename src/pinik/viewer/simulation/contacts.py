@@ -29,6 +29,7 @@ class Contacts:
         self._robot = robot
         self._shapes: RobotShapes | None = None
         self._around: tuple[Solid, ...] = ()
+        self._avoid = Avoid(True, ())
 
     @property
     def waits(self) -> bool:
@@ -55,12 +56,15 @@ class Contacts:
 
     def surround(self, solids: tuple[Solid, ...]) -> None:
         """Put the robot among these obstacles."""
-        self._around = solids
+        self._around, self._avoid = solids, Avoid(True, solids)
 
     @property
     def avoided(self) -> Avoid | None:
-        """What the instances avoid, for the options of a solve; None if nothing, or if it is not known yet."""
-        return Avoid(True, self._around) if self.on and self.avoids and self._shapes is not None else None
+        """What the instances avoid, for the options of a solve; None if nothing, or if it is not known yet.
+
+        It is the same object until the obstacles change.
+        """
+        return self._avoid if self.on and self.avoids and self._shapes is not None else None
 
     @property
     def guard(self) -> Guard | None:
@@ -68,6 +72,11 @@ class Contacts:
         if not self.on or self._shapes is None:
             return None
         return self._shapes.guard(self._robot, self._around)
+
+    def touches(self, q: NDArray[np.float64]) -> bool:
+        """Whether anything that is looked for touches at q (nq,)."""
+        guard = self.guard
+        return guard is not None and guard.touches(q)
 
     def touching(self, q: NDArray[np.float64]) -> list[tuple[str, str]]:
         """The pairs that touch at q (nq,), the deepest first."""

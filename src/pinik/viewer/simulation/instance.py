@@ -5,8 +5,6 @@ from __future__ import annotations
 import math
 import time
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field
-from typing import NamedTuple
 
 import numpy as np
 import pinocchio
@@ -16,7 +14,7 @@ from ...errors import InputError
 from ...model.limits import Limits
 from ...motion.figures import StepFigures
 from ...problem.targets import Target
-from ...problem.tolerance import Tolerance, largest_of
+from ...problem.tolerance import largest_of
 from ...robot import Robot
 from ...shapes.avoid import Avoid
 from ...solvers.base import Solver
@@ -26,65 +24,27 @@ from ...solving.options import Options
 from ...solving.pursuit import Pursuit, pursue
 from ...solving.question import Question
 from ...solving.state import State, Status
-from ...solving.verdict import judge, measure_errors
+from ...solving.verdict import judge
 from .contacts import Contacts
 from .detour import Detours
+from .standing import Standing
+from .step_settings import StepSettings
 
-__all__ = ["STATUSES", "Instance", "Standing", "StepSettings", "same_objects"]
+__all__ = ["Instance", "same_objects"]
 
 Array = NDArray[np.float64]
 
-STATUSES = ("IDLE", *(status.name for status in Status), "FAILED", "REFUSED")
-"""How a step may end: with the status of a solve; IDLE without targets; FAILED if a custom solver raised an exception;
-REFUSED if the method cannot solve for these targets."""
-
-
 _STILL = 1e-7
 """The largest change of a joint in one step [rad or m] that nobody sees."""
+_NOWHERE = 1e-10
+"""The largest change of a joint in a step [rad or m] from which the next one would begin in the same place."""
+_GIVEN_UP = 2
+"""How many steps in a row stall in one place before the method is asked no more."""
 
 
 def same_objects(some: Sequence[object], others: Sequence[object]) -> bool:
     """Whether two sequences hold the very same objects."""
     return len(some) == len(others) and all(a is b for a, b in zip(some, others, strict=True))
-
-
-@dataclass(frozen=True)
-class StepSettings:
-    """How a step goes, the same for all instances of a session.
-
-    Attributes:
-        limits: Whether the joint limits are enforced.
-        tolerance: The errors that count as reached.
-        until_reached: Whether a step runs until the targets are reached or the method gives up.
-        at_most: The maximum number of iterations per step if `until_reached` is False.
-        polish: Whether methods that converge quadratically go on within the tolerance; off, so that the methods are
-            compared by their iterations until the tolerance.
-    """
-
-    limits: bool = True
-    tolerance: Tolerance = field(default_factory=Tolerance)
-    until_reached: bool = True
-    at_most: int = 20
-    polish: bool = False
-
-
-class Standing(NamedTuple):
-    """The present result of an instance.
-
-    Attributes:
-        status: One of `STATUSES`; UNREACHABLE only if there is a proof.
-        message: An explanation in one sentence.
-        position_error: The largest position error of any target [m], by plain forward kinematics; None if no target
-            has a position.
-        orientation_error: The largest orientation error [rad], likewise.
-        active_limits: Names of the joints that are at a limit and could move a target frame.
-    """
-
-    status: str
-    message: str
-    position_error: float | None
-    orientation_error: float | None
-    active_limits: tuple[str, ...]
 
 
 class _RefusedError(Exception):
@@ -162,37 +122,41 @@ class Instance:
         self._targets: tuple[Target, ...] = ()
         self._avoided: Avoid | None = None
         self._trouble = self._blocked = ""
+        self._stalls = 0
         self._paused = False
 
     def step(self, targets: Sequence[Target], seconds: float = math.inf) -> None:
         """Follow the targets for one simulation step, for about `seconds` at most.
 
-        A step does not count if all targets are reached already and none has moved, or if the method cannot solve for
-        these targets.
+        A step does not count if none of the targets has moved and all are reached already, or the method has stalled
+        without getting anywhere twice, nor if the method cannot solve for these targets.
         """
         asked = tuple(targets)
         if not asked:
             self._forget_run("there are no targets")
             return
         avoided = self.contacts.avoided
-        moved = not same_objects(asked, self._targets) or avoided != self._avoided
+        moved = not same_objects(asked, self._targets) or avoided is not self._avoided
         self._avoided = avoided
         if moved and [target.shape for target in asked] != [target.shape for target in self._targets]:
             self._forget_run()  # the kinds of the targets changed, so whether the method can solve for them may change
         self._targets = asked
         if self.status == "REFUSED":
             return
-        self.counted = moved or self.status != Status.CONVERGED.name
+        self.counted = moved or not (self.status == Status.CONVERGED.name or self._stalls >= _GIVEN_UP)
         if not self.counted or (self._blocked and not moved):
             if self.last:
                 self.last = self.last._replace(
                     time=0.0, iterations=0, joint_updates=0, jump=0.0, idle=True, cut_off=False
                 )
             return
-        self._paused = False
+        self._paused, self._blocked = False, ""
         began, before, former = self._clock(), self.q, self._state if self._pursuit else None
         try:
-            state = self._kept_free(self._run(asked, began + seconds), asked)
+            state = self._run(asked, began + seconds)
+            if avoided is not None and self._question is not None and self.contacts.touches(state.q):
+                self._pursuit = None  # the next step begins where this one ends
+                state, self._blocked = self._detours.around(state, asked, before, self._question.options, avoided)
         except _RefusedError as refusal:
             self.status, self.counted, self._trouble = "REFUSED", False, f"waiting: {refusal}"
             return
@@ -212,12 +176,15 @@ class Instance:
             jump=float(np.abs(pinocchio.difference(self.robot.model, before, state.q)).max(initial=0.0)),
             cut_off=state.status is None,
         )
+        gave_up = state.status is Status.STALLED and self.last.jump <= _NOWHERE
+        self._stalls = self._stalls + 1 if gave_up else 0
 
     def step_iteration(self, targets: Sequence[Target]) -> None:
         """Take one iteration instead of a whole step, which does not count.
 
         Nothing happens if all targets are reached, or if the method cannot solve for them.
         """
+        self._stalls = 0
         for _ in range(2):  # the first one only begins a run, if none is under way
             self.step(targets, 0.0)
             if self.status != Status.TIME_LIMIT.name or (self.last and self.last.iterations > 0):
@@ -234,20 +201,6 @@ class Instance:
         while state.status is None and self._clock() < deadline:
             state = self._pursuit.advance(self._pursuit.at_once)
         return state
-
-    def _kept_free(self, state: State, targets: tuple[Target, ...]) -> State:
-        """A state, or another one that touches nothing if things are to be avoided: the way round, or this place."""
-        self._blocked, guard = "", self.contacts.guard
-        if self._avoided is None or guard is None or not guard.touches(state.q):
-            return state
-        assert self._question is not None
-        free = self._detours.find(targets, self.q, self._question.options, self._avoided)
-        self._pursuit = None  # the next step begins where this one ends
-        if free.success:
-            return state._replace(q=free.q, errors=free.errors, status=Status.CONVERGED)
-        self._blocked = free.message
-        errors = measure_errors(self.robot, targets, self.q, self._question.options.tolerance)
-        return state._replace(q=self.q, errors=errors, status=Status.COLLIDING)
 
     def _begin(self, targets: tuple[Target, ...]) -> Pursuit:
         solver, settings = self._solver, self._settings

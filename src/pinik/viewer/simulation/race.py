@@ -17,7 +17,7 @@ from ...solvers.base import Solver
 from ...solving.options import Options
 from ...solving.prepared import Prepared
 from .ball import Ball
-from .instance import StepSettings
+from .step_settings import StepSettings
 
 __all__ = ["LONGEST", "MOST_PLACES", "Entry", "Finish", "Race", "Runner", "enter", "run_race"]
 

@@ -7,9 +7,10 @@ from collections.abc import Callable, Iterable, Sequence
 from ...errors import UnknownNameError
 from ...motion.figures import StepFigures
 from .ball import Ball
-from .instance import Instance, StepSettings
+from .instance import Instance
 from .motion import Motion
 from .statistics import WINDOWS, Statistics, Summary
+from .step_settings import StepSettings
 
 __all__ = ["Scoreboard", "Terms", "terms"]
 

@@ -12,7 +12,6 @@ from numpy.typing import ArrayLike
 from ...errors import InputError, UnknownNameError
 from ...model.home import home_configuration
 from ...motion.effectors import principal_frames
-from ...problem.targets import Target
 from ...robot import Robot
 from ...solvers.base import Solver
 from ...solvers.registry import make_solver
@@ -20,7 +19,7 @@ from ...solving.question import check_joint_names
 from .ball import MODES
 from .balls import Balls
 from .contacts import Contacts
-from .instance import Instance, StepSettings, same_objects
+from .instance import Instance
 from .leading import Leading
 from .looks import Looks
 from .method_menu import Methods, check_balls, chosen, filled_up, offered
@@ -29,6 +28,8 @@ from .motion import MOTIONS, Motion
 from .obstacles import Obstacles
 from .scoreboard import Scoreboard, terms
 from .statistics import Summary
+from .step_settings import StepSettings
+from .stillness import Stillness
 
 __all__ = ["STEPS_PER_SECOND", "VIEWS", "Session"]
 
@@ -37,7 +38,6 @@ VIEWS = (1, 2, 4)
 # The share of a step's time that the solvers may take; the rest is for drawing and for messages from the page.
 _SOLVERS_SHARE = 0.7
 _SECONDS_OF_ONE_STEP = 0.25  # of all solvers together, if somebody asks for a single step, which nothing hurries
-_STILL_STEPS = 90  # a second and a half, which is longer than random motion pauses
 _DEFAULT_METHODS = ("ccd", "jt", "pinv", "dls")
 
 
@@ -55,6 +55,7 @@ class Session:
         contacts: What the instances touch, and whether they avoid it.
         obstacles: What stands around them.
         leading: The instances whose joints lead instead of the balls.
+        stillness: How long nothing has moved.
         misses: Whether the session pauses on a miss, and the last one.
         looks: What the picture shows besides robots and balls.
         home: The pose in which the robots begin (nq,).
@@ -99,9 +100,9 @@ class Session:
             check_joint_names(robot, solver)
         self.robot = robot
         self.looks, self.running = Looks(), False
-        self.steps = self._still_steps = 0
+        self.steps = 0
+        self.stillness = Stillness()
         self.notes: list[str] = []
-        self._targets: list[Target] = []  # of the last step
         self._offered: tuple[list[str], list[str]] = ([], [])  # for which frames, what
         self.settings = StepSettings()
         self.leading, self.misses = Leading(), Misses()
@@ -135,7 +136,7 @@ class Session:
     @property
     def rests(self) -> bool:
         """Whether neither a ball nor a robot has moved for a while."""
-        return self._still_steps > _STILL_STEPS
+        return self.stillness.lasts
 
     @property
     def sleeps(self) -> bool:
@@ -161,39 +162,9 @@ class Session:
                 instance.step(targets, share)
         self.steps += 1
         self.scores.count(self.seen, at_once=not self.running)
-        is_still = not any([instance.moves for instance in self.seen])
-        self._still_steps = self._still_steps + 1 if is_still and same_objects(targets, self._targets) else 0
-        self._targets = targets
+        self.stillness.note(self.seen, targets)
         if self.misses.look(self.seen, targets, jumped=self.motion.kind == "random"):
             self.running = False
-
-    def step_iteration(self, index: int | None = None) -> None:
-        """Stop, and let one visible instance, or all, take one iteration towards the balls, which stay where they are.
-
-        Raises:
-            InputError: There is no such instance.
-        """
-        chosen = self.seen if index is None else [self._instance(index)]
-        self.running = False
-        self._still_steps = 0
-        for instance in chosen:
-            instance.step_iteration(self.balls.targets)
-
-    def line_up(self, position: ArrayLike) -> None:
-        """Stop, with all robots in the pose in which they begin, and the first ball that is on at a position (3,) [m].
-
-        Raises:
-            InputError: The position is not three finite numbers, or no ball is on.
-        """
-        index = next((k for k, ball in enumerate(self.balls) if ball.mode == "on"), None)
-        if index is None:
-            raise InputError("no ball is on")
-        self.move_ball(index, position)
-        self.running = False
-        self._still_steps = 0
-        for instance in self.instances:
-            instance.put(self.home)
-        self.scores.begin_anew(self.view)
 
     def reset(self) -> None:
         """Return the robots and balls to where they began, and clear the statistics."""
@@ -203,7 +174,8 @@ class Session:
             ball.go_home()
         self.motion.restart()
         self.leading.hold((), ())
-        self.steps = self._still_steps = 0
+        self.steps = 0
+        self.stillness.end()
         self.scores.begin_anew(self.view)
 
     def set_view(self, count: int) -> None:
@@ -235,7 +207,7 @@ class Session:
             UnknownNameError: There is no such parameter, or it names a joint that the robot does not have.
             InputError: The value is out of range, or there is no such instance.
         """
-        solver = self._instance(index).solver
+        solver = self.instance(index).solver
         self._set_solver(index, make_solver(type(solver), **(solver.parameters | {name: value})))
 
     def apply_settings(self, settings: StepSettings) -> None:
@@ -264,13 +236,13 @@ class Session:
     def set_contacts(self, on: bool, avoids: bool) -> None:
         """Look for what touches, and let the instances avoid it, which they only do where it is looked for."""
         self.contacts.on, self.contacts.avoids = on, on and avoids
-        self._still_steps = 0
+        self.stillness.end()
 
     def set_obstacles(self, obstacles: Obstacles) -> None:
         """Put these obstacles around the instances, or note that they have changed."""
         self.obstacles = obstacles
         self.contacts.surround(obstacles.solids)
-        self._still_steps = 0
+        self.stillness.end()
 
     def move_ball(self, index: int, position: ArrayLike) -> None:
         """Move a ball to a position (3,) [m], and switch the motion to "hand"."""
@@ -297,12 +269,17 @@ class Session:
         self.set_mode(len(self.balls) - 1, "on")
 
     def _set_solver(self, index: int, solver: Solver) -> None:
-        instance = self._instance(index)
+        instance = self.instance(index)
         check_joint_names(self.robot, solver)
         if solver != instance.solver:
             instance.solver = solver
 
-    def _instance(self, index: int) -> Instance:
+    def instance(self, index: int) -> Instance:
+        """An instance by its number.
+
+        Raises:
+            InputError: There is no such instance.
+        """
         if not 0 <= index < len(self.instances):
             raise InputError(f"instances are numbered from 0 to {len(self.instances) - 1}; got {index}")
         return self.instances[index]

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from typing import Any
 
 import numpy as np
@@ -15,6 +15,7 @@ from ...robot import Robot
 from ...solving.branches import Branches
 from ...solving.self_motion import SelfMotion, self_motion
 from ...solving.solve_all import solve_all
+from ..protocol.messages import checked, whole_number
 from ..protocol.packing import JointPlacements
 from ..simulation.session import Session
 from .later import Later
@@ -43,6 +44,29 @@ class Answers:
         """
         self._later, self._tell = later, tell
         self.forget()
+
+    KINDS = ("find_answers", "find_self_motion", "take_answer", "move_along")
+    """The messages that it receives."""
+
+    def receive(self, message: Mapping[str, Any], session: Session, generation: int) -> None:
+        """Do what one of the messages of `KINDS` asks.
+
+        Raises:
+            InputError: It is malformed, or asks for something that was not found.
+        """
+        match message["type"]:
+            case "find_answers":
+                checked("find_answers", message, {})
+                self.find(session, generation)
+            case "find_self_motion":
+                fields = checked("find_self_motion", message, {"instance": whole_number})
+                self.follow(session, generation, fields["instance"])
+            case "take_answer":
+                self.choose(
+                    session, **checked("take_answer", message, {"index": whole_number, "instance": whole_number})
+                )
+            case _:
+                self.move_along(session, **checked("move_along", message, {"index": whole_number}))
 
     def forget(self) -> None:
         """Forget what was found; work under way is told to nobody."""

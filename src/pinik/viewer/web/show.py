@@ -11,30 +11,24 @@ from ...description.catalog import catalog
 from ...echoes import shortened
 from ...errors import InputError, PinikError
 from ...robot import Robot
-from ...shapes.collisions import RobotShapes
-from ..protocol.frames import FrameMaker
 from ..protocol.messages import any_text, apply, checked, parse, text, whole_number
 from ..protocol.recording import Recording
-from ..protocol.robot_message import robot_message
 from ..protocol.robots import RobotMenu
 from ..protocol.setup import Setup, apply_setup, read_setup, write_setup
 from ..protocol.state import hello_message, session_state
 from ..simulation.another_robot import with_robot
-from ..simulation.contacts import Contacts
 from ..simulation.session import Session
-from .additions import Additions
 from .animation import animation_page
 from .answers import Answers
+from .exhibit import Exhibit
 from .later import Later
 from .lectern import Lectern, scene_of
 from .pace import Pace
 from .readers import Readers
-from .reload import reloaded
 from .robot_loader import RobotLoader
 from .scene import Shapes
 from .seats import Seats, Tab
-from .shape_cache import shapes_of
-from .watch import Watch
+from .watched import Watched
 
 __all__ = ["Show"]
 
@@ -66,50 +60,38 @@ class Show:
         self._readers = Readers(self._seats.is_late)
         self._lectern = Lectern(self._readers, later, _notice)
         self._hello = hello_message(version, session.methods, menu.own_names)
-        self._generation = 0
         self._pace = Pace(clock)
-        self._watch = None if reload is None else Watch(session.robot, reload, later)
-        self._opened = session.robot.name
-        self._shapes: Shapes | None = None
-        self._loading_contacts: Contacts | None = None
+        self._watched = None if reload is None else Watched(session.robot, reload, later, menu)
         self._answers = Answers(later, self._seats.send)
-        self._change_session(session)
+        self._exhibit = Exhibit(session, 1, False, self._seats, later)
+        self._show(session)
 
     def _change_session(self, session: Session, keeps_view: bool = False) -> None:
         self.session = session
-        self._generation += 1
         self._answers.forget()
-        generation = self._generation
-        self._robot = robot_message(session.robot, generation) | {"keeps_view": keeps_view}
-        if self._shapes is not None:
-            self._seats.withdraw(self._shapes.commands)  # else those of robot after robot would wait for a slow tab
-        self._shapes = None
+        self._exhibit.end()
+        self._exhibit = Exhibit(session, self._exhibit.generation + 1, keeps_view, self._seats, self._later)
+        self._show(session)
+
+    def _show(self, session: Session) -> None:
         self._waits_for_shapes = True
-        self._maker = FrameMaker(session.robot, generation)
-        self._additions = Additions(generation, self._later, self._seats.send)
         self._start_anew()
-        self._seats.send(json.dumps(self._robot))
         self._send_state()
-        self._later(lambda: shapes_of(session.robot), lambda shapes: self._take_shapes(generation, shapes))
-        self._look_for_contacts()
-        self._additions.ask(session)
+        self._exhibit.begin(session)
+        self._supply()
 
     def _start_anew(self) -> None:
         """Discard the recording, whose frames show other instances or balls."""
         self.recording.clear()
         self._recorded_step = -1
-        self._frame = self._maker.frame(self.session)
+        self._frame = self._exhibit.maker.frame(self.session)
         self._frame_due = self._state_due = True
         self._state_sent = self._clock()
 
-    def _take_shapes(self, generation: int, shapes: Shapes | BaseException) -> None:
-        if isinstance(shapes, BaseException):
-            shapes = Shapes((), (), (f"the shapes cannot be shown: {shapes}",))
-        if generation == self._generation:
-            self._shapes = shapes
-            self._waits_for_shapes = False
-            for message in shapes.messages(generation):
-                self._seats.send(message)
+    @property
+    def _awaits_shapes(self) -> bool:
+        """Whether the robot's shapes are still being read, and nobody has asked for anything meanwhile."""
+        return self._waits_for_shapes and self._exhibit.shapes is None
 
     # Tabs
 
@@ -119,18 +101,16 @@ class Show:
 
     def is_lively(self) -> bool:
         """Return whether there is a tab, and anything to tell it without being asked."""
-        waits = self._waits_for_shapes or self._loader.loading is not None or self.session.contacts.waits
+        waits = self._awaits_shapes or self._loader.loading is not None or self.session.contacts.waits
         waits = waits or self._frame_due or self._state_due
         return self.is_watched() and (waits or not self.session.sleeps)
 
     def join(self, tab: Tab) -> None:
         """Add a tab and send it everything."""
-        for message in (self._hello, self._robot, self.state()):
+        for message in (self._hello, self._exhibit.robot, self.state()):
             tab.send(json.dumps(message))
-        for shape in self._shapes.messages(self._generation) if self._shapes else ():
-            tab.send(shape)
-        for addition in self._additions.messages:
-            tab.send(addition)
+        for part in self._exhibit.messages():
+            tab.send(part)
         self._seats.add(tab, self._frame)
 
     def leave(self, tab: Tab) -> None:
@@ -145,7 +125,7 @@ class Show:
             if message["type"] == "drawn":
                 checked("drawn", message, {"step": whole_number})
                 self._seats.drawn(tab, lambda: self._frame, lambda: json.dumps(self.state()))
-                self._readers.catch_up(tab, self.session, self._generation)
+                self._readers.catch_up(tab, self.session, self._exhibit.generation)
             elif self._lectern.receive(tab, message, self.session):
                 self._state_due = True
             else:
@@ -161,7 +141,7 @@ class Show:
         The session waits while a robot that somebody watches has no shapes yet, so that reading them has the
         processors to itself; any request ends that wait.
         """
-        if not (self._waits_for_shapes and self._seats) and self.session.tick():
+        if not (self._awaits_shapes and self._seats) and self.session.tick():
             self._pace.note_step()
             self._frame_due = self._frame_due or not self.session.rests
             self._state_due = self._state_due or not self.session.running  # it has paused
@@ -175,7 +155,7 @@ class Show:
 
     def _send_frame(self) -> None:
         self._frame_due = False
-        self._frame = self._maker.frame(self.session)
+        self._frame = self._exhibit.maker.frame(self.session)
         if self.session.steps != self._recorded_step:  # moving a ball between two steps adds no frame to the recording
             self._recorded_step = self.session.steps
             self.recording.add(self._frame, self._clock())
@@ -186,30 +166,32 @@ class Show:
         self._state_sent = self._clock()
         if self._seats:
             self._seats.offer_state(json.dumps(self.state()))
-        self._readers.send(self.session, self._generation)
+        self._readers.send(self.session, self._exhibit.generation)
 
     def look_at_files(self) -> bool:
         """Look at the watched files while somebody watches; return whether there is anything new to send."""
-        if self._watch is not None and self.is_watched():
-            self._watch.look(self._take_reloaded)
+        if self._watched is not None and self.is_watched():
+            self._watched.look(self._take_reloaded)
         return self._frame_due or self._state_due
 
     def _take_reloaded(self, robot: Robot | None) -> None:
         self._state_due = True
-        if robot is None:
+        if robot is None or self._watched is None:
             return
-        is_shown = self.session.robot.name == self._opened
-        self._loader.menu.renew(robot)
-        self._opened = robot.name
+        try:
+            session = self._watched.renew(self.session, robot)
+        except PinikError as error:
+            self._seats.send(_notice(str(error)))
+            session = None
         self._hello["robots"] = [*self._loader.menu.own_names, *catalog()]
         self._seats.send(json.dumps(self._hello))
-        if is_shown:
-            try:
-                self._change_session(reloaded(self.session, robot.with_root(self.session.robot.root)), keeps_view=True)
-                for note in self.session.notes:
-                    self._seats.send(_notice(note))
-            except PinikError as error:
-                self._seats.send(_notice(str(error)))
+        if session is not None:
+            self._change_session(session, keeps_view=True)
+            self._say(session.notes)
+
+    def _say(self, notes: list[str]) -> None:
+        for note in notes:
+            self._seats.send(_notice(note))
 
     # Requests
 
@@ -225,18 +207,6 @@ class Show:
             case "robot":
                 fields = checked("robot", message, {"name": text, "root": text})
                 self._load(fields["name"], fields["root"], {})
-            case "find_answers":
-                checked("find_answers", message, {})
-                self._answers.find(self.session, self._generation)
-            case "find_self_motion":
-                fields = checked("find_self_motion", message, {"instance": whole_number})
-                self._answers.follow(self.session, self._generation, fields["instance"])
-            case "take_answer":
-                fields = checked("take_answer", message, {"index": whole_number, "instance": whole_number})
-                self._change(lambda session: self._answers.choose(session, **fields))
-            case "move_along":
-                fields = checked("move_along", message, {"index": whole_number})
-                self._change(lambda session: self._answers.move_along(session, **fields))
             case "setup":
                 self._set_up(read_setup(checked("setup", message, {"setup": any_text})["setup"]))
             case "lesson" | "comparison":
@@ -244,6 +214,9 @@ class Show:
                 self._change(Session.reset)
                 self._set_up(setup)
                 self.session.motion.start_at(phase)
+            case kind if kind in self._answers.KINDS:
+                self._state_due = True
+                self._change(lambda session: self._answers.receive(message, session, self._exhibit.generation))
             case kind:
                 before = self._leads()
                 self._change(lambda session: apply(session, message))
@@ -258,24 +231,18 @@ class Show:
             act(self.session)
         finally:
             self._frame_due = True
-            self._look_for_contacts()
-            self._additions.ask(self.session)
+            self._supply()
             if self._cast() != before:
                 self._start_anew()
 
-    def _look_for_contacts(self) -> None:
-        """Load the collision shapes once they are needed; to find out which pairs count can take seconds."""
-        contacts = self.session.contacts
-        if contacts.waits and contacts is not self._loading_contacts:
-            self._loading_contacts = contacts
+    def _supply(self) -> None:
+        """Load what the session needs now."""
+        self._exhibit.supply(self.session, self._take_contacts)
 
-            def take(shapes: RobotShapes | BaseException) -> None:
-                contacts.take(shapes)
-                self._state_due = self._frame_due = True
-                if contacts.why_not and contacts is self.session.contacts:
-                    self._seats.send(_notice(contacts.why_not))
-
-            self._later(contacts.load, take)
+    def _take_contacts(self, why_not: str) -> None:
+        self._state_due = self._frame_due = True
+        if why_not:
+            self._seats.send(_notice(why_not))
 
     def _cast(self) -> tuple[int, list[str]]:
         """Return what the layout of a frame depends on: the number of instances and the balls."""
@@ -311,8 +278,7 @@ class Show:
             finally:
                 self._change_session(session)
             if "methods" not in setup:
-                for note in session.notes:
-                    self._seats.send(_notice(note))
+                self._say(session.notes)
         except PinikError as error:
             self._seats.send(_notice(str(error)))
 
@@ -322,17 +288,17 @@ class Show:
         """Return the `state` message."""
         return {
             **session_state(self.session),
-            "generation": self._generation,
+            "generation": self._exhibit.generation,
             "steps_per_second": self._pace.value if self.session.running else None,
             "loading": self._loader.loading,
-            "watched": None if self._watch is None else {"file": self._watch.file, "fault": self._watch.fault},
+            "watched": None if self._watched is None else self._watched.state,
             "setup": write_setup(self.session),
         }
 
     def animation(self) -> bytes:
         """Return the last seconds as one HTML file (UTF-8) that plays without a server."""
-        shapes = self._shapes or Shapes((), (), ())
-        return animation_page(self._hello, self._robot, shapes, self.state(), self.recording)
+        shapes = self._exhibit.shapes or Shapes((), (), ())
+        return animation_page(self._hello, self._exhibit.robot, shapes, self.state(), self.recording)
 
 
 def _notice(words: str) -> str:
