@@ -60,13 +60,8 @@ def _application() -> typer.Typer:
         add_completion=False,
         context_settings={"help_option_names": ["--help", "-h"]},
     )
-    epilogs = dict.fromkeys(("solve", "solve-all", "track", "reach"), solvers_help()) | {"compare": compare.EPILOG}
-        "solve": solvers_help(),
-        "solve-all": solvers_help(),
-        "track": solvers_help(),
-        "reach": solvers_help(),
-        "compare": compare.EPILOG,
-    }
+    methods = dict.fromkeys(("solve", "solve-all", "track", "reach"), solvers_help())
+    epilogs = methods | {"compare": compare.EPILOG}
     for name, command in _COMMANDS.items():
         app.command(name, help=_flowing(command.__doc__), epilog=epilogs.get(name))(command)
     app.callback(invoke_without_command=True, help=_flowing(_pinik.__doc__))(_pinik)
