@@ -17,7 +17,7 @@ def ring(two_link):
 
 @pytest.fixture(scope="module")
 def posed(panda):
-    return pinik.reach(panda, "panda_hand_tcp", cell=0.2, samples=40_000, directions=12, rolls=4)
+    return pinik.reach(panda, "panda_hand_tcp", cell=0.1, samples=60_000, directions=24, rolls=8)
 
 
 def test_at_a_position(ring):
@@ -74,10 +74,10 @@ def test_workspaces_and_their_volumes_are_nested(posed):
     shares = [0.05, 0.2, 0.5, 0.9]
     volumes = [posed.volume("any"), *map(posed.volume, shares), posed.volume("dexterous")]
     assert volumes == sorted(volumes, reverse=True)
-    assert volumes[0] == pytest.approx(0.2**3 * (posed.share > 0).sum())
+    assert volumes[0] == pytest.approx(0.1**3 * (posed.share > 0).sum())
     assert np.isnan(posed.bounds("dexterous")).all()
     low, high = posed.bounds()
-    assert ((high - low) / 0.2 == pytest.approx(np.rint((high - low) / 0.2))) is True
+    assert ((high - low) / 0.1 == pytest.approx(np.rint((high - low) / 0.1))) is True
 
 
 @pytest.mark.parametrize("workspace", ["all", 0.0, 1.5, "Any"])
@@ -102,7 +102,7 @@ def test_down_needs_directions(ring):
         ({"box": [(0, 0, 0), (0, 1, 1)]}, "box"),
         ({"axis": "w"}, "axis"),
         ({"branches": True}, "branches"),
-        ({"resume": True}, "resume"),
+        ({"resume": True}, "output"),
         ({"output": "map.txt"}, "npz"),
         ({"colour": "red"}, "colour"),
     ],

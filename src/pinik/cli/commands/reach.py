@@ -13,6 +13,7 @@ from ...errors import UnknownNameError
 from ...problem.targets import Target
 from ...robot import Robot
 from ...solvers.base import Solver
+from ...workspace.drawing import QUANTITIES
 from ...workspace.files import check_suffix
 from ...workspace.front import MAX_ITERATIONS, RESTARTS, WAYS
 from ...workspace.front import reach as reach_all
@@ -107,6 +108,9 @@ def reach(
     """
     units = Units(degrees)
     _check(frame, by, targets, bases, map_file, (to_file, slices, page, picture))
+    shown = asked.workspace_of(workspace)
+    if quantity not in QUANTITIES:
+        raise UnknownNameError("quantity", quantity, QUANTITIES)
     solver = solver_with(method, param)
     machine = load_robot(robot, root=root, package_dirs=package_dir, xacro_args=xacro_arg, allow_outside=allow_outside)
     common: dict[str, Any] = {
@@ -149,7 +153,7 @@ def reach(
             "scheduler": scheduler,
         }
         files = {"output": to_file, "resume": resume}
-        with failures_in_words(solver, method), named_by_option(options):
+        with failures_in_words(solver, method), named_by_option(options | files):
             if by == "both":
                 drawn = _mapped(machine, frame, solver, "sampling", options | {"branches": False})
                 found = _mapped(machine, frame, solver, "solving", options | files | {"samples": None})
@@ -165,7 +169,6 @@ def reach(
             emit_bases(chosen, units)
         return ExitStatus.ANSWERED if len(chosen) else ExitStatus.MISSED
     seconds = time.perf_counter() - began
-    shown = asked.workspace_of(workspace)
     if picture is not None:
         found.draw(quantity=quantity, workspace=shown).save(picture)
     if slices is not None:

@@ -7,7 +7,8 @@ from typing import Annotated, Any
 
 import typer
 
-from ..terminal.exits import CommandError
+from ...errors import UnknownNameError
+from ...workspace.voxel_map import WORKSPACES
 
 __all__ = [
     "Approach", "Bases", "Box", "Branches", "By", "Cell", "DirectionCount", "MapFile", "Output", "PageFile",
@@ -97,6 +98,6 @@ def workspace_of(text: str) -> str | float:
     try:
         return float(text)
     except ValueError:
-        if text[:1].isdigit():
-            raise CommandError(f"--workspace must be a name or a number; got {text!r}") from None
+        if text not in WORKSPACES:
+            raise UnknownNameError("workspace", text, WORKSPACES) from None
         return text
