@@ -141,7 +141,7 @@ def reach(
     runner = runner_of(workers, scheduler)
     if output is None:
         if resume:
-            raise InputError("there is nothing to resume without output=")
+            raise InputError("needs output=, the file of the earlier call", argument="resume")
         return map_of(survey, robot, run_survey(survey, runner, on_progress))
     path = Path(output)
     check_suffix(path)

@@ -83,17 +83,18 @@ def reach_targets(
         InputError: There is no target, or there are several frames in one.
     """
     options |= {"locked": tuple(locked), "limits": limits}
-    first = solve_many(robot, targets, places, q0=q0, seed=seed, **options)
+    start = Origin.of(robot, q0, searches=False).q
+    first = solve_many(robot, targets, places, q0=start, seed=seed, **options)
     if first.prepared is None or len(first.prepared.targets) != 1:
         raise InputError("there must be at least one target, and each must be for one frame", argument="targets")
     (pattern,) = first.prepared.targets
-    sampler = Sampler(robot, pattern, Origin.of(robot, q0).q, locked=locked, limits=limits, seed=seed)
+    sampler = Sampler(robot, pattern, start, locked=locked, limits=limits, seed=seed)
     rows = 6 if pattern.asks_orientation else 3
     samples = sampler.configurations(0, _SAMPLES)
     best = float(manipulabilities(sampler, samples, rows).max())
     kept = _measured(sampler, first, rows, best)
-    for k, start in enumerate(samples[: _STARTS - 1], start=1):
-        other = _measured(sampler, solve_many(robot, targets, places, q0=start, seed=seed + k, **options), rows, best)
+    for k, own in enumerate(samples[: _STARTS - 1], start=1):
+        other = _measured(sampler, solve_many(robot, targets, places, q0=own, seed=seed + k, **options), rows, best)
         wins = other["reached"] & (~kept["reached"] | (other["score"] > kept["score"]))
         for name, values in kept.items():
             values[wins] = other[name][wins]

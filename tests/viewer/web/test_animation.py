@@ -17,7 +17,7 @@ from page_fixtures import new_context
 from pinik.viewer.protocol.recording import Recording
 from pinik.viewer.protocol.robot_message import robot_message
 from pinik.viewer.simulation.session import Session
-from pinik.viewer.web import animation
+from pinik.viewer.web import saved_page
 from pinik.viewer.web.animation import animation_page
 from pinik.viewer.web.scene import Shapes, make_shapes
 from pinik.viewer.web.show import Show
@@ -172,7 +172,7 @@ def test_nothing_is_left_to_be_fetched(two_link, page):
 def test_meshcats_script_cannot_end_its_element(two_link, page, tmp_path, monkeypatch):
     script = tmp_path / "main.min.js"
     script.write_text('const a = "</SCRIPT><p>", b = "<!--<script>", c = a < b, d = "</div>";', "utf-8")
-    monkeypatch.setattr(animation, "meshcat_script", lambda: script)
+    monkeypatch.setattr(saved_page, "meshcat_script", lambda: script)
     hello, robot, state = messages(two_link)
     html = animation_page(hello, robot, Shapes((), (), ()), state, Recording(), page).decode()
     (text,) = [each[2] for each in Scripts(html).found if each[0] == "script" and not each[1]]

@@ -1,4 +1,4 @@
-"""The options of `pinik solve`, `pinik solve-all` and `pinik track`, in the panels of their help."""
+"""The options of `pinik solve`, `solve-all`, `track` and `reach`, in the panels of their help."""
 
 from __future__ import annotations
 
