@@ -12,7 +12,7 @@ ROOMS := solvers problem
 # A sourced ROS workspace would put another Pinocchio, built for another Python, before ours.
 unexport PYTHONPATH
 
-.PHONY: help run test lint coverage mutants versions sanitize bench notebooks clean
+.PHONY: help run test lint coverage mutants versions sanitize bench notebooks docs clean
 
 help:
 	@echo "make run       install what is missing into $(VENV), run a tour and open the live view"
@@ -24,6 +24,7 @@ help:
 	@echo "make sanitize  run the engine's tests under AddressSanitizer and UndefinedBehaviorSanitizer"
 	@echo "make bench     measure how fast the solvers are"
 	@echo "make notebooks run the notebooks and save them with their pictures"
+	@echo "make docs      build the documentation as a site in build/site"
 	@echo "make clean     remove $(VENV) and everything else that was built here"
 	@echo
 	@echo "make PYTHON=/path/to/python3 … uses that Python for $(VENV)."
@@ -72,6 +73,12 @@ bench: $(VENV)/installed-dev
 
 notebooks: $(VENV)/installed-dev
 	@$(python) tools/run_notebooks.py
+
+docs: export NO_MKDOCS_2_WARNING = 1
+docs: $(VENV)/installed-dev
+	@$(python) tools/write_reference.py
+	@$(python) -m mkdocs build --quiet
+	@echo "The site is in build/site; '$(python) -m mkdocs serve' shows it while you write"
 
 clean:
 	@rm -rf $(VENV) build dist .mypy_cache .pytest_cache .ruff_cache .hypothesis .benchmarks

@@ -10,9 +10,13 @@ import types
 from dataclasses import dataclass
 from pathlib import Path
 
+import numpy as np
 import pytest
+from PIL import Image
 
 import pinik
+from draw_gallery import FOLDER as GALLERY
+from draw_gallery import PAGE as GALLERY_PAGE
 
 ROOT = Path(__file__).parents[1]
 PAGES = [ROOT / "README.md", ROOT / "CONTRIBUTING.md", ROOT / "CHANGELOG.md", *sorted((ROOT / "docs").rglob("*.md"))]
@@ -77,6 +81,18 @@ def test_the_python_of_a_page_runs_from_top_to_bottom(page, monkeypatch, tmp_pat
     finally:
         pinik.SOLVERS.clear()
         pinik.SOLVERS.update(solvers)
+    if page == GALLERY_PAGE:
+        assert_drawn_as_committed(tmp_path)
+
+
+def assert_drawn_as_committed(folder: Path) -> None:
+    """The pictures that the gallery's lines drew are those in the repository, up to a palette of 256 colours."""
+    assert {path.name for path in folder.glob("*.png")} == {path.name for path in GALLERY.iterdir()}
+    for path in GALLERY.iterdir():
+        with Image.open(path) as committed, Image.open(folder / path.name) as drawn:
+            assert committed.size == drawn.size
+            one, other = (np.asarray(picture.convert("RGB"), dtype=float) for picture in (committed, drawn))
+        assert np.abs(one - other).mean() < 2.0, f"python tools/draw_gallery.py draws {path.name} anew"
 
 
 @pytest.mark.parametrize("command", COMMANDS, ids=str)
@@ -97,16 +113,16 @@ def test_a_command_answers_as_its_page_says(command):
         assert re.fullmatch(as_pattern(command.output) + r"\s*", done.stdout, re.DOTALL), done.stdout
 
 
-def test_the_readme_shows_every_command():
-    shown = {shlex.split(command.line)[1] for command in COMMANDS if command.page.name == "README.md"}
+def test_a_page_shows_every_command_that_prints_an_answer():
+    shown = {shlex.split(command.line)[1] for command in COMMANDS if command.page.name == "start.md"}
     helped = subprocess.run([sys.executable, "-m", "pinik", "--help"], capture_output=True, text=True, check=True)
     assert {"solve", "fk", "jacobian", "info", "check", "robots"} <= shown
     assert [name for name in shown if not re.search(rf"\b{name}\b", helped.stdout)] == []
 
 
-def test_the_readme_names_every_solver_its_class_and_only_parameters_that_it_has():
+def test_the_methods_page_names_every_solver_its_class_and_only_parameters_that_it_has():
     rows = re.findall(
-        r"^\| `(\w+)` \| `(\w+)` \|.*\| ([^|]+) \|$", (ROOT / "README.md").read_text("utf-8"), re.MULTILINE
+        r"^\| `(\w+)` \| `(\w+)` \|.*\| ([^|]+) \|$", (ROOT / "docs/methods.md").read_text("utf-8"), re.MULTILINE
     )
     assert {name for name, _, _ in rows} == set(pinik.SOLVERS)
     for name, class_name, parameters in rows:

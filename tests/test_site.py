@@ -1,0 +1,210 @@
+"""The documentation as a site: it builds strictly, fetches nothing from elsewhere, can be searched, and is whole."""
+
+from __future__ import annotations
+
+import http.server
+import json
+import os
+import re
+import subprocess
+import sys
+import threading
+from collections.abc import Iterator
+from functools import partial
+from html.parser import HTMLParser
+from pathlib import Path
+
+import nbformat
+import pytest
+
+import pinik
+import write_reference
+from desk import CHROMIUM, Faults, need_browser
+from page_fixtures import FLAGS
+from pages.api_names import faults_of_public_names
+from pages.formulas import with_formulas
+from pinik.description.advice import ADVICE
+
+ROOT = Path(__file__).parents[1]
+NOTEBOOKS = sorted((ROOT / "notebooks").glob("*.ipynb"))
+
+
+@pytest.fixture(scope="module")
+def site(tmp_path_factory) -> Path:
+    """The site, built as `make docs` builds it."""
+    folder = tmp_path_factory.mktemp("site")
+    built = subprocess.run(
+        [sys.executable, "-m", "mkdocs", "build", "--quiet", "--site-dir", str(folder)],
+        cwd=ROOT,
+        env=os.environ | {"NO_MKDOCS_2_WARNING": "1"},
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert built.returncode == 0, built.stderr
+    assert "WARNING" not in built.stderr
+    return folder
+
+
+class Fetched(HTMLParser):
+    """The addresses that a browser fetches to show a page, and not those that a reader may follow."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.addresses: list[str] = []
+
+    def handle_starttag(self, tag: str, attributes: list[tuple[str, str | None]]) -> None:
+        given = dict(attributes)
+        if tag != "a" and (tag != "link" or given.get("rel") not in ("canonical", "next", "prev")):
+            self.addresses += [given[name] for name in ("src", "href", "data", "poster") if given.get(name)]
+
+
+@pytest.mark.timeout(300)
+def test_no_page_fetches_anything_from_elsewhere_and_all_of_it_is_there(site):
+    pages = sorted(site.rglob("*.html"))
+    assert len(pages) > 45
+    for page in pages:
+        reader = Fetched()
+        reader.feed(page.read_text("utf-8"))
+        assert reader.addresses
+        for address in reader.addresses:
+            if address.startswith("data:") or page.name == "404.html":
+                continue
+            assert not re.match(r"\w+:|//", address), f"{page.name} fetches {address}"
+            assert (page.parent / address.partition("#")[0].partition("?")[0]).exists(), f"{page.name}: {address}"
+
+
+def test_no_style_fetches_a_font_from_elsewhere(site):
+    for style in site.rglob("*.css"):
+        assert not re.search(r"url\(\s*['\"]?(?:https?:)?//", style.read_text("utf-8")), style.name
+
+
+@pytest.mark.parametrize(
+    ("words", "page"),
+    [
+        ("did you mean", "errors.html"),
+        ("elbow up", "howto/answers.html"),
+        ("quat_wxyz", "conventions.html"),
+        ("choose_weights", "api/solve.html"),
+        ("--write-srdf", "command-line.html"),
+    ],
+)
+def test_the_search_index_leads_to_the_page(site, words, page):
+    entries = json.loads((site / "search" / "search_index.json").read_text("utf-8"))["docs"]
+    texts = {entry["location"]: f"{entry['title']} {entry['text']}".lower() for entry in entries}
+    assert page in {location.partition("#")[0] for location, text in texts.items() if words in text}
+
+
+def test_every_public_name_has_its_place_in_the_api(site):
+    api = " ".join(path.read_text("utf-8") for path in (site / "api").glob("*.html"))
+    for name in pinik.__all__:
+        assert re.search(rf'id="pinik\.{name}"', api), name
+
+
+def test_a_public_name_that_is_missing_or_undocumented_is_a_fault(tmp_path):
+    package = tmp_path / "src" / "pinik"
+    package.mkdir(parents=True)
+    (package / "__init__.py").write_text(
+        '"""A package."""\n__all__ = ["Good", "Bare", "absent"]\n\n'
+        'class Good:\n    """Documented."""\n\n    def said(self):\n        """Too."""\n\n    def bare(self): ...\n\n'
+        'class Bare:\n    def said(self):\n        """Documented."""\n\n'
+        'def absent(x):\n    """Is on no page.\n\n    Args:\n        y: No such parameter.\n    """\n'
+    )
+    (tmp_path / "docs" / "api").mkdir(parents=True)
+    (tmp_path / "docs" / "api" / "all.md").write_text("::: pinik.Good\n\n::: pinik.Bare\n\n::: pinik.other\n")
+    assert set(faults_of_public_names(tmp_path)) == {
+        "Good.bare has no docstring",
+        "Bare has no docstring",
+        "absent is on 0 pages of docs/api",
+        "absent documents a parameter y that it does not have",
+        "docs/api shows other, which is not public",
+    }
+
+
+def test_every_notebook_is_a_page_with_its_pictures(site):
+    for path in NOTEBOOKS:
+        page = (site / "notebooks" / f"{path.stem}.html").read_text("utf-8")
+        cells = nbformat.read(path, as_version=4).cells
+        shown = sum("image/png" in output.get("data", {}) for cell in cells for output in cell.get("outputs", ()))
+        assert len(re.findall(rf'<img[^>]+src="{path.stem}-\d+\.png"', page)) == shown > 0
+
+
+def test_formulas_are_mathml_and_no_latex_is_left(site):
+    for page in [site / "methods.html", *(site / "notebooks").glob("0*.html")]:
+        text = page.read_text("utf-8")
+        assert "arithmatex" not in text
+        assert not re.search(r"\\(?:frac|lambda|Delta|top)\b", re.sub(r"<pre>.*?</pre>|<code>.*?</code>", "", text, flags=re.DOTALL)), page
+    assert "<math" in (site / "methods.html").read_text("utf-8")
+    assert with_formulas('<span class="arithmatex">\\(a &lt; b\\)</span>').count("<mi>") == 2
+
+
+@pytest.mark.parametrize("name", write_reference.PAGES)
+def test_a_page_made_from_the_code_is_todays(name):
+    committed = (write_reference.DOCS / name).read_text("utf-8")
+    assert committed == write_reference.PAGES[name](), "python tools/write_reference.py writes it anew"
+
+
+def test_the_page_of_errors_has_every_class_status_and_code():
+    page = (ROOT / "docs" / "errors.md").read_text("utf-8")
+    headings = set(re.findall(r"^## (\w+)$", page, re.MULTILINE))
+    errors, classes = {pinik.PinikError}, [pinik.PinikError]
+    while classes:
+        subclasses = [one for one in classes.pop().__subclasses__() if one.__module__.startswith("pinik.")]
+        errors.update(subclasses)
+        classes += subclasses
+    source = "\n".join(path.read_text("utf-8") for path in (ROOT / "src" / "pinik").rglob("*.py"))
+    warned = set(re.findall(r"warnings\.warn\((?:[^()]|\([^()]*\))*?, (\w+Warning)", source))
+    assert {error.__name__ for error in errors} | warned | {"InputWarning", "UrdfWarning"} <= headings
+    for code in ADVICE:
+        assert f"| `{code}` |" in page
+    for status in [*pinik.Status, *pinik.TrackerStatus]:
+        assert f"| `{status.name}` | {status} |" in page
+
+
+def test_the_page_of_errors_has_the_messages_that_a_user_meets():
+    page = (ROOT / "docs" / "errors.md").read_text("utf-8")
+    with pytest.raises(pinik.InputError) as wrong:
+        pinik.load("arm").solve("tip", position=[1, 2])
+    with pytest.raises(pinik.UnknownNameError):
+        pinik.load("arm").solve("tpi", position=[1, 2, 3])
+    assert any(matches(line, str(wrong.value)) for line in re.findall(r"^    \* `` (.*) ``$", page, re.MULTILINE))
+    assert "no frame '…'; did you mean '…'?" in page
+
+
+def matches(template: str, message: str) -> bool:
+    return re.fullmatch(".*".join(map(re.escape, template.split("…"))), message, re.DOTALL) is not None and len(template) > 12
+
+
+@pytest.fixture(scope="module")
+def address(site) -> Iterator[str]:
+    class Silent(http.server.SimpleHTTPRequestHandler):
+        def log_message(self, *_: object) -> None:
+            pass
+
+    server = http.server.ThreadingHTTPServer(("127.0.0.1", 0), partial(Silent, directory=str(site)))
+    thread = threading.Thread(target=server.serve_forever)
+    thread.start()
+    yield f"127.0.0.1:{server.server_port}"
+    server.shutdown()
+    server.server_close()
+    thread.join()
+
+
+@pytest.mark.parametrize("scheme", ["light", "dark"])
+def test_a_reader_searches_and_follows_without_another_host(address, scheme):
+    with need_browser().sync_playwright() as playwright:
+        browser = playwright.chromium.launch(executable_path=CHROMIUM, args=FLAGS)
+        context = browser.new_context(color_scheme=scheme, viewport={"width": 1280, "height": 800})
+        faults = Faults(context)
+        faults.allow(address)
+        page = context.new_page()
+        page.goto(f"http://{address}/index.html")
+        assert page.locator("body").get_attribute("data-md-color-scheme") == {"light": "default", "dark": "slate"}[scheme]
+        page.keyboard.press("/")
+        page.keyboard.type("did you mean")
+        page.locator(".md-search-result__link[href*='/errors.html']").first.click()
+        page.wait_for_url("**/errors.html*")
+        page.goto(f"http://{address}/methods.html")
+        assert page.locator("math").count() > 5
+        browser.close()
+    assert faults.left == []

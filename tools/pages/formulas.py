@@ -1,0 +1,20 @@
+"""LaTeX in pages becomes MathML while the site is built, so that browsers need no script for it."""
+
+from __future__ import annotations
+
+import html as entities
+import re
+
+from latex2mathml.converter import convert
+
+FORMULA = re.compile(r'<(?P<tag>span|div) class="arithmatex">\\(?P<open>[(\[])(?P<tex>.*?)\\[)\]]</(?P=tag)>', re.DOTALL)
+
+
+def with_formulas(html: str) -> str:
+    return FORMULA.sub(_formula, html)
+
+
+def _formula(match: re.Match[str]) -> str:
+    wide = match["open"] == "["
+    maths = convert(entities.unescape(match["tex"]).strip(), display="block" if wide else "inline")
+    return f'<div class="formula">{maths}</div>' if wide else maths

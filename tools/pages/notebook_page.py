@@ -1,0 +1,39 @@
+"""A notebook as a page of the site: its texts, code and outputs as Markdown, and its pictures as files."""
+
+from __future__ import annotations
+
+import base64
+import re
+from pathlib import Path
+
+import nbformat
+
+
+def title_of(path: Path) -> str:
+    first = nbformat.read(path, as_version=4).cells[0].source
+    return first.splitlines()[0].removeprefix("# ")
+
+
+def notebook_page(path: Path) -> tuple[str, dict[str, bytes]]:
+    """The Markdown of a notebook, and its pictures by their file names."""
+    parts: list[str] = []
+    pictures: dict[str, bytes] = {}
+    for cell in nbformat.read(path, as_version=4).cells:
+        if cell.cell_type == "markdown":
+            parts.append(cell.source)
+            continue
+        parts.append(_fenced(cell.source, "python"))
+        for output in cell.outputs:
+            data = output.get("data", {})
+            if "image/png" in data:
+                name = f"{path.stem}-{len(pictures) + 1}.png"
+                pictures[name] = base64.b64decode(data["image/png"])
+                parts.append(f"![]({name}){{ .output }}")
+            elif text := output.get("text") or data.get("text/plain"):
+                parts.append(_fenced(text.rstrip(), "text title=''"))
+    text = re.sub(r"^\$\$(.+?)\$\$", r"\n$$\1$$\n", "\n\n".join(parts), flags=re.MULTILINE | re.DOTALL)
+    return text + "\n", pictures
+
+
+def _fenced(text: str, language: str) -> str:
+    return f"```{language}\n{text}\n```"
