@@ -186,6 +186,13 @@ def test_flaws_carry_their_lines():
     assert only(text).line == 7
 
 
+@pytest.mark.parametrize(
+    "slip", ['<origin xyz="0 0 1" xzyz="0 0 2"/>', '<origin xyz="0 0 1"/><orgin xyz="0 0 2"/>'], ids=["name", "tag"]
+)
+def test_nothing_is_assumed_in_place_of_a_slip_that_stands_beside_the_right_word(slip):
+    assert only(pair(slip)).cause.endswith("), and it is given too")
+
+
 def test_a_long_tag_is_quoted_by_its_beginning_and_its_end():
     """In 60 characters, of which 15 are its end."""
     tag = "t" * 100 + "e" * 100

@@ -40,6 +40,12 @@ def test_the_name_of_a_parent_is_its_link():
         pinik.load(text)
 
 
+def test_a_missing_attribute_is_explained_by_the_slip_in_its_place():
+    text = pair().replace('<parent link="a"/>', '<parent order="1" linc="a"/>')
+    with pytest.raises(pinik.RobotLoadError, match="<parent> has no link; linc= is unknown to URDF, write link="):
+        pinik.load(text)
+
+
 def test_xyz_and_rpy_of_a_joint_are_those_of_its_origin():
     text = pair().replace('name="j"', 'name="j" xyz="0 0 1" rpy="0 0 0"')
     mends = [flaw.mend for flaw in lint(text.encode()) if flaw.code == "misplaced-attribute"]
