@@ -42,9 +42,10 @@ class Scene:
 
 
 def explain(page: Page) -> None:
-    """Explain the second robot's next iteration, after one that has not reached the ball yet."""
-    page.get_by_test_id("target-z").fill("0.35")
+    """Explain the first robot's next iteration, after one that has not reached the ball yet."""
+    page.get_by_test_id("target-z").fill("0.7")
     page.get_by_test_id("target-z").press("Enter")
+    page.evaluate("document.activeElement.blur()")
     page.wait_for_timeout(600)
     page.keyboard.press(".")
 
@@ -72,7 +73,8 @@ SCENES = {
     ),
     "answers": Scene(
         "live/answers.png",
-        'robot=ur5&root=fixed&view=1&methods=dls&motion=hand&balls=[["tool0","on",[0.35,0.3,0.45],[3.14,0,0]]]&run=on',
+        "robot=kinova&root=fixed&view=1&methods=dls&motion=hand&run=on"
+        '&balls=[["j2s6s200_end_effector","on",[0.4,0.2,0.4],[1.57,0,1.57]]]',
         prepare=other_answers,
     ),
 }
@@ -95,7 +97,7 @@ def take(page: Page, view: LiveView, scene: Scene) -> None:
     picture = Image.open(io.BytesIO(page.screenshot())).convert("RGB")
     out = IMAGES / scene.file
     out.parent.mkdir(exist_ok=True)
-    picture.quantize(255, dither=Image.Dither.NONE).save(out, optimize=True)
+    picture.quantize(255, method=Image.Quantize.MAXCOVERAGE, dither=Image.Dither.NONE).save(out, optimize=True)
     print(f"{out}: {out.stat().st_size // 1000} kB", file=sys.stderr)
 
 
