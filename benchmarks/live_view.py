@@ -1,10 +1,14 @@
 """What the live view promises in seconds and megabytes, measured in a real browser.
 
-    python benchmarks/live_view.py start      from `pinik live` to a drawn robot: Panda first and second time, arm
+    python benchmarks/live_view.py start      from `pinik live` to a drawn robot: Panda first and second time, arm; and
+                                              `import pinocchio` in a process of its own, for scale
+    python benchmarks/live_view.py steps      solver time a step of four arms with four methods along a curve
+    python benchmarks/live_view.py rest       processor time of a server where nothing moves, and that nobody looks at
     python benchmarks/live_view.py drag       from pointer event to the ball's new place at the server, and back
     python benchmarks/live_view.py endure     60 s of four lions with all effectors: memory, queues, pace
 
-It needs the dev extras and Debian's chromium. Timings differ from machine to machine; compare within one run.
+It needs the dev extras and Debian's chromium. Timings differ from machine to machine; compare within one run. Processes
+that are timed may keep the bytecode of modules, as that of an installed package is kept.
 """
 
 from __future__ import annotations
@@ -48,11 +52,30 @@ def live(*arguments: str, **environment: str) -> Iterator[tuple[subprocess.Popen
     """`pinik live` in a process of its own, and the address that it prints."""
     command = [sys.executable, "-m", "pinik", "live", *arguments, "--no-browser", "--port", "0"]
     with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True,
-                          env={**os.environ, **environment}) as process:  # fmt: skip
+                          env=with_bytecode(**environment)) as process:  # fmt: skip
         try:
             yield process, process.stdout.readline().strip()
         finally:
             process.terminate()
+
+
+def with_bytecode(**environment: str) -> dict[str, str]:
+    """The environment of this process, with some variables, in which Python keeps bytecode."""
+    kept = {name: value for name, value in os.environ.items() if name != "PYTHONDONTWRITEBYTECODE"}
+    return {**kept, **environment}
+
+
+def seconds_to_import(module: str) -> float:
+    """How long a Python of its own takes to begin, to import a module and to end."""
+    began = time.perf_counter()
+    subprocess.run([sys.executable, "-c", f"import {module}"], check=True, env=with_bytecode())
+    return time.perf_counter() - began
+
+
+def processor_seconds(pid: int) -> float:
+    """The processor time that a process has used, from /proc."""
+    fields = Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()
+    return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
 
 
 def state_of(url: str) -> dict[str, Any]:
@@ -79,6 +102,8 @@ def measure_start(rounds: int) -> dict[str, float]:
     figures: dict[str, list[float]] = {}
     with browser() as chromium:
         for _ in range(rounds):
+            for module in ("pinocchio", "pinik"):
+                figures.setdefault(f"import {module}", []).append(seconds_to_import(module))
             with tempfile.TemporaryDirectory() as cache:
                 for name, robot in (("panda, first", "panda"), ("panda, then", "panda"), ("arm, first", "arm"),
                                     ("arm, then", "arm")):  # fmt: skip
@@ -86,6 +111,39 @@ def measure_start(rounds: int) -> dict[str, float]:
                     figures.setdefault(name, []).append(drawn_after(page, robot, cache, time.perf_counter()))
                     page.close()
     return {f"{name} [s]": statistics.median(values) for name, values in figures.items()}
+
+
+def measure_steps(seconds: float) -> dict[str, float]:
+    """Mean solver time a step [µs] of four arms along a curve, by method, and the steps that the clock cut off."""
+    with live("arm") as (_, url), browser() as chromium:
+        page = chromium.new_page(viewport=VIEWPORT, bypass_csp=True)
+        page.goto(url)
+        page.wait_for_function("() => window.pinik?.ready", timeout=60_000)
+        page.get_by_test_id("motion").select_option("curve")
+        time.sleep(seconds)
+        instances = state_of(url)["instances"]
+    figures = {f"{one['method']}, solver time a step [µs]": 1e6 * one["statistics"]["mean_time"] for one in instances}
+    return figures | {"steps cut off": sum(one["statistics"]["cut_off"] for one in instances)}
+
+
+def measure_rest(seconds: float) -> dict[str, float]:
+    """The share of one core that a server takes [%] while nothing moves before a tab, and without one."""
+    figures = {}
+    with live("arm") as (process, url), browser() as chromium:
+        page = chromium.new_page(viewport=VIEWPORT, bypass_csp=True)
+        page.goto(url)
+        page.wait_for_function("() => window.pinik?.ready", timeout=60_000)
+        page.get_by_test_id("motion").select_option("hand")
+        for name in ("a tab, nothing moves", "no tab"):
+            time.sleep(15.0)  # until the session rests, or the server has noticed that nobody is there
+            used, began = processor_seconds(process.pid), time.perf_counter()
+            time.sleep(seconds)
+            share = (processor_seconds(process.pid) - used) / (time.perf_counter() - began)
+            figures[f"{name} [% of a core]"] = 100 * share
+            if not page.is_closed():
+                page.get_by_test_id("motion").select_option("curve")
+                page.close()
+    return figures
 
 
 def measure_drag(moves: int) -> dict[str, float]:
@@ -150,14 +208,16 @@ def measure_endurance(seconds: float) -> dict[str, float]:
 def main() -> None:
     """Measure what was asked for and print it."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("what", choices=("start", "drag", "endure"))
+    parser.add_argument("what", choices=("start", "steps", "rest", "drag", "endure"))
     parser.add_argument("--rounds", type=int, default=3, help="of start")
     parser.add_argument("--moves", type=int, default=100, help="of drag")
-    parser.add_argument("--seconds", type=float, default=60.0, help="of endure")
+    parser.add_argument("--seconds", type=float, default=60.0, help="of steps, rest and endure")
     parser.add_argument("--json", action="store_true")
     arguments = parser.parse_args()
     figures = {
         "start": lambda: measure_start(arguments.rounds),
+        "steps": lambda: measure_steps(arguments.seconds),
+        "rest": lambda: measure_rest(arguments.seconds),
         "drag": lambda: measure_drag(arguments.moves),
         "endure": lambda: measure_endurance(arguments.seconds),
     }[arguments.what]()

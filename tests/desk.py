@@ -136,8 +136,13 @@ class Desk:
         return self.state
 
     def address(self) -> str:
-        """Wait until the address bar contains the server's set-up, and return it."""
-        self.wait(lambda: self.page.url.partition("#")[2] == self.state["setup"])
+        """Wait until the address bar contains the server's set-up, and return it without what is the tab's own."""
+
+        def shown() -> str:
+            parts = self.page.url.partition("#")[2].split("&")
+            return "&".join(part for part in parts if part.split("=")[0] not in ("learn", "rings", "present"))
+
+        self.wait(lambda: shown() == self.state["setup"])
         return self.state["setup"]
 
     def settle(self) -> None:

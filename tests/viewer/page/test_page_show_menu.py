@@ -11,7 +11,7 @@ import pytest
 
 from desk import METHODS, PHONE
 from pinik.viewer.simulation.looks import LOOKS
-from pinik.viewer.web import show
+from pinik.viewer.web import exhibit
 from urdf_texts import joint, link, robot
 
 MENU = [name for name in LOOKS if name != "overlay"]
@@ -118,7 +118,7 @@ def test_the_presentation_shows_the_stage_alone_and_is_in_the_link(open_panel):
     desk.expect("start").to_be_hidden()
     desk.page.keyboard.press("Escape")
     desk.expect("start").to_be_visible()
-    assert "present" not in desk.address()
+    desk.wait(lambda: "present" not in desk.page.url)
 
 
 def test_what_belongs_to_the_tab_is_in_its_link(open_panel):
@@ -180,8 +180,8 @@ def test_a_menu_of_many_robots_is_searched_by_typing(open_panel):
 
 def test_captions_say_that_shapes_are_loading(open_panel, monkeypatch):
     there = threading.Event()
-    make = show.shapes_of
-    monkeypatch.setattr(show, "shapes_of", lambda machine: there.wait() and make(machine))
+    make = exhibit.shapes_of
+    monkeypatch.setattr(exhibit, "shapes_of", lambda machine: there.wait() and make(machine))
     try:
         desk = open_panel("arm", ("dls",), until="window.pinik?.drawn === 'skeleton'")
         desk.expect("label-0").to_contain_text("loading its shapes")

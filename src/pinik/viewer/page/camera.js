@@ -12,7 +12,7 @@ export const PRESETS = {
     top: { title: "Top", azimuth: 0, elevation: Math.PI / 2 - 0.01 },
 };
 
-const CROWDED = 1.12; // how much wider robots may become before they are moved apart
+const CROWDED = 1.05; // how much wider robots may become before they are moved apart
 const GLIDE = 480; // [ms]
 const DRAG = 4; // [px] that a pressed pointer moves before it counts as a drag
 const SIDES = 16; // [px] left and right of the robots

@@ -6,6 +6,7 @@ import { THREE } from "pinik/three.js";
 const WORTH = 1.25; // how much nearer two rows must bring the camera, because one row is easier to compare
 const WORTH_TILTING = 2.2; // the same where two rows would tilt a view from the front or the side
 const STEEP = 0.5; // [rad] the least elevation of the camera for two rows
+const GAP = 0.04; // between neighbours, as a fraction of the width that they have ever covered
 const SLENDER = 0.5; // the least width of a column, as a fraction of a robot's height, where there is room for it
 const STEP_BACK = 0.85; // between two rows, as a fraction of what would separate them completely
 const FROM_ABOVE = 0.9; // the sine of the elevation from which rows are separated completely
@@ -27,7 +28,7 @@ function candidate(points, count, columns, view, lens) {
     const shape = (lens.left + lens.right) / (lens.top + lens.bottom);
     const { right, up } = axesOf(view);
     const slender = Math.min(SLENDER, (0.95 * shape) / columns);
-    const column = Math.max(extent(points, right), slender * extent(points, up));
+    const column = Math.max((1 + GAP) * extent(points, right), slender * extent(points, up));
     const offsets = grid(points, count, columns, view, column);
     const everything = offsets.flatMap((offset) => points.map((point) => point.clone().add(offset)));
     return { offsets, view, camera: fit(everything, view, lens), everything, rows: count / columns, column };
