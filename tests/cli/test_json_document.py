@@ -16,6 +16,7 @@ import pinik
 ROOT = Path(__file__).parents[2]
 DOCUMENT = ROOT / "docs" / "json.md"
 JUMP = ROOT / "examples" / "jump.csv"
+CIRCLE = ROOT / "examples" / "circle.csv"
 SLIP = """<robot name="r"><link name="a"/><link name="b"/><joint name="j" type="revolute"><parent link="a"/>
 <child link="b"/><origin xzy="1 2 3"/><limit lower="-90" upper="90" effort="1" velocity="1"/></joint></robot>"""
 PLACEHOLDERS = {
@@ -31,6 +32,7 @@ PLACEHOLDERS = {
     "stiffness": "JOINT",
     "turns": "JOINT",
     "windings": "JOINT",
+    "workspaces": "WORKSPACE",
 }
 TARGETS = [
     {"frame": "tip", "position": [0.2, 0.1, 0.8], "rpy": [0, 0.3, 0], "tool": [0, 0, 0.1], "weight": 2},
@@ -39,6 +41,7 @@ TARGETS = [
 ]
 # The place of tool0 at elbow_joint=2.9, where links of the ur5 touch.
 TOUCH = ("--position", "0.02149671", "0.19145", "0.08721464", "--start", "elbow_joint=2.9")
+BOX = ("--cell", "0.2", "--box", "0.3", "0", "0.3", "0.7", "0.2", "0.5")
 DOWN = ("--axis", "z", "--direction", "0", "0", "-1")
 RUNS = {
     "solve": [
@@ -52,6 +55,11 @@ RUNS = {
     ],
     "track": [
         ("track", "two_link", JUMP, "--frame", "tip", "--start", "joint1=-2.64", "--start", "joint2=1.5", "--json"),
+    ],
+    "reach": [
+        ("reach", "ur5", "--frame", "tool0", "--by", "both", "--branches", "--samples", "1000", *BOX, "--json"),
+        ("reach", "panda", CIRCLE, "--frame", "panda_hand_tcp", "--json"),
+        ("reach", "two_link", JUMP, "--frame", "tip", "--bases", "2", "--samples", "1000", "--json"),
     ],
     "fk": [("fk", "panda", "--root", "free_flyer", "--json")],
     "jacobian": [("jacobian", "panda", "--frame", "panda_hand", "--root", "free_flyer", "--json")],

@@ -94,5 +94,5 @@ def test_without_rolls_or_directions_fewer_are_told_apart():
 
 @pytest.mark.parametrize("numbers", [(-1, 0), (48, -2), (1.5, 0), (10_000, 10_000)])
 def test_impossible_numbers_are_refused(numbers):
-    with pytest.raises(pinik.InputError, match="directions|rolls"):
+    with pytest.raises(pinik.InputError, match=r"directions|rolls"):
         Orientations(*numbers)

@@ -24,14 +24,14 @@ def small_parts(monkeypatch):
     monkeypatch.setattr(surveys, "_POSES_OF_A_PART", 48)
 
 
-class Interrupted(Exception):
+class StoppedError(Exception):
     pass
 
 
 def interrupt_after(parts):
     def tell(tally):
         if tally.finished - tally.resumed >= parts:
-            raise Interrupted
+            raise StoppedError
 
     return tell
 
@@ -43,12 +43,12 @@ def test_an_interrupted_map_resumes_to_the_same_bytes(ur5, options, tmp_path):
     assert [path.name for path in tmp_path.iterdir()] == ["whole.npz"]
     part = tmp_path / "part.npz"
     for _ in range(2):
-        with pytest.raises(Interrupted):
+        with pytest.raises(StoppedError):
             pinik.reach(ur5, FRAME, output=part, resume=True, on_progress=interrupt_after(2), **options)
         assert not part.exists()
     with pytest.raises(pinik.InputError, match="--resume"):
         pinik.reach(ur5, FRAME, output=part, **options)
-    with pytest.raises(pinik.InputError, match="options.seed was 0 and is 1"):
+    with pytest.raises(pinik.InputError, match=r"options\.seed was 0 and is 1"):
         pinik.reach(ur5, FRAME, output=part, resume=True, seed=1, **options)
     told = []
     resumed = pinik.reach(

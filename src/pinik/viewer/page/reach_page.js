@@ -24,6 +24,8 @@ class ReachPage {
         this._robot = robotOf(parts);
         this.stage.scene.add(this._cells.group, this._robot);
         this._cuts = map.shape.map(() => null);
+        this._own = map.shape.map(() => false); // the cuts that somebody has moved
+        this._mirror = [];
         this._points = this._corners();
         this._fill();
         this._bind();
@@ -39,18 +41,16 @@ class ReachPage {
         this.camera.frame(this._points, 1, preset, smoothly);
     }
 
+    /** Lay the ground, and return the outermost points of the robot and the cells. */
     _corners() {
-        const box = new THREE.Box3().setFromObject(this._robot);
-        this._map.cells.forEach((_, row) => {
-            box.expandByPoint(this._cells.center(row).applyMatrix4(this._cells.group.matrix));
-        });
-        const { min, max } = box.expandByScalar(this._map.size / 2);
+        const robot = new THREE.Box3().setFromObject(this._robot);
+        const { matrix } = this._cells.group;
+        const centers = Array.from(this._map.cells, (_, row) => this._cells.center(row).applyMatrix4(matrix));
+        const { min, max } = robot.clone().union(new THREE.Box3().setFromPoints(centers));
         const size = max.distanceTo(min);
         this.stage.ground.lay(min.z, (min.x + max.x) / 2, (min.y + max.y) / 2, size, size / 2);
         this.stage.ground.group.visible = false;
-        return [0, 1, 2, 3, 4, 5, 6, 7].map(
-            (k) => new THREE.Vector3(k & 1 ? max.x : min.x, k & 2 ? max.y : min.y, k & 4 ? max.z : min.z),
-        );
+        return outermost([...centers, ...corners(robot)], this._map.size);
     }
 
     _fill() {
@@ -63,9 +63,9 @@ class ReachPage {
         byId("bar").style.background = `linear-gradient(90deg, ${map.colors.join(", ")})`;
         byId("down-field").hidden = !map.down;
         const { azimuth } = PRESETS[this.camera.preset];
-        const sides = [Math.cos(azimuth), Math.sin(azimuth), 1].map(Math.sign);
+        this._faced = [Math.cos(azimuth), Math.sin(azimuth), 1].map(Math.sign);
         const places = map.shape.map((count, axis) => {
-            const place = Math.floor(count / 2) - sides[axis] * Math.ceil(BEYOND * count);
+            const place = Math.floor(count / 2) - this._faced[axis] * Math.ceil(BEYOND * count);
             return Math.min(Math.max(place, 0), count - 1);
         });
         AXES.forEach((name, axis) => {
@@ -84,7 +84,8 @@ class ReachPage {
             };
             change();
             on.addEventListener("change", () => [change(), this._draw()]);
-            slider.addEventListener("input", () => [(on.checked = true), change(), this._draw()]);
+            slider.addEventListener("input", () => [(on.checked = true), (this._own[axis] = true), change(), this._draw()]);
+            this._mirror[axis] = () => [(slider.value = map.shape[axis] - 1 - Number(slider.value)), change()];
             byId("cuts").append(make("div", { className: "cut" }, make("label", { className: "check" }, on, name), slider, value));
         });
     }
@@ -113,7 +114,11 @@ class ReachPage {
     /** Cut the map open anew once the camera has gone round to another side. */
     _face() {
         const sides = this._sides();
-        if (sides.some((side, axis) => side !== this._faced[axis])) this._draw();
+        const turned = sides.map((side, axis) => side !== this._faced[axis]);
+        if (!turned.some(Boolean)) return;
+        this._faced = sides;
+        turned.forEach((gone, axis) => gone && !this._own[axis] && this._mirror[axis]());
+        this._draw();
     }
 
     _draw() {
@@ -121,7 +126,6 @@ class ReachPage {
         const { values, largest } = map.quantities[byId("quantity").value];
         const [least, down] = [Number(byId("least").value), byId("down").checked];
         const share = map.quantities.share.values;
-        this._faced = this._sides();
         this._cells.draw({
             passes: (row) => share[row] >= least && (!down || map.down[row] > 0),
             cuts: this._cuts,
@@ -150,6 +154,24 @@ class ReachPage {
         }
         byId("readout").replaceChildren(...lines.flatMap(([name, text]) => [make("dt", {}, name), make("dd", {}, text)]));
     }
+}
+
+function corners({ min, max }) {
+    return [0, 1, 2, 3, 4, 5, 6, 7].map(
+        (k) => new THREE.Vector3(k & 1 ? max.x : min.x, k & 2 ? max.y : min.y, k & 4 ? max.z : min.z),
+    );
+}
+
+/** Of many points those that are outermost in some direction, moved out by a margin. */
+function outermost(points, margin) {
+    const parts = [-1, -0.5, 0, 0.5, 1];
+    const ways = parts.flatMap((x) => parts.flatMap((y) => parts.map((z) => new THREE.Vector3(x, y, z))));
+    return ways
+        .filter((way) => way.lengthSq())
+        .map((way) => {
+            const first = points.reduce((best, point) => (point.dot(way) > best.dot(way) ? point : best));
+            return first.clone().addScaledVector(way, margin);
+        });
 }
 
 /** The robot's parts as meshes in the world. */
