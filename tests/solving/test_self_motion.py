@@ -393,7 +393,10 @@ def test_curves_that_cross_at_singular_places_are_one_family_cut_there():
 
 def test_it_starts_at_a_singular_place_too():
     robot, place = planar((1.0, 0.8, 1.0)), [0.8, 0.0, 0.0]
-    motion = pinik.self_motion(robot, "tip", [0.0, 0.0, math.pi], position=place, limits=False)
+    motion, again = (
+        pinik.self_motion(robot, "tip", [0.0, 0.0, math.pi], position=place, limits=False) for _ in range(2)
+    )
+    np.testing.assert_array_equal(again.q, motion.q)
     assert motion.dimension == 1
     assert sorted(arc.length for arc in motion.arcs)[:2] == pytest.approx([math.sqrt(3.0) * math.pi] * 2, abs=1e-5)
     assert motion.contains([0.0, 0.0, math.pi])

@@ -9,11 +9,14 @@ import pinocchio
 import pytest
 
 import pinik
+from by_hand import axis, limit, origin
 from engines import needs_native
 from judge import assert_good, assert_honest, judge, plain_placement
 from pinik import Target, Tolerance
 from pinik.solving import alone as alone_room
 from robots import load_quietly
+from urdf_texts import joint, link
+from urdf_texts import robot as robot_text
 
 ENGINES = ["python", pytest.param("native", marks=needs_native)]
 HAND = "gripper_frame_joint"
@@ -244,3 +247,17 @@ def last_of(states, target: Target) -> pinik.State:
     while state.status is None:
         state = next(states)
     return state
+
+
+@pytest.mark.parametrize("method", ["dls", "pinv", "jt", "ccd"])
+def test_a_run_that_rests_where_a_limit_keeps_it_from_a_wide_tolerance_has_stalled(method):
+    """A hinge that turns to 0.5 rad, and a target at 1.5 rad."""
+    text = robot_text(
+        *map(link, ("base", "arm", "tip")),
+        joint("turn", "base", "arm", axis(0, 0, 1), limit=limit(-0.5, 0.5)),
+        joint("end", "arm", "tip", origin((1, 0, 0)), kind="fixed", limit=""),
+    )
+    target = Target("tip", [math.cos(1.5), math.sin(1.5), 0.0], tolerance=([0.3, 0.3, 0.3], 0.5))
+    *_, last = pinik.iterate(load_quietly(text), target, method, max_iterations=400)
+    assert last.status is pinik.Status.STALLED
+    assert last.q == pytest.approx([0.5], abs=1e-9)
