@@ -97,7 +97,7 @@ def take(page: Page, view: LiveView, scene: Scene) -> None:
     picture = Image.open(io.BytesIO(page.screenshot())).convert("RGB")
     out = IMAGES / scene.file
     out.parent.mkdir(exist_ok=True)
-    picture.quantize(255, method=Image.Quantize.MAXCOVERAGE, dither=Image.Dither.NONE).save(out, optimize=True)
+    picture.save(out, optimize=True)
     print(f"{out}: {out.stat().st_size // 1000} kB", file=sys.stderr)
 
 
