@@ -60,7 +60,7 @@ def check_poses(found: pinik.ReachMap, checks: int, rng: np.random.Generator) ->
     ]
     both = (said & answers.success).sum()
     print(f"{checks} random poses: {said.sum()} by the map, {answers.success.sum()} by all restarts, {both} by both")
-    print(f"  the map misses {1 - both / answers.success.sum():.2%}; plain Pinocchio's largest error {worst:.1e}")
+    print(f"  the map misses {1 - both / answers.success.sum():.2%}; plain Pinocchio's largest error {max(errors):.1e}")
 
 
 def ring() -> None:
