@@ -99,7 +99,7 @@ class SolvedParts:
             counts.branches[row] += sum(self._branches(goals[k]) for k in reached)
 
     def _solve(self, prepared: Prepared, goals: Array) -> Outcomes:
-        return solve_goals(prepared, goals, self.survey.start[None], False, 1)
+        return solve_goals(prepared, goals, self.survey.start[None], True, 1)  # from near each target
 
     def _branches(self, goals: Array) -> int:
         """The number of distinct answers for a pose that is reached; at least the one that reaches it."""

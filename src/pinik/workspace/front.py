@@ -106,7 +106,7 @@ def reach(
             joint axes are as many as the numbers that are asked for.
         tool: The point of the frame that reaches, or its placement in the frame, as for `Target`.
         relative_to: The frame that takes the place of the world.
-        q0: The configuration of all joints that do not move the frame; solves start from it. Neutral when None.
+        q0: The configuration of all joints that do not move the frame; neutral when None. Solves start near each place.
         limits, locked, seed, engine: As for `pinik.solve`.
         restarts, max_iterations: As for `pinik.solve`, but fewer by default: most poses that are not found within these
             cannot be reached.
