@@ -11,7 +11,7 @@ pinocchio_version: str = "4.1.0"
 
 coal_version: str = "3.0.3"
 
-abi: str = "0ac7017ea631f6be"
+abi: str = "00d16a990ebe3c40"
 
 class JointKind(enum.Enum):
     revolute = 0
@@ -229,6 +229,10 @@ class Constants:
     def continuum_parts(self) -> int: ...
     @continuum_parts.setter
     def continuum_parts(self, arg: int, /) -> None: ...
+    @property
+    def continuum_few_parts(self) -> int: ...
+    @continuum_few_parts.setter
+    def continuum_few_parts(self, arg: int, /) -> None: ...
     @property
     def jump_floor(self) -> float: ...
     @jump_floor.setter
@@ -693,6 +697,7 @@ class Searcher:
             int,
             int,
             int,
+            int | None,
             bool,
             float,
         ],
@@ -715,6 +720,7 @@ class Searcher:
                 int,
                 int,
                 int,
+                int | None,
                 bool,
                 float,
             ],

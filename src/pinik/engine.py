@@ -12,7 +12,7 @@ import pinocchio
 
 __all__ = ["ABI", "load"]
 
-ABI = "0ac7017ea631f6be"
+ABI = "00d16a990ebe3c40"
 """The digest of the module's stub, which identifies its signatures; the module contains the same digest
 (src/native/bindings/abi.hpp)."""
 

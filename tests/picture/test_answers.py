@@ -185,7 +185,7 @@ def test_an_answer_alone_is_drawn_with_its_own_robot(bars):
     motion = bars.self_motion("tip", solution, position=[0.6, 0.3, 0.0])
     for answer in (branches, solution, motion, [motion]):
         assert (pinik.draw(answer, **BARE).pixels == pinik.draw(bars, answer, **BARE).pixels).all()
-    with pytest.raises(pinik.InputError, match="^q must be left out"):
+    with pytest.raises(pinik.InputError, match=r"^q must be left out"):
         pinik.draw(branches, solution)
     for nothing in ([0.1, 0.2, 0.3], "bars", [1, motion], np.zeros((900, 3))):
         with pytest.raises(pinik.InputError, match=r"^robot must be one that pinik\.load returned") as caught:

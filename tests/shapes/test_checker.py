@@ -278,5 +278,5 @@ def test_a_solution_and_angles_stand_for_their_configuration():
     for ask in (machine.collisions, machine.clearance):
         with pytest.raises(pinik.UnknownNameError, match="joint 'nose'"):
             ask({"nose": 1.0})
-        with pytest.raises(pinik.InputError, match="^q must be"):
+        with pytest.raises(pinik.InputError, match=r"^q must be"):
             ask(None)

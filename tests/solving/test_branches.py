@@ -23,8 +23,13 @@ def some_branches() -> pinik.Branches:
     return pinik.load("two_link").solve_all("tip", [0.5, 0.3, 0.0])
 
 
+def made(is_complete: bool = False, **changes: object) -> pinik.Branches:
+    own = some_branches()
+    return dataclasses.replace(own, is_complete=is_complete, _found=dataclasses.replace(own._found, **changes))
+
+
 def estimate(hits: np.ndarray, **changes: object) -> float:
-    return dataclasses.replace(some_branches(), hits=hits, **changes).estimate_missing
+    return made(hits=hits, **changes).estimate_missing
 
 
 @pytest.mark.parametrize(
@@ -197,3 +202,31 @@ class TestTheJointThatMovesMost:
         wanted = ["m" if k < 3 else "rad" for k in np.abs(step).argmax(axis=1)]
         assert branches.distance_unit == wanted
         assert set(branches.farthest_joint) == {machine.model.names[1]}
+
+
+class TestMethodsThatMissAnswers:
+    def test_what_slow_methods_leave_out_is_not_denied(self, ur5):
+        """Of these poses "dls" finds all; "ccd" and "jt" find fewer, and never say that none is missing."""
+        rng, fewer = np.random.default_rng(0), 0
+        for _ in range(4):
+            place = ur5.placement("tool0", ur5.random(rng))
+            whole = ur5.solve_all("tool0", placement=place)
+            for method in ("ccd", "jt"):
+                found = ur5.solve_all("tool0", placement=place, method=method, max_iterations=100)
+                fewer += len(found) < len(whole)
+                assert math.isinf(found.estimate_missing)
+                assert found.to_dict()["estimate_missing"] is None
+                assert "none seems" not in found.message
+        assert fewer > 0
+
+    @pytest.mark.parametrize(("arrived", "told"), [(56, True), (28, True), (27, False), (1, False)])
+    def test_where_few_starts_arrive_nothing_is_told(self, arrived, told):
+        some = made(arrived=arrived, starts=56)
+        assert math.isfinite(some.estimate_missing) == told
+        assert (f"only {arrived} arrived, too few to tell" in some.message) == (not told)
+
+    def test_a_start_that_leads_nowhere_has_not_arrived(self):
+        robot = load_quietly("two_link")
+        near = robot.solve_all("tip", [0.5, 0.3, 0.0])
+        assert near.arrived == near.hits.sum() == near.starts  # two bones always lead to one of both answers
+        assert robot.solve_all("tip", [5.0, 0.0, 0.0]).arrived == 0

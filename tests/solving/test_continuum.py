@@ -7,6 +7,7 @@ import math
 import numpy as np
 import pinocchio
 import pytest
+from scipy.optimize import least_squares
 
 import pinik
 from engines import needs_native
@@ -166,3 +167,109 @@ def test_beside_a_singular_place_the_answers_are_isolated(bend, engine):
     assert branches.redundancy == 0
     wanted = inside(puma_answers(place), arm.lower, arm.upper)
     assert unlike(branches, wanted, near=1e-3)[1] == []
+
+
+# --- redundant arms ---------------------------------------------------------------------------------------------------
+
+SRS = hinge_arm("zyzyzyz", [(0, 0, h) for h in (0.0, 0.36, 0.0, 0.42, 0.0, 0.4, 0.0, 0.126)], (-3.0, 3.0))
+
+
+def dimension_by_samples(robot, frame, q):
+    """The dimension of the set around q: that of random configurations nearby, which scipy brings onto it."""
+    model, data, frame_id = robot.model, robot.model.createData(), robot.model.getFrameId(frame)
+    pinocchio.framesForwardKinematics(model, data, q)
+    wanted, moving = data.oMf[frame_id].copy(), [joint.idx_v for joint in robot.joints if joint.idx_v < 7]
+
+    def missed(step):
+        pinocchio.framesForwardKinematics(model, data, q + embedded(step))
+        return pinocchio.log6(wanted.actInv(data.oMf[frame_id])).vector
+
+    def embedded(step):
+        dq = np.zeros(model.nv)
+        dq[moving] = step
+        return dq
+
+    rng, ways = np.random.default_rng(0), []
+    for _ in range(40):
+        found = least_squares(missed, 0.02 * rng.normal(size=len(moving)), xtol=1e-15, ftol=1e-15, gtol=1e-15)
+        if np.abs(found.fun).max() < 1e-7 and np.abs(found.x).max() < 0.1:
+            ways.append(found.x)
+    sizes = np.linalg.svd(np.array(ways), compute_uv=False)
+    return int((sizes > 0.2 * sizes[0]).sum())
+
+
+@every_engine
+def test_of_an_arm_with_all_hinges_in_line_all_but_one_are_free(engine):
+    robot = pinik.load(SRS)
+    branches = robot.solve_all("tip", placement=robot.placement("tip", np.zeros(7)), engine=engine)
+    assert branches.redundancy == 3
+    assert (branches.dimension == 3).all()
+    assert np.abs(branches.q[:, [1, 3, 5]]).max() < 1e-3
+    assert np.abs(turned_near(branches.q[:, ::2].sum(axis=1))).max() < 1e-6
+    assert branches.message.endswith("of infinitely many in 3 dimensions")
+    assert not branches.families
+    # Not more than three: plain Pinocchio's kernel at one of these answers.
+    q, data = np.array([0.3, 0.0, -0.5, 0.0, 0.8, 0.0, -0.6]), robot.model.createData()
+    assert np.allclose(robot.placement("tip", q), robot.placement("tip", np.zeros(7)))
+    J = pinocchio.computeFrameJacobian(robot.model, data, q, robot.model.getFrameId("tip"), pinocchio.LOCAL)
+    assert 7 - np.linalg.matrix_rank(J, 1e-9) == 3
+
+
+@every_engine
+def test_the_answers_of_an_arm_that_stays_stretched_have_one_dimension(engine):
+    robot, q = pinik.load(SRS), np.array([0.3, 0.5, 0.2, 0.0, 0.4, 0.6, 0.1])
+    branches = robot.solve_all("tip", placement=robot.placement("tip", q), engine=engine)
+    assert (branches.dimension == 1).all()
+    assert np.abs(branches.q[:, 3]).max() < 1e-3
+    assert branches.redundancy == 1
+
+
+@every_engine
+def test_answers_of_different_dimensions_are_told_apart(engine):
+    robot = load_quietly("panda")
+    start = robot.placement("panda_hand_tcp", robot.neutral())
+    branches = robot.solve_all("panda_hand_tcp", placement=start, engine=engine, limits=False)
+    assert set(branches.dimension.tolist()) == {1, 2}
+    assert branches.redundancy == 2
+    assert "in 1 or 2 dimensions" in branches.message
+    # Joints 1, 3 and 5 are in line where joints 2, 4 and 6 are at 0.
+    in_line = np.abs(turned_near(branches.q[:, [1, 3, 5]])).max(axis=1) < 1e-3
+    assert branches.dimension.tolist() == [2 if one else 1 for one in in_line]
+    for dimension in (1, 2):
+        assert (
+            dimension_by_samples(robot, "panda_hand_tcp", branches.q[branches.dimension == dimension][0]) == dimension
+        )
+    assert all(family.dimension == 1 for family in branches.families)
+
+
+@every_engine
+def test_three_bones_at_full_length_have_one_answer(engine):
+    robot = pinik.load(hinge_arm("zzz", [(0, 0, 0), (0.5, 0, 0), (0.4, 0, 0), (0.3, 0, 0)], (-4.0, 4.0)))
+    branches = robot.solve_all("tip", position=[1.2 * math.cos(0.3), 1.2 * math.sin(0.3), 0.0], engine=engine)
+    assert branches.dimension.tolist() == [0]
+    assert branches.redundancy == 0
+    assert branches[0] == pytest.approx([0.3, 0.0, 0.0], abs=2e-4)
+    inside = robot.solve_all("tip", position=[0.9, 0.3, 0.0], engine=engine)
+    assert (inside.dimension == 1).all()
+
+
+@every_engine
+def test_a_joint_with_a_single_value_is_no_freedom(engine):
+    text = SRS.replace('lower="-3.0" upper="3.0"', 'lower="0.5" upper="0.5"', 1)
+    robot = pinik.load(text)
+    q = np.array([0.5, 0.6, -0.4, 1.1, 0.3, -0.7, 0.2])
+    branches = robot.solve_all("tip", placement=robot.placement("tip", q), engine=engine)
+    assert branches.redundancy == 0
+    assert min(np.abs(turned_near(way - q)).max() for way in branches) < 1e-6
+
+
+@every_engine
+def test_what_the_time_limit_left_unknown_is_said(engine):
+    robot = load_quietly("panda")
+    target = robot.placement("panda_hand_tcp", robot.poses["default"])
+    branches = robot.solve_all("panda_hand_tcp", placement=target, time_limit=1e-9, engine=engine)
+    assert branches.ended_early
+    assert branches.redundancy is None
+    told = branches.to_dict()
+    assert told["redundancy"] is None
+    assert all(branch["dimension"] is None for branch in told["branches"])

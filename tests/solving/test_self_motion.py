@@ -226,13 +226,56 @@ def test_an_arm_that_is_almost_stretched_turns_about_itself(srs, bend):
     assert set(motion.turns) == {"j3", "j5"}
 
 
-def test_an_arm_that_is_stretched_is_not_explored(srs):
+def test_an_arm_that_stays_stretched_turns_upper_arm_and_forearm_against_each_other(srs):
+    """With joint 4 at 0, joints 3 and 5 are in line: the sum of their angles stays, and no other joint can move."""
     q = np.array([0.3, 0.6, 0.5, 0.0, 0.4, 0.5, 0.2])
-    motion = pinik.self_motion(srs, "tip", q)
+    motion = pinik.self_motion(srs, "tip", q, limits=False)
     assert motion.dimension == 1
-    assert not motion.complete
-    assert len(motion) == 1
-    assert "singular everywhere" in str(motion)
+    assert motion.closed
+    assert motion.length == pytest.approx(math.sqrt(2.0) * TURN, rel=1e-9)
+    assert abs(motion.turns["j3"] + motion.turns["j5"]) == 0
+    assert_certified(srs, Target("tip", placement=srs.placement("tip", q)), motion.q, limits=False)
+    assert np.abs(motion.q[:, 2] + motion.q[:, 4] - 0.9).max() < 1e-7
+    assert np.abs((motion.q - q)[:, [0, 1, 3, 5, 6]]).max() < 1e-7
+    assert not motion.complete  # where other curves cross this one is not seen
+    arcs = pinik.self_motion(srs, "tip", q).arcs
+    # Joint 3 from 0.9 − 170° to 170°, joint 5 the other way; and both beyond, with a turn between them.
+    assert arcs[0].length == pytest.approx(math.sqrt(2.0) * (2.0 * SRS_LIMITS[2] - 0.9))
+    assert [end.limits for end in arcs[0].ends] in (
+        [{"j3": "upper"}, {"j5": "upper"}],
+        [{"j5": "upper"}, {"j3": "upper"}],
+    )
+    assert len(arcs) == 2
+    assert arcs[1].length == pytest.approx(math.sqrt(2.0) * (2.0 * SRS_LIMITS[2] + 0.9 - TURN))
+
+
+@pytest.mark.parametrize(("bent", "dimension"), [([], 3), ([3], 2), ([1, 5], 1), ([1, 3], 1), ([1, 3, 5], 1)])
+def test_the_dimension_of_an_srs_arm_is_that_of_its_hinges_in_line(srs, bent, dimension):
+    """Joints 1, 3, 5 and 7 are in line with the next one if the joint between is at 0: of k in line, k − 1 are free.
+
+    Without the elbow's bend no other motion is left; with it, there is the elbow's circle.
+    """
+    q = np.array([0.3, 0.0, -0.2, 0.0, 0.5, 0.0, 0.4])
+    q[bent] = 0.7
+    assert pinik.self_motion(srs, "tip", q, points=20).dimension == dimension
+
+
+def test_near_singular_places_a_family_has_each_of_its_arcs_once(srs):
+    """One story, told by `self_motion` from a configuration and by the families of all answers."""
+    for q in ([0.3, 0.5, 0.2, 0.0, 0.4, 0.6, 0.1], [0.3, 0.5, 0.2, 1e-4, 0.4, 0.6, 0.1]):
+        motion = pinik.self_motion(srs, "tip", q)
+        families = srs.solve_all("tip", placement=srs.placement("tip", q)).families
+        # The shoulder and the wrist can each be bent to either side.
+        assert len(families) == 4
+        assert [len(family.arcs) for family in families] == [2, 2, 2, 2]
+        (own,) = [family for family in families if family.contains(q)]
+        assert sorted(arc.length for arc in own.arcs) == pytest.approx(
+            sorted(arc.length for arc in motion.arcs), abs=1e-3
+        )
+        for family in families:
+            sums = [angle for arc in family.arcs for angle in (arc.q[:, 2] + arc.q[:, 4]).tolist()]
+            away = np.array(sums) - sums[0]
+            assert np.abs(away - TURN * np.round(away / TURN)).max() < 1e-3
 
 
 # --- planar arms, in closed form --------------------------------------------------------------------------------------

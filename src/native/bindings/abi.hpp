@@ -5,6 +5,6 @@ namespace pinik {
 
 // Identifies the signatures of the module: the digest of its stub, as tests/solving/test_native.py computes it. It must
 // equal ABI in pinik/engine.py, which refuses a module from another build.
-constexpr const char* abi = "0ac7017ea631f6be";
+constexpr const char* abi = "00d16a990ebe3c40";
 
 }  // namespace pinik

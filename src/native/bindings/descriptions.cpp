@@ -141,6 +141,7 @@ void register_constants(nb::module_& m) {
       .def_rw("continuum_aside", &Constants::continuum_aside)
       .def_rw("continuum_iterations", &Constants::continuum_iterations)
       .def_rw("continuum_parts", &Constants::continuum_parts)
+      .def_rw("continuum_few_parts", &Constants::continuum_few_parts)
       .def_rw("jump_floor", &Constants::jump_floor)
       .def_rw("jump_factor", &Constants::jump_factor)
       .def_rw("jump_damping", &Constants::jump_damping)

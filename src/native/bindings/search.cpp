@@ -2,6 +2,7 @@
 #include "../solving/search.hpp"
 
 #include <nanobind/eigen/dense.h>
+#include <nanobind/stl/optional.h>
 
 #include <optional>
 #include <stdexcept>
@@ -18,9 +19,9 @@ using namespace nb::literals;
 
 namespace {
 
-// For each free answer inside the limits: q, the distance from the start, the largest errors, the number of its start, and
-// how many starts led to it, and the dimension of the set of answers around it. Then how many answers collide and how many are outside, the starts, the iterations, the
-// redundancy, whether time ran out, and the seconds.
+// For each free answer inside the limits: q, the distance from the start, the largest errors, the number of its start, how
+// many starts led to it, and the dimension of the set of answers around it. Then how many answers collide and how many are
+// outside, the starts, how many of them arrived, the iterations, the redundancy, whether time ran out, and the seconds.
 nb::tuple columns(const Findings& findings, std::size_t nq) {
   std::vector<double> q, distance, position, orientation;
   std::vector<std::int64_t> start, hits, dimension;
@@ -44,8 +45,8 @@ nb::tuple columns(const Findings& findings, std::size_t nq) {
   return nb::make_tuple(as_array(std::move(q), {count, nq}), as_array(std::move(distance), {count}),
                         as_array(std::move(position), {count}), as_array(std::move(orientation), {count}),
                         as_array(std::move(start), {count}), as_array(std::move(hits), {count}),
-                        as_array(std::move(dimension), {count}), colliding, outside, findings.starts, findings.iterations, findings.redundancy, findings.ended_early,
-                        findings.seconds);
+                        as_array(std::move(dimension), {count}), colliding, outside, findings.starts, findings.arrived,
+                        findings.iterations, findings.redundancy, findings.ended_early, findings.seconds);
 }
 
 // The findings, and the start inside the limits.
@@ -87,12 +88,12 @@ void register_search(nb::module_& m) {
            nb::sig("def search(self, start: NDArray[numpy.float64], goals: NDArray[numpy.float64]) -> "
                    "tuple[tuple[NDArray[numpy.float64], NDArray[numpy.float64], NDArray[numpy.float64], "
                    "NDArray[numpy.float64], NDArray[numpy.int64], NDArray[numpy.int64], NDArray[numpy.int64], int, int, int, "
-                   "int, int, bool, float], NDArray[numpy.float64]]"))
+                   "int, int, int | None, bool, float], NDArray[numpy.float64]]"))
       .def("search_at", &search_at, "start"_a, "place"_a.none(),
            nb::sig("def search_at(self, start: NDArray[numpy.float64], place: object) -> "
                    "tuple[tuple[NDArray[numpy.float64], NDArray[numpy.float64], NDArray[numpy.float64], "
                    "NDArray[numpy.float64], NDArray[numpy.int64], NDArray[numpy.int64], NDArray[numpy.int64], int, int, int, "
-                   "int, int, bool, float], NDArray[numpy.float64], tuple[NDArray[numpy.float64]]] | None"));
+                   "int, int, int | None, bool, float], NDArray[numpy.float64], tuple[NDArray[numpy.float64]]] | None"));
 }
 
 }  // namespace pinik

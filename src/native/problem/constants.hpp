@@ -70,6 +70,7 @@ struct Constants {
   double continuum_aside = not_given;
   int continuum_iterations = 0;
   int continuum_parts = 0;
+  int continuum_few_parts = 0;
   double jump_floor = not_given;
   double jump_factor = not_given;
   double jump_damping = not_given;

@@ -35,7 +35,8 @@ struct Found {
 struct Findings {
   std::vector<Found> answers;
   std::int64_t starts = 0, iterations = 0;
-  int redundancy = 0;        // the largest dimension of the set of answers
+  std::int64_t arrived = 0;        // how many starts led to an answer, inside the limits or not
+  std::optional<int> redundancy;   // the largest dimension of the set of answers; none if none was found
   bool ended_early = false;  // by the time limit
   double seconds = 0.0;
 };
@@ -74,7 +75,7 @@ class Search {
       spread_.next(q);
     }
     for (const Found& answer : findings_.answers)
-      if (answer.inside) findings_.redundancy = std::max(findings_.redundancy, answer.dimension);
+      if (answer.inside) findings_.redundancy = std::max(findings_.redundancy.value_or(0), answer.dimension);
     return std::move(findings_);
   }
 
@@ -117,27 +118,25 @@ class Search {
     for (int k = 1; k <= problem_.constants.search_ranks; ++k) {
       at_.q = start;
       spread_.take(k, at_.q);
-      kinematics_.linearize(at_);
-      Eigen::JacobiSVD<Eigen::MatrixXd> svd(Eigen::MatrixXd(at_.J));
-      svd.setThreshold(problem_.constants.search_rank_threshold);
-      rank = std::max(rank, svd.rank());
+      rank = std::max(rank, continuum_.rank_at(Vector(at_.q), problem_.constants.search_rank_threshold));
     }
-    return static_cast<int>(static_cast<Eigen::Index>(problem_.coordinates.size()) - rank);
+    return static_cast<int>(static_cast<Eigen::Index>(continuum_.free()) - rank);
   }
 
-  // Whether further starts are unlikely to bring a new answer: of isolated answers, each inside the limits was found twice, and
-  // there were three starts for each since the last new one.
+  // Whether further starts are unlikely to bring a new answer. Of infinitely many there are enough. Of isolated answers, each
+  // inside the limits was found twice, and there were three starts for each since the last new one.
   bool is_enough() const {
     const Constants& constants = problem_.constants;
-    if (redundancy_ > 0) return findings_.starts - colliding_ >= constants.search_samples;
-    if (findings_.starts < constants.search_least) return false;
-    std::int64_t count = 0;
+    std::int64_t isolated = 0, once = 0;
     for (const Found& answer : findings_.answers) {
       if (answer.dimension > 0) continue;
-      if (answer.inside && answer.hits < 2) return false;
-      ++count;
+      ++isolated;
+      if (answer.inside && answer.hits < 2) ++once;
     }
-    return findings_.starts - 1 - last_new_ >= constants.search_since * count;
+    if (redundancy_ > 0 && (isolated == 0 || isolated < static_cast<std::int64_t>(findings_.answers.size())))
+      return findings_.starts - colliding_ >= constants.search_samples;
+    return findings_.starts >= constants.search_least && once == 0 &&
+           findings_.starts - 1 - last_new_ >= constants.search_since * isolated;
   }
 
   // Run from one start. If answers are isolated, the run may leave the limits to the end, since an answer outside counts
@@ -145,6 +144,7 @@ class Search {
   void attempt(const Vector& from, const Vector& near, std::int64_t number) {
     ++findings_.starts;
     Found* answer = run(redundancy_ == 0 ? loose_ : limits_, from, near, number);
+    if (answer) ++findings_.arrived;
     if (answer && answer->dimension > 0 && !answer->inside) {
       Vector inside = answer->q;
       limits_.wrap(inside, near);
@@ -199,23 +199,20 @@ class Search {
     answer.inside = metric_.largest(answer.q, reached_) <= problem_.constants.search_outside;
     if (!answer.inside) answer.q = reached_;
     answer.start = number;
-    if (redundancy_ > 0) {
-      answer.dimension = redundancy_;
-      answer.collides = touches(answer.q);
-    } else {
-      const double least = least_singular_value(answer.q);
-      answer.basin = problem_.constants.search_basin * least;
-      const Eigen::MatrixXd kernel =
-          least < problem_.constants.search_nearly_singular ? continuum_.kernel(answer.q) : Eigen::MatrixXd();
-      if (kernel.cols() > 0) {
-        answer.collides = answer.inside && touches(answer.q);
-        for (Found& other : findings_.answers) {
-          if (!stands_for(other, answer)) continue;
-          ++other.hits;
-          return &other;
-        }
-        answer.dimension = continuum_.dimension(answer.q, kernel);
+    answer.dimension = redundancy_;
+    const double least = least_singular_value(answer.q);
+    answer.basin = problem_.constants.search_basin * least;
+    const bool is_singular = least < problem_.constants.search_nearly_singular;
+    const Vector exact = is_singular ? continuum_.settled(answer.q) : Vector();
+    const Eigen::MatrixXd kernel = is_singular ? continuum_.kernel(exact) : Eigen::MatrixXd();
+    if (redundancy_ > 0 || kernel.cols() > 0) answer.collides = answer.inside && touches(answer.q);
+    if (kernel.cols() > redundancy_) {
+      for (Found& other : findings_.answers) {
+        if (redundancy_ > 0 || !stands_for(other, answer)) continue;
+        ++other.hits;
+        return &other;
       }
+      answer.dimension = continuum_.dimension(exact, kernel, redundancy_);
     }
     spread_.mark(answer.q);
     metric_.store(answer.q, findings_.answers.size(), stride_, columns_.data());
@@ -232,11 +229,14 @@ class Search {
            metric_.largest(known.q, answer.q) <= problem_.constants.search_spacing;
   }
 
-  // A lower bound of the Jacobian's smallest singular value, per length of the chain: σ² ≥ 1 / trace (JᵀJ)⁻¹.
+  // A lower bound of the Jacobian's smallest singular value, per length of the chain: σ² ≥ 1 / trace (JᵀJ)⁻¹; with more
+  // columns than rows, JJᵀ takes the place of JᵀJ.
   double least_singular_value(const Vector& q) {
     at_.q = q;
     kinematics_.linearize(at_);
-    const Eigen::MatrixXd square = at_.J.transpose() * at_.J;
+    Eigen::MatrixXd square;
+    if (at_.J.rows() >= at_.J.cols()) square = at_.J.transpose() * at_.J;
+    else square = at_.J * at_.J.transpose();
     const Eigen::LLT<Eigen::MatrixXd> factor(square);
     if (factor.info() != Eigen::Success) return 0.0;
     const double trace = factor.solve(Eigen::MatrixXd::Identity(square.rows(), square.cols())).trace();

@@ -94,7 +94,8 @@ def poses_of(robot: Robot, shown: Drawable | None) -> list[Pose]:
     if isinstance(shown, Branches):
         if not shown:
             raise InputError(f"has no configuration to draw: {shown.message}", argument="q")
-        return _of(robot, _fans(shown.families) if shown.families else _branches(shown))
+        curved = shown.redundancy == 1 and shown.families
+        return _of(robot, _fans(curved) if curved else _branches(shown))
     if isinstance(shown, SelfMotion):
         return _of(robot, _fans([shown]))
     if isinstance(shown, Solution):

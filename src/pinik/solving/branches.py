@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
 
@@ -16,9 +16,10 @@ from ..problem.coordinates import Coordinate
 from ..problem.targets import Target
 from ..problem.tolerance import TargetError
 from .changes import farthest_coordinate
+from .completeness import estimate_missing, words_of
+from .findings import Findings
 from .origin import unwound
 from .question import Question
-from .search import LEAST
 from .self_motion import SelfMotion, self_motion
 from .state import Status
 from .verdict import measure_errors
@@ -31,7 +32,7 @@ Array = NDArray[np.float64]
 _FROM_THE_QUESTION = ("robot", "method", "joint_names", "windings", "errors", "_farthest", "_conditions")
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Branches:
     """The distinct configurations that reach the targets inside the limits, each checked by plain Pinocchio.
 
@@ -40,45 +41,95 @@ class Branches:
     one nearest to the start, and `windings` tells how far the joints can turn from there.
 
     Attributes:
-        q: The configurations (n, nq), ordered by `distance`; at distances equal to 1e-6, by their entries.
-        distance: The largest change of a joint from the start to each (n,), in `distance_unit`. Here a metre is as much
-            as a radian.
-        position_error: The largest position error of each (n,) [m], by plain Pinocchio; NaN without positions.
-        orientation_error: The largest orientation error, likewise (n,) [rad].
-        found_at: The number of the start from which each was found (n,); 0 is the given start.
-        hits: How many starts led to each (n,). Where answers are usually isolated, one of a continuum stands for all
-            within 0.5 rad, so that a start that led to one of these counts for it.
-        dimension: The dimension of the set of answers around each (n,): 0 for an isolated one, 1 for one of a curve.
-        starts: The number of starts tried.
-        redundancy: The largest dimension of the set of answers. If it is 0, all that were found are isolated; if not,
-            there are infinitely many, and `q` has a sample of them, with all isolated ones that were found.
-        colliding: The number of answers that were left out because something touches that is to be avoided.
         is_complete: Whether these are proved to be all; only a closed form proves it.
-        ended_early: Whether the time limit ended the search.
         status: `Status.CONVERGED` if there is an answer; else why there is none.
-        time: The duration of the search [s], with that of the solve after a search that found nothing.
     """
 
-    q: Array
-    distance: Array
-    position_error: Array
-    orientation_error: Array
-    found_at: NDArray[np.int64]
-    hits: NDArray[np.int64]
-    dimension: NDArray[np.int64]
-    starts: int
-    redundancy: int
-    colliding: int
     is_complete: bool
-    ended_early: bool
     status: Status
-    time: float
-    _question: Question = field(repr=False)
-    _targets: tuple[Target, ...] = field(repr=False)
-    _start: Array = field(repr=False)
-    _turned: Mapping[str, float] = field(repr=False)
-    _engine: str = field(repr=False)
-    _words: str | None = field(repr=False)
+    _found: Findings
+    _question: Question
+    _targets: tuple[Target, ...]
+    _start: Array
+    _turned: Mapping[str, float]
+    _engine: str
+    _words: str | None
+
+    @property
+    def q(self) -> Array:
+        """The configurations (n, nq), ordered by `distance`; at distances equal to 1e-6, by their entries."""
+        return self._found.q
+
+    @property
+    def distance(self) -> Array:
+        """The largest change of a joint from the start to each (n,), in `distance_unit`; a metre counts as a radian."""
+        return self._found.distance
+
+    @property
+    def position_error(self) -> Array:
+        """The largest position error of each (n,) [m], by plain Pinocchio; NaN without positions."""
+        return self._found.position_error
+
+    @property
+    def orientation_error(self) -> Array:
+        """The largest orientation error of each (n,) [rad], likewise."""
+        return self._found.orientation_error
+
+    @property
+    def found_at(self) -> NDArray[np.int64]:
+        """The number of the start from which each was found (n,); 0 is the given start."""
+        return self._found.found_at
+
+    @property
+    def hits(self) -> NDArray[np.int64]:
+        """How many starts led to each (n,).
+
+        Where answers are usually isolated, one of a continuum stands for all within 0.5 rad, so that a start that led
+        to one of these counts for it.
+        """
+        return self._found.hits
+
+    @property
+    def dimension(self) -> NDArray[np.int64]:
+        """The dimension of the set of answers around each (n,): 0 for an isolated one, 1 for one of a curve.
+
+        It is −1 where it is not known: for the one answer of a solve after a search that found nothing.
+        """
+        return self._found.dimension
+
+    @property
+    def starts(self) -> int:
+        """The number of starts tried."""
+        return self._found.starts
+
+    @property
+    def arrived(self) -> int:
+        """How many of the starts led to an answer, inside the limits or not; the others came to nothing."""
+        return self._found.arrived
+
+    @property
+    def redundancy(self) -> int | None:
+        """The largest dimension of the set of answers; None if the search found no answer that tells it.
+
+        If it is 0, all that were found are isolated; if not, there are infinitely many, and `q` has a sample of them,
+        with all isolated ones that were found.
+        """
+        return self._found.redundancy
+
+    @property
+    def colliding(self) -> int:
+        """The number of answers that were left out because something touches that is to be avoided."""
+        return self._found.colliding
+
+    @property
+    def ended_early(self) -> bool:
+        """Whether the time limit ended the search."""
+        return self._found.ended_early
+
+    @property
+    def time(self) -> float:
+        """The duration of the search [s], with that of the solve after a search that found nothing."""
+        return self._found.time
 
     def __getstate__(self) -> dict[str, Any]:
         """Pickle the results only, without the compiled problem."""
@@ -134,41 +185,21 @@ class Branches:
     @property
     def message(self) -> str:
         """One sentence on what was found and what may be missing, or why there is no answer."""
-        if self._words is not None:
-            return self._words
-        begin = f"{len(self)} answer{'s' * (len(self) != 1)}"
-        if self.colliding:
-            begin += f" and {self.colliding} that collide{'s' * (self.colliding == 1)}"
-        if self.is_complete:
-            return f"{begin}, all that there are"
-        begin += f" from {self.starts} start{'s' * (self.starts != 1)}{', ended by the time limit' * self.ended_early}"
-        if self.redundancy:
-            isolated = int((self.dimension == 0).sum())
-            begin += f": {isolated} isolated, and {len(self) - isolated}" if isolated else ","
-            return f"{begin} of infinitely many in {self.redundancy} dimension{'s' * (self.redundancy > 1)}"
-        left = self.estimate_missing
-        if math.isinf(left):
-            return f"{begin}, too few to tell how many are missing"
-        missing = "none seems to be" if left < 0.5 else f"about {left:.0f} may be"
-        return f"{begin}, the last new one from number {int(self.found_at.max(initial=0)) + 1}; {missing} missing"
+        return words_of(self._found, self.is_complete, self.method) if self._words is None else self._words
 
     @property
     def estimate_missing(self) -> float:
         """An estimate of how many branches are missing; 0 if these are all.
 
-        It is infinite if there are infinitely many, and if there were too few starts to tell: fewer than the search
-        makes by itself, because of `restarts` or the time limit.
+        It is infinite if there are infinitely many, and if nothing can be told: after fewer starts than the search
+        makes by itself, because of `restarts` or the time limit; if less than half of the starts arrived at an answer;
+        and with "ccd" and "jt", which do not lead to every answer.
 
         It is Chao's lower bound (1984), f₁ (f₁ − 1) / (2 (f₂ + 1)), where f₁ branches were found by one start and f₂ by
         two. As Good and Turing saw (Good 1953), what was seen once tells how much was not seen. The bound knows nothing
         of branches that no start leads to.
         """
-        if self.is_complete:
-            return 0.0
-        if self.redundancy or self.ended_early or self.starts < LEAST:
-            return math.inf
-        once, twice = int((self.hits == 1).sum()), int((self.hits == 2).sum())
-        return once * (once - 1) / (2 * (twice + 1))
+        return estimate_missing(self._found, self.is_complete, self.method)
 
     @cached_property
     def angles(self) -> list[dict[str, float]]:
@@ -186,17 +217,16 @@ class Branches:
 
     @cached_property
     def families(self) -> tuple[SelfMotion, ...]:
-        """The curves on which branches lie, if the answers have at most one dimension. They may collide.
+        """The curves on which the branches of dimension 1 lie. They may collide.
 
         Each is the self-motion through one of the branches, so that no two are the same. They are traced when they are
         first read, which takes some 20 ms for each.
         """
-        if self.redundancy != 1:
-            return ()
         found: list[SelfMotion] = []
         for q in self.q[self.dimension == 1]:
             if not any(family.contains(q) for family in found):
-                found.append(self_motion(self.robot, self._targets, q, **self._conditions))
+                motion = self_motion(self.robot, self._targets, q, **self._conditions)
+                found += [motion] * bool(motion.arcs)
         return tuple(found)
 
     @cached_property
@@ -230,6 +260,9 @@ class Branches:
     def __getitem__(self, index: int) -> Array:
         return np.asarray(self.q[index])
 
+    def __repr__(self) -> str:
+        return f"Branches({self})"
+
     def __str__(self) -> str:
         return self.message
 
@@ -254,6 +287,7 @@ class Branches:
             "redundancy": self.redundancy,
             "colliding": self.colliding,
             "starts": self.starts,
+            "arrived": self.arrived,
             "time_s": self.time,
             "method": self.method,
             "engine": self._engine,
@@ -272,7 +306,7 @@ class Branches:
             "orientation_error_rad": _number(self.orientation_error[index]),
             "found_at": int(self.found_at[index]),
             "hits": int(self.hits[index]),
-            "dimension": int(self.dimension[index]),
+            "dimension": None if self.dimension[index] < 0 else int(self.dimension[index]),
             "windings": {name: own.tolist() for name, own in turns if own.any()},
         }
 

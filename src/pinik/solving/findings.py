@@ -48,14 +48,16 @@ class Findings:
         distance: The largest change of a joint from the start to each (n,) [rad or m].
         position_error, orientation_error: Their largest errors (n,) [m, rad] by plain Pinocchio; NaN where none is
             asked for.
-        start: The numbers of the starts from which they were found (n,); 0 is the given one.
+        found_at: The numbers of the starts from which they were found (n,); 0 is the given one.
         hits: How many starts led to each (n,).
-        dimension: The dimension of the set of answers around each (n,): 0 for an isolated one.
+        dimension: The dimension of the set of answers around each (n,): 0 for an isolated one; −1 if it is not known.
         colliding: The number of answers inside the limits at which something touches that is to be avoided.
         outside: The number of answers outside the limits; they are not looked for where answers are not isolated.
         starts: The number of starts.
+        arrived: How many of these led to an answer, inside the limits or not.
         iterations: The iterations of all runs.
-        redundancy: The largest dimension of the set of answers: 0 if all that were found are isolated.
+        redundancy: The largest dimension of the set of answers: 0 if all that were found are isolated; None if none was
+            found, so that it is not known.
         ended_early: Whether the time limit ended the search.
         time: The duration of the search [s].
     """
@@ -64,14 +66,15 @@ class Findings:
     distance: Array
     position_error: Array
     orientation_error: Array
-    start: NDArray[np.int64]
+    found_at: NDArray[np.int64]
     hits: NDArray[np.int64]
     dimension: NDArray[np.int64]
     colliding: int
     outside: int
     starts: int
+    arrived: int
     iterations: int
-    redundancy: int
+    redundancy: int | None
     ended_early: bool
     time: float
 
@@ -79,7 +82,7 @@ class Findings:
     def nothing(cls, nq: int) -> Findings:
         """What no search comes to, for configurations of `nq` numbers."""
         none, counts = np.zeros(0), np.zeros(0, dtype=np.int64)
-        return cls(np.zeros((0, nq)), none, none, none, counts, counts, counts, 0, 0, 0, 0, 0, False, 0.0)
+        return cls(np.zeros((0, nq)), none, none, none, counts, counts, counts, 0, 0, 0, 0, 0, None, False, 0.0)
 
     def with_answer(
         self,
@@ -87,11 +90,11 @@ class Findings:
         distance: float,
         errors: Sequence[TargetError],
         *,
-        start: int = 0,
+        found_at: int = 0,
         hits: int = 1,
-        dimension: int = 0,
+        dimension: int = -1,
     ) -> Findings:
-        """These findings and one more answer (nq,), the farthest; its start is the given one unless told otherwise."""
+        """These findings and one more answer (nq,), the farthest; found from the given start unless told otherwise."""
         position, orientation = largest_of(errors)
         return dataclasses.replace(
             self,
@@ -99,7 +102,7 @@ class Findings:
             distance=np.append(self.distance, distance),
             position_error=np.append(self.position_error, np.nan if position is None else position),
             orientation_error=np.append(self.orientation_error, np.nan if orientation is None else orientation),
-            start=np.append(self.start, start),
+            found_at=np.append(self.found_at, found_at),
             hits=np.append(self.hits, hits),
             dimension=np.append(self.dimension, dimension),
         )

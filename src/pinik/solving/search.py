@@ -15,7 +15,7 @@ from ..problem.targets import Target
 from ..problem.tolerance import Tolerance
 from ..solvers.base import Patience
 from .choice import SAME_ANSWER
-from .continuum import Continuum
+from .continuum import RANK_THRESHOLD, Continuum
 from .findings import Findings, Found
 from .metric import Metric, largest_difference
 from .question import Question
@@ -52,9 +52,6 @@ NEARLY_SINGULAR = 1e-3
 
 RANKS = 3
 """The number of configurations whose Jacobian's rank tells whether answers are isolated."""
-
-RANK_THRESHOLD = 1e-6
-"""The smallest singular value that counts towards the rank, relative to the largest."""
 
 APPROACH = 0.7
 """The part of the distance to a known answer that a step must leave at most, if the run is to be heading for it."""
@@ -97,7 +94,7 @@ class Search:
             self._redundancy = self._dimension(start)
         self._answers: list[Found] = []
         self._last_new, self._starts, self._iterations, self._deadline = 0, 0, 0, deadline
-        self._colliding = 0
+        self._arrived, self._colliding = 0, 0
         self._is_late = False
         q = start
         while True:
@@ -108,23 +105,18 @@ class Search:
 
     def _dimension(self, start: Array) -> int:
         """The number of free coordinates without the rank of the Jacobian at general configurations."""
-        free = self._sharp.problem.free
-        ranks = [0]
-        for k in range(1, RANKS + 1):
-            J = self._kinematics.linearize(self._spread.take(k, start)).J[:, free]
-            singular = np.linalg.svd(J, compute_uv=False)
-            ranks.append(int((singular > RANK_THRESHOLD * singular.max(initial=0.0)).sum()))
-        return int(free.sum()) - max(ranks)
+        take, rank = self._spread.take, self._continuum.rank
+        return len(self._continuum.free) - max(rank(take(k, start), RANK_THRESHOLD) for k in range(1, RANKS + 1))
 
     def _is_enough(self) -> bool:
         """Whether further starts are unlikely to bring a new answer.
 
-        Of isolated answers, each inside the limits was found twice, and there were three starts for each since the last
-        new one.
+        Of infinitely many there are enough. Of isolated answers, each inside the limits was found twice, and there were
+        three starts for each since the last new one.
         """
-        if self._redundancy:
-            return self._starts - self._colliding >= SAMPLES
         isolated = [answer for answer in self._answers if answer.dimension == 0]
+        if self._redundancy and not (isolated and len(isolated) == len(self._answers)):
+            return self._starts - self._colliding >= SAMPLES
         since = self._starts - 1 - self._last_new
         return (
             self._starts >= LEAST
@@ -141,6 +133,7 @@ class Search:
         number = self._starts
         self._starts += 1
         answer = self._run(self._sharp if self._redundancy else self._loose, start, near, number)
+        self._arrived += answer is not None
         if answer is not None and answer.dimension and not answer.is_inside:
             answer = self._run(self._sharp, self._limits.wrap(answer.q, near), near, number)
         if answer is not None and answer.collides:
@@ -188,19 +181,20 @@ class Search:
         inside = self._limits.wrap(q, near)
         is_inside = self._metric.largest(inside, q) <= OUTSIDE
         answer = Found(inside if is_inside else q, is_inside, number)
-        if self._redundancy:
-            answer.dimension, answer.collides = self._redundancy, self.question.touches(answer.q)
-        else:
-            least = self._least_singular_value(answer.q)
-            answer.basin = BASIN * least
-            kernel = self._continuum.kernel(answer.q) if least < NEARLY_SINGULAR else np.zeros((0, 0))
-            if len(kernel):
-                answer.collides = is_inside and self.question.touches(answer.q)
-                for other in self._answers:
-                    if self._stands_for(other, answer):
-                        other.hits += 1
-                        return other
-                answer.dimension = self._continuum.dimension(answer.q, kernel)
+        usual = answer.dimension = self._redundancy or 0
+        least = self._least_singular_value(answer.q)
+        answer.basin = 0.0 if usual else BASIN * least
+        is_singular = least < NEARLY_SINGULAR
+        exact = self._continuum.settled(answer.q) if is_singular else answer.q
+        kernel = self._continuum.kernel(exact) if is_singular else np.zeros((0, 0))
+        if usual or len(kernel):
+            answer.collides = is_inside and self.question.touches(answer.q)
+        if len(kernel) > usual:
+            for other in self._answers:
+                if not usual and self._stands_for(other, answer):
+                    other.hits += 1
+                    return other
+            answer.dimension = self._continuum.dimension(exact, kernel, usual)
         self._spread.mark(answer.q)
         self._answers.append(answer)
         if answer.dimension == 0 or self._redundancy:
@@ -213,10 +207,13 @@ class Search:
         return known.dimension > 0 and alike and self._metric.largest(known.q, answer.q) <= SPACING
 
     def _least_singular_value(self, q: Array) -> float:
-        """A lower bound of the Jacobian's smallest singular value, per length of the chain: σ² ≥ 1 / trace (JᵀJ)⁻¹."""
+        """A lower bound of the Jacobian's smallest singular value, per length of the chain: σ² ≥ 1 / trace (JᵀJ)⁻¹.
+
+        With more columns than rows, JJᵀ takes the place of JᵀJ.
+        """
         J = self._kinematics.linearize(q).J[:, self._sharp.problem.free]
         try:
-            trace = float(np.trace(np.linalg.inv(J.T @ J)))
+            trace = float(np.trace(np.linalg.inv(J.T @ J if len(J) >= len(J.T) else J @ J.T)))
         except np.linalg.LinAlgError:
             return 0.0
         return 1.0 / math.sqrt(trace) / self._sharp.problem.size_of_chain if 0.0 < trace < math.inf else 0.0
@@ -227,8 +224,9 @@ class Search:
             Findings.nothing(question.robot.model.nq),
             outside=sum(not answer.is_inside for answer in self._answers),
             starts=self._starts,
+            arrived=self._arrived,
             iterations=self._iterations,
-            redundancy=max([answer.dimension for answer in self._answers if answer.is_inside], default=0),
+            redundancy=max([answer.dimension for answer in self._answers if answer.is_inside], default=None),
             ended_early=self._is_late,
         )
         model = question.robot.model
@@ -241,7 +239,7 @@ class Search:
                 findings.colliding += 1
                 continue
             findings = findings.with_answer(
-                answer.q, distance, errors, start=answer.start, hits=answer.hits, dimension=answer.dimension
+                answer.q, distance, errors, found_at=answer.start, hits=answer.hits, dimension=answer.dimension
             )
         findings.time = time.perf_counter() - self._began
         return findings

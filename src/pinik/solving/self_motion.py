@@ -239,10 +239,11 @@ def _explored(question: Question, given: Array, points: int) -> SelfMotion:
     robot, targets = question.robot, question.problem.targets
     solutions = SolutionSet(question)
     start = beginning(solutions, given)
-    place = regular_place(solutions, start)
-    if isinstance(place, Lone):
+    found = regular_place(solutions, start)
+    if isinstance(found, Lone):
         alone = start.q[np.newaxis]
-        return SelfMotion(robot, targets, place.dimension, start.q, alone, complete=place.dimension == 0, known=place)
+        return SelfMotion(robot, targets, found.dimension, start.q, alone, complete=found.dimension == 0, known=found)
+    solutions, place = found
     dimension = solutions.n - solutions.rank
     if dimension == 1:
         family = Family(solutions, place)

@@ -171,8 +171,8 @@ def _in_closed_form(prepared: Prepared, targets: tuple[Target, ...], start: Arra
     both = bones.solve(target.position, start, limits=question.options.limits)
     findings = Findings.nothing(robot.model.nq)
     plane, _ = bones.in_plane(target.position[np.newaxis])
-    if np.linalg.norm(plane) <= ROUNDING * (bones.l1 + bones.l2):  # the first joint may have any angle
-        findings.redundancy = 1
+    on_axis = np.linalg.norm(plane) <= ROUNDING * (bones.l1 + bones.l2)
+    findings.redundancy = int(on_axis)  # if it is, the first joint may have any angle
     for q, inside in zip(both.q, both.inside, strict=True):
         errors = measure_errors(robot, targets, q, question.options.tolerance)
         is_new = all(largest_difference(robot.model, other, q) > SAME_ANSWER for other in findings.q)
@@ -200,20 +200,9 @@ def _branches(
     if instead is not None:
         words = _words_of_one(findings) if instead.success else instead.message
     return Branches(
-        findings.q,
-        findings.distance,
-        findings.position_error,
-        findings.orientation_error,
-        findings.start,
-        findings.hits,
-        findings.dimension,
-        findings.starts,
-        findings.redundancy,
-        findings.colliding,
         prepared.options.method.exact and not findings.redundancy,
-        findings.ended_early,
         Status.CONVERGED if instead is None else instead.status,
-        findings.time,
+        findings,
         prepared.question,
         targets,
         start,
@@ -228,5 +217,5 @@ def _words_of_one(findings: Findings) -> str:
     if findings.colliding:
         return f"1 answer that collides with nothing; the {findings.colliding} that the search found do"
     if findings.ended_early:
-        return "1 answer; the time limit ended the search for others"
+        return "1 answer; the time limit ended the search for others, and of what dimension they are is not known"
     return "1 answer inside the tolerance; none that is exact was found"

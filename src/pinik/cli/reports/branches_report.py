@@ -68,8 +68,13 @@ def _emit_facts(branches: Branches, units: Units) -> None:
 
 def _emit_families(branches: Branches) -> None:
     """Each family on a line, or why there is none."""
-    if branches.redundancy == 1:
-        for k, family in enumerate(branches.families):
-            emit(f"family {k + 1}  {family}")
-    else:
-        emit(f"no families: the answers {'have more than one dimension' if branches.redundancy else 'are isolated'}")
+    for k, family in enumerate(branches.families):
+        emit(f"family {k + 1}  {family}")
+    if branches.families:
+        return
+    why = {
+        None: "whether the answers lie on curves is not known",
+        0: "the answers are isolated",
+        1: "the curves cannot be traced",
+    }.get(branches.redundancy, "the answers have more than one dimension")
+    emit(f"no families: {why}")

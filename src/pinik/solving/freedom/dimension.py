@@ -7,6 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from ..continuum import largest_part
+from .singular_set import SingularSet
 from .solution_set import Place, SolutionSet
 
 __all__ = ["Lone", "places_beside", "regular_place"]
@@ -39,37 +41,42 @@ class Lone:
         return float(np.linalg.norm(away)) <= within
 
 
-def regular_place(solutions: SolutionSet, place: Place) -> Place | Lone:
+def regular_place(solutions: SolutionSet, place: Place) -> tuple[SolutionSet, Place] | Lone:
     """A place of the set at which its dimension is seen, and from which it is explored: `place` itself, or one beside.
 
     Where the rank of the Jacobian is the usual one, the kernel is the tangent space of the set, and its dimension that
     of the set. Where it is lower, the kernel may be larger than the set is: solutions are looked for in many directions
-    of the kernel, and `solutions.rank` becomes the largest rank found among them. Curves that cross at `place` have the
-    usual rank beside it; a set of which every place is singular, such as that of a wrist with two joints in line, has
-    not. If such a set does not fill the kernel, as that of a stretched arm, it cannot be explored.
+    of the kernel. Several parts of the set may meet there, and the one of the largest dimension is explored. Curves
+    that cross at `place` have the usual rank beside it; a set of which every place is singular, such as that of a wrist
+    with two joints in line, has not. If such a set does not fill the kernel, as that of a stretched arm, it is a
+    `SingularSet`.
 
     Args:
         solutions: The set; its rank becomes the rank at the place that is returned.
         place: A configuration of the set.
 
     Returns:
-        The place; or why there is none to explore the set from.
+        The set and the place; or why there is none to explore the set from.
     """
     rank = solutions.rank_at(place.q)
     if rank >= solutions.rank:
         solutions.rank = rank
-        return solutions.at(place.q) if rank < solutions.n else Lone(solutions, place.q, 0)
-    beside = places_beside(solutions, place.q, rank)
-    ranks = [solutions.rank_at(found.q, _BESIDE) for found in beside]
-    if not beside or max(ranks) <= rank:
-        ways = np.array([solutions.difference(place.q, found.q) for found in beside]).reshape(-1, solutions.n)
-        dimension = int((np.linalg.svd(ways, compute_uv=False) > 0.3 * _ASIDE).sum())
-        if dimension < solutions.n - rank:
-            return Lone(solutions, place.q, dimension)
-        solutions.rank = rank
-        return solutions.at(place.q)
-    solutions.rank = max(ranks)
-    return solutions.at(beside[ranks.index(solutions.rank)].q)
+        return (solutions, solutions.at(place.q)) if rank < solutions.n else Lone(solutions, place.q, 0)
+    beside: dict[int, list[Array]] = {}
+    for found in places_beside(solutions, place.q, rank):
+        beside.setdefault(solutions.n - solutions.rank_at(found.q, _BESIDE), []).append(found.q)
+    ways = {kernel: [solutions.difference(place.q, q) for q in own] for kernel, own in beside.items()}
+    dimension = largest_part(ways, _ASIDE)
+    if dimension in beside:
+        solutions.rank = solutions.n - dimension
+        return solutions, solutions.at(place.q if rank == solutions.rank else beside[dimension][0])
+    if dimension:
+        kernel, (q, *_) = max(beside.items())
+        singular = SingularSet(solutions.question, solutions.n - kernel, dimension)
+        begin = singular.project(q, singular.kernel(singular.at(q)))
+        if begin is not None and singular.is_smooth_at(begin):
+            return singular, begin
+    return Lone(solutions, place.q, dimension)
 
 
 def places_beside(solutions: SolutionSet, q: Array, rank: int) -> list[Place]:

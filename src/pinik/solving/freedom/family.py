@@ -34,7 +34,11 @@ class Family:
         for curve in self.curves:
             for crossing in curve.crossings:
                 self._trace_from(curve.points(np.array([crossing.at]))[0][0])
-        self.complete = len(self.curves) < _MOST and not any("long" in curve.ends for curve in self.curves)
+        self.complete = (
+            solutions.shows_crossings
+            and len(self.curves) < _MOST
+            and not any("long" in curve.ends for curve in self.curves)
+        )
 
     def _trace_from(self, crossing: Array) -> None:
         """Trace the curves through a singular place (nq,) that are not known yet."""

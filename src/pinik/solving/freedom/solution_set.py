@@ -11,7 +11,7 @@ from __future__ import annotations
 
 import math
 import threading
-from typing import Any, NamedTuple
+from typing import Any, ClassVar, NamedTuple
 
 import numpy as np
 import pinocchio
@@ -35,7 +35,7 @@ RANK = 1e-6
 
 TURN = 2.0 * math.pi
 
-_ENOUGH = 1e-9  # [m and rad]: no further Newton step is made
+_ENOUGH = 1e-13  # [m and rad]: no further Newton step is made; near singular places errors of 1e-9 are far from the set
 _ITERATIONS = 12
 _SAMPLES = 5  # random configurations at which the usual rank is found
 
@@ -49,6 +49,7 @@ class Place(NamedTuple):
         J: Its Jacobian (r, n) by the free coordinates, in the joint metric.
         rows: The r orthonormal combinations (r, m) of the m rows of the residual that are independent; None for all.
         miss: The largest error of a target [m or rad].
+        left: The largest error of a target, or of whatever else holds on the set.
     """
 
     q: Array
@@ -56,6 +57,7 @@ class Place(NamedTuple):
     J: Array
     rows: Array | None
     miss: float
+    left: float
 
 
 class SolutionSet:
@@ -68,7 +70,10 @@ class SolutionSet:
         free: The indices (n,) of the free tangent coordinates, without those whose limits leave a single value.
         scales: The factors (n,) of the joint metric.
         rank: The rank r of the Jacobian on the set.
+        shows_crossings: Whether the Jacobian shows where another curve crosses one of the set.
     """
+
+    shows_crossings: ClassVar[bool] = True
 
     def __init__(self, question: Question) -> None:
         """The set for the targets of a question; its rank is the one that is usual for targets of these kinds."""
@@ -129,7 +134,8 @@ class SolutionSet:
         if self.rank < len(e):
             rows = np.linalg.svd(J, full_matrices=False)[0][:, : self.rank].T
             e, J = rows @ e, rows @ J
-        return Place(q, e, J, rows, worst(found.errors))
+        miss = worst(found.errors)
+        return Place(q, e, J, rows, miss, miss)
 
     def step(self, q: Array, direction: Array) -> Array:
         """`q` after a motion (n,)."""
@@ -149,19 +155,19 @@ class SolutionSet:
 
     def project(self, q: Array, across: Array) -> Place | None:
         """The point of the set that Newton steps across some directions (n − r, n) lead to; None if to none."""
-        last = math.inf
+        best: Place | None = None
         for _ in range(_ITERATIONS):
             place = self.at(q)
-            if place.miss <= _ENOUGH:
-                return place
-            if not place.miss < last:
+            if best is not None and not place.left < best.left:
                 break
-            last = place.miss
+            best = place
+            if place.left <= _ENOUGH:
+                break
             try:
                 q = self.step(q, self._newton(place, across))
             except np.linalg.LinAlgError:
                 break
-        return place if place.miss <= EXACT else None
+        return best if best is not None and best.miss <= EXACT else None
 
     def _newton(self, place: Place, across: Array) -> Array:
         return np.linalg.solve(np.vstack((place.J, across)), np.concatenate((place.e, np.zeros(len(across)))))
@@ -173,15 +179,17 @@ class SolutionSet:
             q: The configuration (nq,) to begin with.
             enough: The largest error at which no further step is made [m and rad].
         """
-        last = math.inf
+        best, least = q, math.inf
         for _ in range(3 * _ITERATIONS):
             found = self.kinematics.linearize(q)
             miss = worst(found.errors)
-            if miss <= enough or not miss < last:
+            if not miss < least:
                 break
-            last = miss
+            best, least = q, miss
+            if miss <= enough:
+                break
             q = self.step(q, np.linalg.pinv(self._jacobian(found.J), rcond=RANK) @ found.e)
-        return self.at(q) if miss <= EXACT else None
+        return self.at(best) if least <= EXACT else None
 
     def kernel_at(self, q: Array, rank: int) -> Array:
         """An orthonormal basis (n − rank, n) of the kernel at any configuration."""

@@ -33,7 +33,7 @@ class End:
 
     Attributes:
         why: "limit" if joints are at their limits; "singular" at a place where the kernel of the Jacobian grows, so
-            that curves may meet there; "long" if the curve was given up, after an arc length of 200 rad.
+            that curves may meet there; "long" if the curve was given up, after 200 rad in each direction.
         limits: Joint → "lower" or "upper", for the joints at their limits.
         conditioning: Beside a singular place, the smallest singular value that is not 0 divided by the largest.
     """

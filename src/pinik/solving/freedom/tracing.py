@@ -123,9 +123,10 @@ class _Tracer:
     def _volume(place: Place, tangent: Array) -> float:
         return float(np.linalg.det(np.vstack((place.J, tangent))))
 
-    @staticmethod
-    def _flips(a: _Knot, b: _Knot) -> bool:
+    def _flips(self, a: _Knot, b: _Knot) -> bool:
         """Whether the determinant changes its sign, for the same orientation of the rows."""
+        if not self._solutions.shows_crossings:
+            return False
         sign = a.volume * b.volume
         if a.place.rows is not None and b.place.rows is not None:
             sign *= float(np.linalg.det(a.place.rows @ b.place.rows.T))
