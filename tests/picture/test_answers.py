@@ -149,7 +149,8 @@ def cielab(pixel):
 @pytest.mark.parametrize("paper", ["#ffffff", "#14181d"])
 def test_the_colours_of_sixteen_branches_are_told_apart_on_white_and_on_black(bars, paper):
     branches = elbows(bars, [2.0, -2.0, 0.5])
-    row = dataclasses.replace(branches, q=np.repeat(branches.q[:1], 16, axis=0))
+    found = dataclasses.replace(branches._found, q=np.repeat(branches.q[:1], 16, axis=0))
+    row = dataclasses.replace(branches, _found=found)
     where = np.zeros((16, 3))
     where[:, 0] = 1.5 * np.arange(16)
     size = (1200, 120)

@@ -560,6 +560,18 @@ def test_a_six_joint_arm_is_isolated_unless_its_wrist_is_stretched(ur5):
     assert_certified(ur5, Target("tool0", placement=ur5.placement("tool0", q)), motion.q)
 
 
+def test_the_whole_turns_of_an_arc_are_those_of_its_start():
+    """Wrists 1 and 3 turn against each other; from 0 they meet their limits of ±360° together, a turn each way."""
+    robot = load_quietly("ur5")
+    q = np.array([0.0, -1.0, 1.0, 0.0, 0.0, 0.0])
+    whole = pinik.self_motion(robot, "tool0", q, limits=False)
+    assert {name: abs(count) for name, count in whole.turns.items()} == {"wrist_1_joint": 1, "wrist_3_joint": 1}
+    for start in (q, whole.q[3], whole.q[-3]):
+        (arc,) = pinik.self_motion(robot, "tool0", start).arcs
+        assert arc.length == pytest.approx(2.0 * whole.length, rel=1e-6)
+        assert sorted(abs(arc.q[[0, -1], 3])) == pytest.approx([TURN, TURN], abs=1e-6)
+
+
 def test_a_free_spin_between_limits_of_a_turn_each_way_is_two_turns_long(ur5):
     q = np.array([0.1, -1.0, 1.0, 0.3, 0.5, 0.4])
     place = ur5.placement("tool0", q)

@@ -77,9 +77,15 @@ def asked_targets(
 
     Raises:
         UnknownNameError: There is no such keyword.
-        InputError: The target is faulty, or a target's keywords were given together with Target objects.
+        InputError: The target is faulty, a target's keywords were given together with Target objects, or the method is
+            none.
     """
     check_words(method, parameters, (*PLACE_WORDS, *options))
+    if not isinstance(method, (str, Solver, type)):
+        raise InputError(
+            f"must be a name, a Solver class or an instance; a position is given as position=…; got {method!r}",
+            argument="method",
+        )
     if isinstance(targets, str):
         return (Target(targets, **dict(zip(PLACE_WORDS, wanted, strict=True))),)
     given = [

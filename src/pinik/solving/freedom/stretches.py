@@ -187,11 +187,16 @@ class _Cutter:
         return np.asarray(self._values[self._number(cell)] + rounds * self._curve.turns[self._entries])
 
     def _lift(self, cell: int) -> Array | None:
-        """The whole turns, in radians, that bring a cell inside the limits nearest to the start; None if none do."""
+        """The whole turns, in radians, that bring a cell inside the limits nearest to the start; None if none do.
+
+        What is near to the start is the part of the cell next to it: its middle may be half a turn away.
+        """
         if self._is_narrow(cell):
             return None
-        values = self._middle(cell)
-        turns = np.where(self._turning, np.round((self._near - values) / TURN), 0.0)
+        values, curve = self._middle(cell), self._curve
+        next_to = np.clip(curve.start, self._border(cell), self._border(cell + 1))
+        away = self._near - curve.points(np.array([next_to]))[0][0, self._entries]
+        turns = np.where(self._turning, np.round(away / TURN), 0.0)
         below, above = self._lower - values - TURN * turns, values + TURN * turns - self._upper
         turns += np.where(self._turning, np.ceil(np.maximum(below, 0.0) / TURN), 0.0)
         turns -= np.where(self._turning, np.ceil(np.maximum(above, 0.0) / TURN), 0.0)
