@@ -16,7 +16,7 @@ const CROWDED = 1.05; // how much wider robots may become before they are moved 
 const GLIDE = 480; // [ms]
 const DRAG = 4; // [px] that a pressed pointer moves before it counts as a drag
 const SIDES = 16; // [px] left and right of the robots
-const BUTTONS = 48; // [px] for the buttons at the upper edge
+const MOST_ABOVE = 1 / 3; // of the picture's height, kept free above the robots
 
 export class Camera extends EventTarget {
     constructor(stage) {
@@ -26,7 +26,7 @@ export class Camera extends EventTarget {
         this.preset = "iso";
         this.moved = false;
         this.offsets = [];
-        this.captionHeight = 44; // [px]
+        [this.captionHeight, this.buttons] = [44, 48]; // [px] what captions below and buttons above need
         [this._rows, this._column] = [1, Infinity];
         this.together = false; // whether all instances stand in one place
         this._calm = matchMedia("(prefers-reduced-motion: reduce)");
@@ -74,7 +74,7 @@ export class Camera extends EventTarget {
         const { width, height } = this._stage;
         const caption = this.captionHeight + 14;
         const side = Math.min(SIDES, width / 4);
-        const top = Math.min(BUTTONS + (rows > 1 ? caption : 0), height / 4);
+        const top = Math.min(this.buttons + (rows > 1 ? caption : 0), MOST_ABOVE * height);
         return { left: side, right: side, top, bottom: Math.min(caption, height / 4) };
     }
 

@@ -4,6 +4,7 @@ import { Labels } from "pinik/labels.js";
 import { tone, verdict } from "pinik/words.js";
 
 const AWAITING = "loading its shapes …";
+const BESIDE = 10; // [px] between the buttons and robots
 const WORDS = 120; // [ms] between two changes of the texts
 
 export class Captions {
@@ -84,6 +85,12 @@ export class Captions {
         const { x, y, w, h } = around(standing);
         const behind = [...seen, ...standing].some((point) => point.behind);
         return { box, foot: { x: x + w / 2, y: y + h }, behind };
+    }
+
+    /** The height from the upper edge to below the buttons [px]. */
+    get below() {
+        const [buttons] = this._taken();
+        return buttons ? buttons.y + buttons.h + BESIDE : 0;
     }
 
     _taken() {

@@ -205,9 +205,9 @@ export class Show {
         if (this.instances.length) this._sight.all(smoothly, preset);
     }
 
-    /** The height of the captions [px]. */
-    get captionHeight() {
-        return this._captions.measure();
+    /** The heights of the captions, and of the buttons at the upper edge [px]. */
+    get takenHeights() {
+        return [this._captions.measure(), this._captions.below];
     }
 
     /** The robot's shapes, as `Shapes.parts` returns them; null before they arrive. */

@@ -45,7 +45,7 @@ export class Sight {
     all(smoothly, preset) {
         const { camera, stage, instances, ground, robot } = this._show;
         this._pending = false;
-        camera.captionHeight = this._show.captionHeight;
+        [camera.captionHeight, camera.buttons] = this._show.takenHeights;
         camera.frame(this._points(), instances.length, preset, smoothly);
         const { center, radius } = camera.sphere;
         stage.ground.lay(ground, center.x, center.y, radius, robot.size);
