@@ -71,6 +71,7 @@ def test_the_number_of_threads_changes_nothing(ur5, options):
         False,
         ur5.neutral(),
         pinik.Options.of("dls", restarts=16, max_iterations=20, polish=False),
+        surveys.size_of_parts(one.samples, len(one.orientations)),
     )
     assert survey.parts > 4
     for threads in (1, 3):
@@ -82,11 +83,11 @@ def test_the_number_of_threads_changes_nothing(ur5, options):
 
 @pytest.mark.filterwarnings("ignore")  # of libraries, in threads that Dask ends
 def test_workers_find_the_same(ur5):
-    """With the usual size of parts, which other processes have not changed."""
-    options = {"cell": 0.2, "samples": 30_000, "directions": 6, "rolls": 0}
-    here = pinik.reach(ur5, FRAME, **options)
-    there = pinik.reach(ur5, FRAME, workers=2, **options)
+    told = []
+    here = pinik.reach(ur5, FRAME, **SAMPLED)
+    there = pinik.reach(ur5, FRAME, workers=2, on_progress=lambda tally: told.append(tally.finished), **SAMPLED)
     assert here.counts.to_bytes() == there.counts.to_bytes()
+    assert told == list(range(9))
 
 
 def test_random_numbers_do_not_depend_on_how_many_are_drawn():

@@ -70,7 +70,7 @@ class SolvedParts:
         A cell whose middle cannot be reached in any orientation is not asked for each of them.
         """
         survey = self.survey
-        size = survey.cells_of_a_part
+        size = survey.part_size
         cells = survey.asked[part * size : (part + 1) * size]
         counts = Counts.empty(cells, len(survey.orientations))
         centers = survey.grid.centers(cells)

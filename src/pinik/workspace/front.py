@@ -34,7 +34,7 @@ from .grid import Grid, readable_size
 from .orientations import Orientations
 from .reach_map import ReachMap
 from .run import run_survey, run_survey_to
-from .survey import Survey
+from .survey import Survey, size_of_parts
 
 __all__ = ["WAYS", "reach"]
 
@@ -47,6 +47,7 @@ RESTARTS, MAX_ITERATIONS = 16, 20
 _SAMPLES, _SAMPLES_OF_POSITIONS = 10_000_000, 2_000_000
 _CELLS = 12  # between the base and the edge of what is reached
 _PROBES = 2**14
+_MOST_BINS = 2**32  # as many bytes
 _KEYWORDS = ("by", "cell", "box", "samples", "directions", "rolls", "axis", "branches", "tool", "relative_to", "q0",
              "output", "resume", "workers", "scheduler",
              "on_progress", *OPTION_NAMES)  # fmt: skip
@@ -196,7 +197,14 @@ def make_survey(
         count = usual if samples is None else as_count(samples, "samples")
     if branches:
         _check_branches(count, axes, orientations)
-    return Survey(robot, target, _grid(sampler, cell, box), orientations, count, bool(branches), sampler.start, options)
+    grid = _grid(sampler, cell, box)
+    if len(grid) * len(orientations) > _MOST_BINS:
+        raise InputError(
+            f"{len(grid)} cells times {len(orientations)} orientations are too many; at most {_MOST_BINS} are "
+            "possible: choose larger cells, a smaller box, or fewer directions and rolls"
+        )
+    size = size_of_parts(count, len(orientations))
+    return Survey(robot, target, grid, orientations, count, bool(branches), sampler.start, options, size)
 
 
 def _check_branches(samples: int, axes: int, orientations: Orientations) -> None:
