@@ -27,7 +27,7 @@ Indices = NDArray[np.int64]
 
 _SAMPLES_OF_A_PART = 2**18
 _MOST_PARTS = 256  # of a survey by samples, whose parts each hold cells from everywhere
-_POSES_OF_A_PART = 2**16
+_POSES_OF_A_PART = 2**14
 
 
 @dataclass(frozen=True, eq=False)
