@@ -100,6 +100,7 @@ def test_down_needs_directions(ring):
         ({"samples": 0}, "samples"),
         ({"by": "solving", "samples": 10}, "samples"),
         ({"box": [(0, 0, 0), (0, 1, 1)]}, "box"),
+        ({"cell": 0.005, "directions": 1000, "rolls": 50}, "too many"),
         ({"axis": "w"}, "axis"),
         ({"branches": True}, "branches"),
         ({"resume": True}, "output"),

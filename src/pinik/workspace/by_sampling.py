@@ -1,4 +1,4 @@
-"""One part of a survey by samples: random configurations, and where the frame is at them."""
+"""One part of a plan by samples: random configurations, and where the frame is at them."""
 
 from __future__ import annotations
 
@@ -7,34 +7,35 @@ import numpy as np
 from ..scale.jobs.job import Pause, never_pause
 from .counts import Counts
 from .measures import manipulabilities, rooms
-from .survey import Survey
+from .plan import Plan
 
 __all__ = ["sample_part"]
 
 _AT_ONCE = 2**14  # so that what is computed of them stays in the processor's cache
 
 
-def sample_part(survey: Survey, part: int, pause: Pause = never_pause) -> Counts:
+def sample_part(plan: Plan, part: int, pause: Pause = never_pause) -> Counts:
     """Draw the samples of a part, and count in which cells and orientations they are."""
-    counts = survey.empty()
-    row_of = np.full(len(survey.grid) + 1, -1, dtype=np.int64)  # the last is for places outside the grid
-    row_of[counts.cells] = np.arange(len(counts.cells))
-    guard = survey.options.avoid.guard(survey.robot, survey.options.engine)
-    size = survey.samples_of_a_part
-    end = min((part + 1) * size, survey.samples)
+    guard = plan.options.avoid.guard(plan.robot, plan.options.engine)
+    asked = np.zeros(len(plan.grid) + 1, dtype=bool)  # the last is for places outside the grid
+    asked[plan.asked] = True
+    size = plan.part_size
+    end = min((part + 1) * size, plan.samples)
+    found = []
     for first in range(part * size, end, _AT_ONCE):
         pause()
-        q = survey.sampler.configurations(first, min(_AT_ONCE, end - first))
+        q = plan.sampler.configurations(first, min(_AT_ONCE, end - first))
         if guard is not None:
             q = q[~guard.checker.touches(q)]
-        places = survey.sampler.placements(q)
-        rows = row_of[survey.grid.cells_at(places[:, :3, 3])]
-        inside = rows >= 0
-        q, places, rows = q[inside], places[inside], rows[inside]
-        counts.add(
-            rows,
-            survey.orientations.regions_of(places[:, :3, :3]),
-            manipulabilities(survey.sampler, q, survey.rows) / survey.unit,
-            rooms(survey.sampler, q),
-        )
-    return counts.touched()
+        places = plan.sampler.placements(q)
+        cells = plan.grid.cells_at(places[:, :3, 3])
+        inside = asked[cells]
+        q, places = q[inside], places[inside]
+        turns = plan.orientations.regions_of(places[:, :3, :3])
+        manipulability = manipulabilities(plan.sampler, q, plan.rows) / plan.unit
+        found.append((cells[inside], turns, manipulability, rooms(plan.sampler, q)))
+    cells, turns, manipulability, room = (np.concatenate(columns) for columns in zip(*found, strict=True))
+    touched, rows = np.unique(cells, return_inverse=True)
+    counts = Counts.empty(touched, len(plan.orientations))
+    counts.add(rows, turns, manipulability, room)
+    return counts

@@ -1,4 +1,4 @@
-"""One part of a survey by solves: the middle of each cell, in each orientation."""
+"""One part of a plan by solves: the middle of each cell, in each orientation."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from ..solving.spread import NEAREST
 from ..solving.state import Status
 from .counts import Counts
 from .measures import manipulabilities, rooms
-from .survey import Survey
+from .plan import Plan
 
 __all__ = ["SolvedParts"]
 
@@ -29,34 +29,34 @@ Indices = NDArray[np.int64]
 
 
 class SolvedParts:
-    """Does the parts of a survey by solves, with its problems compiled once."""
+    """Does the parts of a plan by solves, with its problems compiled once."""
 
-    def __init__(self, survey: Survey) -> None:
-        self.survey = survey
+    def __init__(self, plan: Plan) -> None:
+        self.plan = plan
 
     @cached_property
     def _position(self) -> Prepared:
         """The problem of each cell, whatever the orientation."""
-        return Prepared(self.survey.robot, self.survey.target, self.survey.options)
+        return Prepared(self.plan.robot, self.plan.target, self.plan.options)
 
     @cached_property
     def _posed(self) -> Prepared:
         """The problem of each cell and orientation."""
-        survey, orientations = self.survey, self.survey.orientations
+        plan, orientations = self.plan, self.plan.orientations
         if not orientations.directions:
             return self._position
-        asked = survey.target
+        asked = plan.target
         common: dict[str, Any] = {"tool": asked.tool, "relative_to": asked.relative_to}
         if orientations.rolls:
             target = Target(asked.frame, (0.0, 0.0, 0.0), rotation=np.eye(3), **common)
         else:
             target = Target(asked.frame, (0.0, 0.0, 0.0), axis=orientations.axis, direction=(0.0, 0.0, 1.0), **common)
-        return Prepared(survey.robot, target, survey.options)
+        return Prepared(plan.robot, target, plan.options)
 
     @cached_property
     def _poses(self) -> Array:
         """The numbers of the targets for each orientation (n, 18), at the origin."""
-        orientations = self.survey.orientations
+        orientations = self.plan.orientations
         goals = np.tile(goals_of(self._posed.targets), (len(orientations), 1))
         if orientations.rolls:
             goals[:, 3:12] = orientations.rotations.reshape(-1, 9)
@@ -69,15 +69,15 @@ class SolvedParts:
 
         A cell whose middle cannot be reached in any orientation is not asked for each of them.
         """
-        survey = self.survey
-        size = survey.cells_of_a_part
-        cells = survey.asked[part * size : (part + 1) * size]
-        counts = Counts.empty(cells, len(survey.orientations))
-        centers = survey.grid.centers(cells)
+        plan = self.plan
+        size = plan.part_size
+        cells = plan.asked[part * size : (part + 1) * size]
+        counts = Counts.empty(cells, len(plan.orientations))
+        centers = plan.grid.centers(cells)
         goals = np.zeros((len(cells), 1, 18))
         goals[:, 0, :3] = centers
         rows = np.arange(len(cells))
-        if survey.orientations.directions:
+        if plan.orientations.directions:
             reached = self._solve(self._position, goals).status == Status.CONVERGED
             rows = np.flatnonzero(reached)
         for row in rows:
@@ -87,26 +87,26 @@ class SolvedParts:
 
     def _ask(self, counts: Counts, row: int, center: Array) -> None:
         """Solve for the middle of one cell in each orientation."""
-        survey = self.survey
+        plan = self.plan
         goals = self._poses.copy()[:, None]
         goals[:, 0, :3] = center
         found = self._solve(self._posed, goals)
         reached = np.flatnonzero(found.status == Status.CONVERGED)
         q, rows = found.q[reached], np.full(len(reached), row)
-        measures = manipulabilities(survey.sampler, q, survey.rows) / survey.unit, rooms(survey.sampler, q)
+        measures = manipulabilities(plan.sampler, q, plan.rows) / plan.unit, rooms(plan.sampler, q)
         counts.add(rows, reached, *measures)
-        if survey.branches:
+        if plan.branches:
             counts.branches[row] += sum(self._branches(goals[k]) for k in reached)
 
     def _solve(self, prepared: Prepared, goals: Array) -> Outcomes:
-        return solve_goals(prepared, goals, self.survey.start[None], True, 1)  # from near each target
+        return solve_goals(prepared, goals, self.plan.start[None], True, 1)  # from near each target
 
     def _branches(self, goals: Array) -> int:
         """The number of distinct answers for a pose that is reached; at least the one that reaches it."""
-        findings = find_all(self._searched, targets_of(self._searched.targets, goals), self.survey.start)
+        findings = find_all(self._searched, targets_of(self._searched.targets, goals), self.plan.start)
         return max(1, len(findings.q))
 
     @cached_property
     def _searched(self) -> Prepared:
         options = replace(self._posed.options, restarts=NEAREST, max_iterations=None, polish=True)
-        return Prepared(self.survey.robot, self._posed.targets, options)
+        return Prepared(self.plan.robot, self._posed.targets, options)

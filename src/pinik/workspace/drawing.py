@@ -8,7 +8,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..errors import InputError, UnknownNameError
-from ..model.home import home_configuration
 from ..picture.arguments import as_color, checked_size, view_direction
 from ..picture.bodies import Body, bodies_of
 from ..picture.camera import look_from
@@ -17,6 +16,7 @@ from ..picture.render import render
 from ..picture.solids import Solid
 from ..robot import Robot
 from .colors import colors_of
+from .pose import shown_configuration
 from .voxel_map import VoxelMap, Workspace
 
 __all__ = ["CUTS", "QUANTITIES", "draw_map", "quantity_of"]
@@ -77,7 +77,7 @@ def draw_map(
         quantity: What the colours stand for: "share", "manipulability", "room" or "branches", from 0 to the largest.
         workspace: The workspace to draw, as for `ReachMap.workspace`.
         cut: "quarter" removes the quarter that faces the camera, "half" the half, and "none" nothing.
-        q: The robot's configuration (nq,); its rest configuration when None.
+        q: The robot's configuration (nq,); when None, its rest configuration, or another if that would hide the frame.
         view: "angle", "front", "side" or "top"; or the azimuth and elevation [rad] of the camera.
         size: Width and height [pixels].
         ground: Whether to draw a ground below the robot and the map.
@@ -95,8 +95,8 @@ def draw_map(
     shown = reach.workspace(workspace)
     if not shown.any():
         raise InputError(f"the workspace {workspace!r} is empty, so there is nothing to draw")
-    pose = home_configuration(machine) if q is None else machine.check_configuration(q)
     direction = view_direction(view)
+    pose = shown_configuration(reach, machine, direction) if q is None else machine.check_configuration(q)
     values, largest = quantity_of(reach, quantity)
     robot_bodies = bodies_of(machine, pose)
     cells = list(_cells(reach, shown & ~_removed(reach, cut, direction), values / largest))

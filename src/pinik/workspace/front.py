@@ -32,9 +32,9 @@ from .counts import Counts
 from .files import check_suffix, content_of
 from .grid import Grid, readable_size
 from .orientations import Orientations
+from .plan import Plan, size_of_parts
 from .reach_map import ReachMap
-from .run import run_survey, run_survey_to
-from .survey import Survey
+from .run import run_plan, run_plan_to
 
 __all__ = ["WAYS", "reach"]
 
@@ -47,6 +47,7 @@ RESTARTS, MAX_ITERATIONS = 16, 20
 _SAMPLES, _SAMPLES_OF_POSITIONS = 10_000_000, 2_000_000
 _CELLS = 12  # between the base and the edge of what is reached
 _PROBES = 2**14
+_MOST_BINS = 2**32  # as many bytes
 _KEYWORDS = ("by", "cell", "box", "samples", "directions", "rolls", "axis", "branches", "tool", "relative_to", "q0",
              "output", "resume", "workers", "scheduler",
              "on_progress", *OPTION_NAMES)  # fmt: skip
@@ -134,7 +135,7 @@ def reach(
         method, solver_parameters, limits=limits, locked=locked, restarts=restarts, seed=seed,
         max_iterations=max_iterations, tolerance=tolerance, engine=engine, polish=False, avoid=avoid,
     )  # fmt: skip
-    survey = make_survey(
+    plan = make_plan(
         robot, frame, options, by=by, cell=cell, box=box, samples=samples, directions=directions, rolls=rolls,
         axis=axis, branches=branches, tool=tool, relative_to=relative_to, q0=q0,
     )  # fmt: skip
@@ -142,19 +143,19 @@ def reach(
     if output is None:
         if resume:
             raise InputError("needs output=, the file of the earlier call", argument="resume")
-        return map_of(survey, robot, run_survey(survey, runner, on_progress))
+        return map_of(plan, robot, run_plan(plan, runner, on_progress))
     path = Path(output)
     check_suffix(path)
     check_writable(path)
 
     def write(counts: Counts) -> bytes:
-        return content_of(map_of(survey, robot, counts), path)
+        return content_of(map_of(plan, robot, counts), path)
 
-    counts = run_survey_to(survey, path, write, runner, resume=resume, on_progress=on_progress)
-    return ReachMap.load(path, robot) if counts is None else map_of(survey, robot, counts)
+    counts = run_plan_to(plan, path, write, runner, resume=resume, on_progress=on_progress)
+    return ReachMap.load(path, robot) if counts is None else map_of(plan, robot, counts)
 
 
-def make_survey(
+def make_plan(
     robot: Robot,
     frame: str,
     options: Options,
@@ -170,8 +171,8 @@ def make_survey(
     tool: pinocchio.SE3 | ArrayLike | None,
     relative_to: str | None,
     q0: ArrayLike | Mapping[str, float] | None,
-) -> Survey:
-    """The survey for the arguments of `reach`, which are checked."""
+) -> Plan:
+    """The plan for the arguments of `reach`, which are checked."""
     if not isinstance(robot, Robot):
         raise InputError(f"robot must be what pinik.load returns; got {robot!r}")
     if by not in WAYS:
@@ -196,7 +197,14 @@ def make_survey(
         count = usual if samples is None else as_count(samples, "samples")
     if branches:
         _check_branches(count, axes, orientations)
-    return Survey(robot, target, _grid(sampler, cell, box), orientations, count, bool(branches), sampler.start, options)
+    grid = _grid(sampler, cell, box)
+    if len(grid) * len(orientations) > _MOST_BINS:
+        raise InputError(
+            f"{len(grid)} cells times {len(orientations)} orientations are too many; at most {_MOST_BINS} are "
+            "possible: choose larger cells, a smaller box, or fewer directions and rolls"
+        )
+    size = size_of_parts(count, len(orientations))
+    return Plan(robot, target, grid, orientations, count, bool(branches), sampler.start, options, size)
 
 
 def _check_branches(samples: int, axes: int, orientations: Orientations) -> None:
@@ -229,19 +237,19 @@ def _grid(sampler: Sampler, cell: float | None, box: ArrayLike | None) -> Grid:
     return Grid.around(center, half, size) if box is None else Grid.in_box(box, size)
 
 
-def map_of(survey: Survey, robot: Robot, counts: Counts) -> ReachMap:
-    """The map that a survey came to."""
-    target = survey.target
+def map_of(plan: Plan, robot: Robot, counts: Counts) -> ReachMap:
+    """The map that a plan came to."""
+    target = plan.target
     return ReachMap(
         robot=robot.name,
         frame=target.frame,
         relative_to=target.relative_to,
         tool=None if target.tool is None else np.array(target.tool.homogeneous),
-        grid=survey.grid,
-        orientations=survey.orientations,
-        samples=survey.samples,
-        counts_branches=survey.branches,
-        unit=survey.unit,
+        grid=plan.grid,
+        orientations=plan.orientations,
+        samples=plan.samples,
+        counts_branches=plan.branches,
+        unit=plan.unit,
         counts=counts,
         machine=robot,
     )

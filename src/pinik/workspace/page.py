@@ -11,11 +11,12 @@ from numpy.typing import NDArray
 
 from ..extras import needed_by
 from ..files import write_whole
-from ..model.home import home_configuration
+from ..picture.arguments import view_direction
 from ..picture.bodies import Body, bodies_of
 from ..robot import Robot
 from .colors import ANCHORS
 from .drawing import quantity_of
+from .pose import shown_configuration
 from .voxel_map import VoxelMap
 
 __all__ = ["save_page"]
@@ -55,7 +56,7 @@ def _document(reach: VoxelMap, robot: Robot, title: str) -> dict[str, Any]:
     if reach.orientations.directions > 1:
         pointing = reach.counts.reached[rows][:, reach.orientations.down].any(axis=1)
         down = _packed(pointing.astype(np.uint8).tobytes())
-    q = home_configuration(robot)
+    q = shown_configuration(reach, robot, view_direction("angle"))
     placement = np.eye(4) if reach.relative_to is None else robot.placement(reach.relative_to, q).homogeneous
     return {
         "title": title,

@@ -1,4 +1,4 @@
-"""A survey as a job: in this process or on a cluster, and with a file that it can be resumed to."""
+"""A plan as a job: in this process or on a cluster, and with a file that it can be resumed to."""
 
 from __future__ import annotations
 
@@ -14,48 +14,48 @@ from ..scale.jobs.run import OnProgress, run, stream
 from .by_sampling import sample_part
 from .by_solving import SolvedParts
 from .counts import Counts
-from .survey import Survey
+from .plan import Plan
 
-__all__ = ["run_survey", "run_survey_to"]
+__all__ = ["run_plan", "run_plan_to"]
 
 
 class _Work:
-    """Does parts of a survey, in several threads."""
+    """Does parts of a plan, in several threads."""
 
-    def __init__(self, survey: Survey) -> None:
-        self._survey = survey
+    def __init__(self, plan: Plan) -> None:
+        self._plan = plan
         self._local = threading.local()
 
     def __reduce__(self) -> tuple[Any, ...]:
-        return _Work, (self._survey,)
+        return _Work, (self._plan,)
 
     def __call__(self, part: int, pause: Pause) -> Result:
         counts = self._counts(part, pause)
         return Result(counts.to_bytes(), {"found": int(counts.found.sum())})
 
     def _counts(self, part: int, pause: Pause) -> Counts:
-        if self._survey.samples:
-            return sample_part(self._survey, part, pause)
+        if self._plan.samples:
+            return sample_part(self._plan, part, pause)
         if not hasattr(self._local, "solved"):
-            self._local.solved = SolvedParts(self._survey)
+            self._local.solved = SolvedParts(self._plan)
         solved: SolvedParts = self._local.solved
         return solved(part, pause)
 
 
-def job_of(survey: Survey) -> Job:
-    """The survey as a job, whose chunks are its parts."""
-    return Job({**survey.fingerprint, "versions": versions()}, survey.parts, lambda part: part, _Work(survey))
+def job_of(plan: Plan) -> Job:
+    """The plan as a job, whose chunks are its parts."""
+    return Job({**plan.fingerprint, "versions": versions()}, plan.parts, lambda part: part, _Work(plan))
 
 
-def run_survey(survey: Survey, runner: Runner, on_progress: OnProgress | None = None) -> Counts:
-    """Do all parts of a survey, and return what they found.
+def run_plan(plan: Plan, runner: Runner, on_progress: OnProgress | None = None) -> Counts:
+    """Do all parts of a plan, and return what they found.
 
     Raises:
         ClusterError: The cluster cannot be used.
     """
-    counts, orientations = survey.empty(), len(survey.orientations)
+    counts, orientations = plan.empty(), len(plan.orientations)
     stream(
-        job_of(survey),
+        job_of(plan),
         lambda content: counts.merge(Counts.from_bytes(content, orientations)),
         runner,
         on_progress=on_progress,
@@ -63,8 +63,8 @@ def run_survey(survey: Survey, runner: Runner, on_progress: OnProgress | None = 
     return counts
 
 
-def run_survey_to(
-    survey: Survey,
+def run_plan_to(
+    plan: Plan,
     output: Path,
     write: Callable[[Counts], bytes],
     runner: Runner,
@@ -72,10 +72,10 @@ def run_survey_to(
     resume: bool = False,
     on_progress: OnProgress | None = None,
 ) -> Counts | None:
-    """Do all parts of a survey, and write a file, which appears when it is whole.
+    """Do all parts of a plan, and write a file, which appears when it is whole.
 
     Args:
-        survey: The survey.
+        plan: The plan.
         output: The file. What is finished before it is whole is kept in the folder OUTPUT.parts.
         write: Makes the content of the file.
         runner: Where to work.
@@ -91,11 +91,11 @@ def run_survey_to(
     whole: list[Counts] = []
 
     def assemble(parts: Parts, file: BinaryIO) -> None:
-        counts = survey.empty()
+        counts = plan.empty()
         for content in parts:
-            counts.merge(Counts.from_bytes(content, len(survey.orientations)))
+            counts.merge(Counts.from_bytes(content, len(plan.orientations)))
         whole.append(counts)
         file.write(write(counts))
 
-    run(job_of(survey), output, assemble, runner, resume=resume, on_progress=on_progress)
+    run(job_of(plan), output, assemble, runner, resume=resume, on_progress=on_progress)
     return whole[0] if whole else None

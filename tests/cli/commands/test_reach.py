@@ -24,7 +24,7 @@ def test_a_map_of_two_hinges_is_the_ring(run):
     assert ring["volume_m3"] == pytest.approx(ring["cells"] * 1e-3)
     assert ring["volume_m3"] / 0.1 == pytest.approx(np.pi * 0.8, abs=0.1)
     np.testing.assert_allclose(ring["bounds"], [[-0.95, -0.95, -0.05], [0.95, 0.95, 0.05]], atol=1e-9)
-    assert set(told["workspaces"]) == {"any", "dexterous"}
+    assert set(told["workspaces"]) == {"any"}
     assert 0.19 < told["manipulability"]["largest"] <= 0.2 + 1e-6
 
 

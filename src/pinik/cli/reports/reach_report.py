@@ -23,7 +23,7 @@ __all__ = ["bases_fields", "emit_bases", "emit_map", "emit_targets", "map_fields
 
 def map_fields(reach: ReachMap, seconds: float, agreement: Mapping[str, float] | None = None) -> dict[str, Any]:
     """A map as JSON fields."""
-    told_apart = [name for name in WORKSPACES if name != "down" or reach.orientations.directions > 1]
+    told_apart = WORKSPACES if reach.orientations.directions > 1 else WORKSPACES[:1]
     fields: dict[str, Any] = {
         "schema": 1,
         "robot": reach.robot,

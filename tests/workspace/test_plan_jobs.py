@@ -10,8 +10,8 @@ import pytest
 import pinik
 from pinik.scale.jobs.threads import Threads
 from pinik.solving.sampling import Sampler, uniform_rows
-from pinik.workspace import survey as surveys
-from pinik.workspace.run import run_survey
+from pinik.workspace import plan as plans
+from pinik.workspace.run import run_plan
 
 FRAME = "tool0"
 SAMPLED = {"cell": 0.2, "samples": 30_000, "directions": 12, "rolls": 4}
@@ -20,8 +20,8 @@ SOLVED = {"by": "solving", "cell": 0.2, "directions": 6, "rolls": 2, "box": [(0.
 
 @pytest.fixture(autouse=True)
 def small_parts(monkeypatch):
-    monkeypatch.setattr(surveys, "_SAMPLES_OF_A_PART", 2**12)
-    monkeypatch.setattr(surveys, "_POSES_OF_A_PART", 48)
+    monkeypatch.setattr(plans, "_SAMPLES_OF_A_PART", 2**12)
+    monkeypatch.setattr(plans, "_POSES_OF_A_PART", 48)
 
 
 class StoppedError(Exception):
@@ -62,7 +62,7 @@ def test_an_interrupted_map_resumes_to_the_same_bytes(ur5, options, tmp_path):
 @pytest.mark.parametrize("options", [SAMPLED, SOLVED], ids=["sampling", "solving"])
 def test_the_number_of_threads_changes_nothing(ur5, options):
     one = pinik.reach(ur5, FRAME, **options)
-    survey = surveys.Survey(
+    plan = plans.Plan(
         ur5,
         pinik.Target(FRAME, (0.0, 0.0, 0.0)),
         one.grid,
@@ -71,22 +71,23 @@ def test_the_number_of_threads_changes_nothing(ur5, options):
         False,
         ur5.neutral(),
         pinik.Options.of("dls", restarts=16, max_iterations=20, polish=False),
+        plans.size_of_parts(one.samples, len(one.orientations)),
     )
-    assert survey.parts > 4
+    assert plan.parts > 4
     for threads in (1, 3):
-        assert run_survey(survey, Threads(threads)).to_bytes() == one.counts.to_bytes()
-    again = pickle.loads(pickle.dumps(survey))
-    assert again.fingerprint == survey.fingerprint
-    assert run_survey(again, Threads(1)).to_bytes() == one.counts.to_bytes()
+        assert run_plan(plan, Threads(threads)).to_bytes() == one.counts.to_bytes()
+    again = pickle.loads(pickle.dumps(plan))
+    assert again.fingerprint == plan.fingerprint
+    assert run_plan(again, Threads(1)).to_bytes() == one.counts.to_bytes()
 
 
 @pytest.mark.filterwarnings("ignore")  # of libraries, in threads that Dask ends
 def test_workers_find_the_same(ur5):
-    """With the usual size of parts, which other processes have not changed."""
-    options = {"cell": 0.2, "samples": 30_000, "directions": 6, "rolls": 0}
-    here = pinik.reach(ur5, FRAME, **options)
-    there = pinik.reach(ur5, FRAME, workers=2, **options)
+    told = []
+    here = pinik.reach(ur5, FRAME, **SAMPLED)
+    there = pinik.reach(ur5, FRAME, workers=2, on_progress=lambda tally: told.append(tally.finished), **SAMPLED)
     assert here.counts.to_bytes() == there.counts.to_bytes()
+    assert told == list(range(9))
 
 
 def test_random_numbers_do_not_depend_on_how_many_are_drawn():

@@ -1,4 +1,4 @@
-"""A survey: everything that a map depends on, cut into numbered parts that are done independently of each other."""
+"""A plan: everything that a map depends on, cut into numbered parts that are done independently of each other."""
 
 from __future__ import annotations
 
@@ -20,18 +20,18 @@ from .counts import Counts
 from .grid import Grid
 from .orientations import Orientations
 
-__all__ = ["Survey"]
+__all__ = ["Plan", "size_of_parts"]
 
 Array = NDArray[np.float64]
 Indices = NDArray[np.int64]
 
 _SAMPLES_OF_A_PART = 2**18
-_MOST_PARTS = 256  # of a survey by samples, whose parts each hold cells from everywhere
-_POSES_OF_A_PART = 2**16
+_MOST_PARTS = 256  # of a plan by samples, whose parts each hold cells from everywhere
+_POSES_OF_A_PART = 2**14
 
 
 @dataclass(frozen=True, eq=False)
-class Survey:
+class Plan:
     """Everything that a map depends on.
 
     Its parts are numbered from 0. What a part finds does not depend on which other parts are done, when and where.
@@ -41,10 +41,11 @@ class Survey:
         target: The target that names the frame, its tool and its reference.
         grid: The cells.
         orientations: The orientations that are told apart.
-        samples: The number of random configurations; 0 for a survey that solves for each cell instead.
+        samples: The number of random configurations; 0 for a plan that solves for each cell instead.
         branches: Whether to count the distinct answers for each pose that is reached.
         start: The configuration (nq,) of all joints that do not move the frame, from which solves start.
         options: The options of the solves; samples obey limits, locked joints, seed and what is to be avoided.
+        part_size: The number of samples, or of cells, in each part but the last.
     """
 
     robot: RobotModel
@@ -55,6 +56,7 @@ class Survey:
     branches: bool
     start: Array
     options: Options
+    part_size: int
 
     @cached_property
     def sampler(self) -> Sampler:
@@ -87,22 +89,9 @@ class Survey:
         return np.asarray(cells[distance <= bounds.reach + margin + 1e-9 * (1.0 + bounds.reach)])
 
     @property
-    def samples_of_a_part(self) -> int:
-        """The number of samples in each part but the last."""
-        parts = -(-self.samples // (_MOST_PARTS * _SAMPLES_OF_A_PART))
-        return _SAMPLES_OF_A_PART * max(parts, 1)
-
-    @property
-    def cells_of_a_part(self) -> int:
-        """The number of cells in each part but the last."""
-        return max(1, _POSES_OF_A_PART // len(self.orientations))
-
-    @property
     def parts(self) -> int:
         """The number of parts."""
-        if self.samples:
-            return -(-self.samples // self.samples_of_a_part)
-        return -(-len(self.asked) // self.cells_of_a_part)
+        return -(-(self.samples or len(self.asked)) // self.part_size)
 
     @property
     def fingerprint(self) -> dict[str, Any]:
@@ -119,6 +108,7 @@ class Survey:
                 "axis": self.orientations.axis.tolist(),
             },
             "samples": self.samples,
+            "part_size": self.part_size,
             "branches": self.branches,
             "q0": self.start.tolist(),
             "method": {"name": options.method.name, **solver},
@@ -136,8 +126,15 @@ class Survey:
 
     def __reduce__(self) -> tuple[Any, ...]:
         """Pickle only the fields; what is compiled from them belongs to this process."""
-        return Survey, tuple(getattr(self, own.name) for own in fields(self))
+        return Plan, tuple(getattr(self, own.name) for own in fields(self))
 
     def empty(self) -> Counts:
         """Counts for all parts, in which nothing has been found yet."""
         return Counts.empty(self.asked, len(self.orientations))
+
+
+def size_of_parts(samples: int, orientations: int) -> int:
+    """A good size of parts: seconds of work, and not so many that the parts of large plans fill the disk."""
+    if not samples:
+        return max(1, _POSES_OF_A_PART // orientations)
+    return _SAMPLES_OF_A_PART * max(-(-samples // (_MOST_PARTS * _SAMPLES_OF_A_PART)), 1)
