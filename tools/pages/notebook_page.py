@@ -20,7 +20,7 @@ def notebook_page(path: Path) -> tuple[str, dict[str, bytes]]:
     pictures: dict[str, bytes] = {}
     for cell in nbformat.read(path, as_version=4).cells:
         if cell.cell_type == "markdown":
-            parts.append(cell.source)
+            parts.append(cell.source.replace("<details>", '<details markdown="1">'))
             continue
         parts.append(_fenced(cell.source, "python"))
         for output in cell.outputs:
