@@ -78,7 +78,7 @@ docs: export NO_MKDOCS_2_WARNING = 1
 docs: $(VENV)/installed-dev
 	@$(python) tools/write_reference.py
 	@$(python) -m mkdocs build --quiet
-	@echo "The site is in build/site; '$(python) -m mkdocs serve' shows it while you write"
+	@echo "The site is in build/site; '$(python) -m http.server -d build/site' shows it, search included"
 
 clean:
 	@rm -rf $(VENV) build dist .mypy_cache .pytest_cache .ruff_cache .hypothesis .benchmarks

@@ -72,12 +72,15 @@ def test_there_are_notebooks_and_their_numbers_are_in_order():
 
 @each_notebook
 def test_it_runs_in_a_fresh_kernel_and_shows_what_is_committed(path):
-    fresh, committed = run_notebooks.run(path), read(path)
+    fresh, committed = run_notebooks.run(path, with_solutions=True), read(path)
     for output in outputs(fresh):
         assert output.output_type != "error"
         assert output.get("name") != "stderr", output.text
     told = path.stem not in AGAINST_THE_CLOCK
-    for cell, before in zip(code_cells(fresh), code_cells(committed), strict=True):
+    solutions = run_notebooks.solutions(committed)
+    shown_cells, solved_cells = code_cells(fresh)[: -len(solutions)], code_cells(fresh)[-len(solutions) :]
+    assert [cell.source for cell in solved_cells] == solutions
+    for cell, before in zip(shown_cells, code_cells(committed), strict=True):
         assert [shown(one, told) for one in cell.outputs] == [shown(one, told) for one in before.outputs], cell.source
 
 
@@ -87,6 +90,22 @@ def test_what_is_compared_are_words_and_not_digits_units_or_columns():
     assert masked(one) == masked(other) == "[# # #] in joint1: # off, #, #, #"
     for one, other in (("joint1", "joint2"), ("converged", "stalled"), ("True", "False"), ("3 4", "3")):
         assert masked(one) != masked(other)
+
+
+@each_notebook
+def test_it_ends_with_exercises_and_each_solution_checks_itself(path):
+    notebook = read(path)
+    sources = [cell.source for cell in notebook.cells]
+    begin = next(k for k, source in enumerate(sources) if source.startswith("## Exercises"))
+    exercises = sources[begin + 1 :]
+    assert len(exercises) >= 2
+    for number, exercise in enumerate(exercises, start=1):
+        assert exercise.startswith(f"**{number}.** ")
+        question, _, solution = exercise.partition("<details>\n<summary>Solution</summary>\n\n```python\n")
+        assert question.strip()
+        assert "assert " in solution
+        assert solution.endswith("\n\n</details>")
+    assert len(run_notebooks.solutions(notebook)) == len(exercises)
 
 
 @pytest.mark.parametrize("names", [["99"], ["01", "two"]])

@@ -10,6 +10,7 @@ python tools/run_notebooks.py 05 06       # those whose names start with 05 or 0
 from __future__ import annotations
 
 import argparse
+import re
 import time
 from collections.abc import Sequence
 from pathlib import Path
@@ -19,15 +20,25 @@ from nbclient import NotebookClient
 
 FOLDER = Path(__file__).parents[1] / "notebooks"
 LONGEST = 120  # the most time for one cell [s]
+_SOLUTION = re.compile(r"<summary>Solution</summary>.*?^```python\n(.*?)^```$", re.MULTILINE | re.DOTALL)
 
 
-def run(path: Path) -> nbformat.NotebookNode:
+def solutions(notebook: nbformat.NotebookNode) -> list[str]:
+    """The code in the folded solutions of a notebook's exercises."""
+    return [code for cell in notebook.cells if cell.cell_type == "markdown" for code in _SOLUTION.findall(cell.source)]
+
+
+def run(path: Path, *, with_solutions: bool = False) -> nbformat.NotebookNode:
     """Execute a notebook in a fresh kernel in its own folder, without changing the file.
+
+    With `with_solutions` the code of its solutions is run after its own cells, as cells at its end.
 
     Raises:
         nbclient.exceptions.CellExecutionError: A cell raised an exception; the message shows it.
     """
     notebook = nbformat.read(path, as_version=4)
+    if with_solutions:
+        notebook.cells += [nbformat.v4.new_code_cell(code) for code in solutions(notebook)]
     client = NotebookClient(
         notebook,
         timeout=LONGEST,
