@@ -14,7 +14,21 @@ import typer
 from ..errors import PinikError
 from ..interrupts import Terminated, as_exceptions
 from ..version import __version__
-from .commands import accuracy, check, collisions, compare, fk, info, jacobian, live, robots, solve, solve_all, track
+from .commands import (
+    accuracy,
+    batch,
+    check,
+    collisions,
+    compare,
+    fk,
+    info,
+    jacobian,
+    live,
+    robots,
+    solve,
+    solve_all,
+    track,
+)
 from .reports.solver_help import solvers_help
 from .terminal import output
 from .terminal.exits import CommandError, ExitStatus, in_words
@@ -25,6 +39,7 @@ _COMMANDS: dict[str, Callable[..., ExitStatus]] = {
     "solve": solve.solve,
     "solve-all": solve_all.solve_all,
     "track": track.track,
+    "batch": batch.batch,
     "fk": fk.fk,
     "jacobian": jacobian.jacobian,
     "info": info.info,
@@ -45,7 +60,8 @@ def _application() -> typer.Typer:
         add_completion=False,
         context_settings={"help_option_names": ["--help", "-h"]},
     )
-    epilogs = {"solve": solvers_help(), "solve-all": solvers_help(), "track": solvers_help(), "compare": compare.EPILOG}
+    epilogs = {"solve": solvers_help(), "solve-all": solvers_help(), "track": solvers_help(), "batch": solvers_help()}
+    epilogs["compare"] = compare.EPILOG
     for name, command in _COMMANDS.items():
         app.command(name, help=_flowing(command.__doc__), epilog=epilogs.get(name))(command)
     app.callback(invoke_without_command=True, help=_flowing(_pinik.__doc__))(_pinik)
