@@ -52,8 +52,9 @@ def attempt_many(engine: Engine, goals: Array, starts: Array, nearest: bool, thr
         restarts = columns[6]
         for k in np.flatnonzero(restarts >= NEAREST):  # the number seeds only restarts that the table does not give
             own = starts if len(starts) == 1 else starts[k : k + 1]
-            for column, alone in zip(columns, engine.solve_many(own, goals[k : k + 1], nearest, 1), strict=True):
-                column[k] = alone[0]
+            alone: tuple[Any, ...] = engine.solve_many(own, goals[k : k + 1], nearest, 1)
+            for column, answer in zip(columns, alone, strict=True):
+                column[k] = answer[0]
     return _outcomes(*columns)
 
 
