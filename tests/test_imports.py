@@ -35,6 +35,7 @@ ONLY_THERE = {
         f"viewer.web.{name}" for name in ("server", "tab", "door", "connection", "metronome", "later", "live_view")
     },
     "umsgpack": {"viewer.web.scene", "viewer.web.shape_cache"},
+    "pyarrow": {"scale.tables.parquet"},
     "distributed": {"scale.jobs.cluster"},
     "cloudpickle": {"scale.jobs.cluster"},
     "dask": set(),

@@ -7,6 +7,8 @@ Where are its frames (`Robot.placement`, `Robot.jacobian`), and which joint valu
 from . import early_signals as early_signals  # before the others, whose loading takes most of a short command's time
 
 # isort: split
+import typing as _typing
+
 from .closed_form.robot_bones import TwoBone, TwoBoneConfigurations
 from .closed_form.two_bone import TwoBoneAnswers, two_bone
 from .description.catalog import catalog
@@ -54,6 +56,19 @@ from .version import __version__ as __version__
 from .viewer.live import live
 from .workspace.front import reach
 from .workspace.reach_map import ReachMap
+
+if _typing.TYPE_CHECKING:
+    from .scale import batch as batch
+else:
+
+    def __getattr__(name: str) -> object:
+        """`pinik.batch`, which few programs need, is loaded when it is first asked for."""
+        if name != "batch":
+            raise AttributeError(f"module 'pinik' has no attribute {name!r}")
+        from .scale import batch
+
+        return batch
+
 
 __all__ = [
     "CCD",
