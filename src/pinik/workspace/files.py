@@ -13,8 +13,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..errors import InputError
-from ..extras import needed_by
 from ..files import FileError, read_within, write_whole
+from ..scale.tables.parquet import load_pyarrow
 from .counts import Counts
 from .grid import Grid
 from .orientations import Orientations
@@ -117,10 +117,7 @@ def _columns(reach: VoxelMap) -> dict[str, NDArray[np.generic]]:
 
 
 def _parquet(reach: VoxelMap) -> bytes:
-    with needed_by("a Parquet file", "batch"):
-        import pyarrow
-        from pyarrow import parquet
-
+    pyarrow = load_pyarrow()
     arrays = reach.counts.to_arrays()
     bits = np.asarray(arrays.pop("reached"))
     columns = {name: pyarrow.array(values) for name, values in (_columns(reach) | arrays).items()}
@@ -129,16 +126,13 @@ def _parquet(reach: VoxelMap) -> bytes:
     )
     table = pyarrow.table(columns).replace_schema_metadata({_KEY: json.dumps(_head(reach))})
     file = io.BytesIO()
-    parquet.write_table(table, file, compression="zstd")
+    pyarrow.parquet.write_table(table, file, compression="zstd")
     return file.getvalue()
 
 
 def _read_parquet(content: bytes) -> tuple[dict[str, Any], dict[str, NDArray[np.generic]]]:
-    with needed_by("a Parquet file", "batch"):
-        import pyarrow
-        from pyarrow import parquet
-
-    table = parquet.read_table(pyarrow.BufferReader(content))
+    pyarrow = load_pyarrow()
+    table = pyarrow.parquet.read_table(pyarrow.BufferReader(content))
     head = json.loads((table.schema.metadata or {})[_KEY])
     arrays = {name: table[name].to_numpy() for name in table.column_names if name != "reached"}
     rows = b"".join(table["reached"].to_pylist())

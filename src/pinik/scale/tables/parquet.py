@@ -13,12 +13,12 @@ import numpy as np
 from ...extras import needed_by
 from .table import Cells, Column, Contents, Fault, Pieces, Table, not_a_name, not_a_number
 
-__all__ = ["ParquetSource", "ParquetWriter", "pyarrow_version"]
+__all__ = ["ParquetSource", "ParquetWriter", "load_pyarrow", "pyarrow_version"]
 
 _ROWS_IN_A_GROUP = 131_072
 
 
-def _pyarrow() -> Any:
+def load_pyarrow() -> Any:
     """pyarrow with its Parquet reader.
 
     Raises:
@@ -32,7 +32,7 @@ def _pyarrow() -> Any:
 
 def pyarrow_version() -> str:
     """The version of pyarrow, on which the bytes of a file depend."""
-    return str(_pyarrow().__version__)
+    return str(load_pyarrow().__version__)
 
 
 class ParquetSource:
@@ -42,7 +42,7 @@ class ParquetSource:
 
     def __init__(self, path: Path, rows: int) -> None:
         """Open it; `ValueError` says which column cannot be used."""
-        arrow = _pyarrow()
+        arrow = load_pyarrow()
         try:
             self._file = arrow.parquet.ParquetFile(path)
         except arrow.ArrowInvalid as error:
@@ -73,7 +73,7 @@ class ParquetSource:
     @staticmethod
     def decode(raw: tuple[int, Any], cells: Cells) -> Table:
         """Read a chunk."""
-        arrow = _pyarrow()
+        arrow = load_pyarrow()
         begin, batch = raw
         table = Table(np.arange(begin, begin + batch.num_rows))
         for name in cells.names:
@@ -117,7 +117,7 @@ class ParquetWriter:
 
     def encode(self, columns: Sequence[Column], contents: Contents) -> bytes:
         """The rows as an Arrow stream."""
-        arrow = _pyarrow()
+        arrow = load_pyarrow()
         schema = _schema(arrow, columns)
         arrays = [
             arrow.array(content, field.type, from_pandas=True) for field, content in zip(schema, contents, strict=True)
@@ -134,7 +134,7 @@ class ParquetWriter:
 
     def assemble(self, columns: Sequence[Column], parts: Pieces, file: BinaryIO) -> None:
         """All rows, in groups of a fixed number of them."""
-        arrow = _pyarrow()
+        arrow = load_pyarrow()
         schema = _schema(arrow, columns)
         texts = [column.name for column in columns if column.name == "status"]
         with arrow.parquet.ParquetWriter(file, schema, use_dictionary=texts, compression="snappy") as writer:
