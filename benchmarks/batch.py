@@ -33,6 +33,7 @@ import pinocchio
 
 import pinik
 from pinik.scale.columns import Columns
+from pinik.scale.jobs.job import Tally
 from pinik.scale.jobs.parts import parts_folder
 from pinik.scale.tables.formats import FORMATS, format_of, open_source
 from pinik.scale.tables.table import Column
@@ -221,16 +222,29 @@ def survive(folder: Path, rows: int, kills: int, form: str) -> bool:
 
 
 def show_scaling(folder: Path, rows: int, workers: list[int]) -> None:
-    path = folder / "poses.parquet"
+    """Rows a second on each number of workers, and what the process that divides the work needs for a row."""
+    path, here, there = folder / "poses.parquet", folder / "here.parquet", folder / "there.parquet"
     make_table(path, rows)
-    here = measured(path, folder / "here.parquet")
-    print(f"threads of this process: {here['rows'] / here['wall']:,.0f} rows/s")
+    own = measured(path, here)
+    print(f"threads of this process: {own['rows'] / own['wall']:,.0f} rows/s, {1e6 * own['cpu'] / rows:.2f} µs a row")
+    robot = pinik.load("panda")
     for count in workers:
-        robot = pinik.load("panda")
-        summary = pinik.batch.run(robot, path, FRAMES["panda"], output=folder / "there.parquet", workers=count)
-        same = (folder / "here.parquet").read_bytes() == (folder / "there.parquet").read_bytes()
-        bytes_words = "the same bytes" if same else "OTHER BYTES"
-        print(f"{count} workers of Dask: {summary.rate:,.0f} rows/s with their start, {bytes_words}")
+        steps: list[tuple[float, float]] = []
+
+        def note(tally: Tally, _: int, steps: list[tuple[float, float]] = steps) -> None:
+            steps.append((time.perf_counter(), tally.notes.get("rows", 0)))
+
+        used = time.process_time()
+        pinik.batch.run(robot, path, FRAMES["panda"], output=there, workers=count, on_progress=note)
+        used = time.process_time() - used
+        # From the first to the last finished chunk: without the start of the workers, and without the survey.
+        (begin, first), (end, last) = steps[1], steps[-1]
+        words = "the same bytes" if here.read_bytes() == there.read_bytes() else "OTHER BYTES"
+        print(
+            f"{count} workers of Dask: {(last - first) / (end - begin):,.0f} rows/s, {words}; the process that divides "
+            f"the work takes {1e6 * used / rows:.2f} µs a row, {1e3 * used / (len(steps) - 1):.1f} ms a chunk",
+            flush=True,
+        )
 
 
 def main() -> int:

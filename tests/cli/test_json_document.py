@@ -17,12 +17,14 @@ ROOT = Path(__file__).parents[2]
 DOCUMENT = ROOT / "docs" / "json.md"
 JUMP = ROOT / "examples" / "jump.csv"
 CIRCLE = ROOT / "examples" / "circle.csv"
+POSES = ROOT / "examples" / "poses.csv"
 SLIP = """<robot name="r"><link name="a"/><link name="b"/><joint name="j" type="revolute"><parent link="a"/>
 <child link="b"/><origin xzy="1 2 3"/><limit lower="-90" upper="90" effort="1" velocity="1"/></joint></robot>"""
 PLACEHOLDERS = {
     "angles": "JOINT",
     "joint_placements": "JOINT",
     "mimics": "JOINT",
+    "by_status": "STATUS",
     "changes": "JOINT",
     "counts": "CODE",
     "limits": "JOINT",
@@ -61,6 +63,7 @@ RUNS = {
         ("reach", "panda", CIRCLE, "--frame", "panda_hand_tcp", "--json"),
         ("reach", "two_link", JUMP, "--frame", "tip", "--bases", "2", "--samples", "1000", "--json"),
     ],
+    "batch": [("batch", "arm", POSES, "--frame", "tip", "--output", "{tmp}/answers.csv", "--json")],
     "fk": [("fk", "panda", "--root", "free_flyer", "--json")],
     "jacobian": [("jacobian", "panda", "--frame", "panda_hand", "--root", "free_flyer", "--json")],
     "info": [("info", "panda", "--root", "free_flyer", "--json")],

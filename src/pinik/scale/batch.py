@@ -212,7 +212,7 @@ def _surveyed(table: TargetsFile, reading: Reading, on_bad: Callable[[str], None
     if found.faulty and on_bad is None:
         words = first[0]
         if found.faulty > 1:
-            words += f"; {found.faulty - 1:,} more rows are faulty"
+            words += f"; {found.faulty - 1:,} more {'row is' if found.faulty == 2 else 'rows are'} faulty"
         raise InputError(f"{words}; --skip-bad (skip_bad=True) leaves out faulty rows")
     if found.faulty == found.rows:
         raise InputError(f"{table.label}: there is no row without a fault")

@@ -69,7 +69,7 @@ def test_bad_rows_are_status_2_and_with_skip_bad_listed_and_status_1(run, tmp_pa
     done = run("batch", "arm", table, "--frame", "tip", "--output", out)
     assert (done.status, done.out) == (2, "")
     assert done.err == (
-        f"error: {table}: line 4: column x: must be a finite number; got nan; 1 more rows are faulty; --skip-bad "
+        f"error: {table}: line 4: column x: must be a finite number; got nan; 1 more row is faulty; --skip-bad "
         "(skip_bad=True) leaves out faulty rows\n"
     )
     assert not out.exists()
