@@ -29,8 +29,8 @@ This page is made from the commands themselves, which say the same with `--help`
 STREAMS = """
 If stdout is closed or its disk is full, the answer is lost, and the status is 2. If only the reader of a pipe has gone,
 as in `pinik info arm | head`, the command ends silently with its usual status. Messages that cannot be written to
-stderr do not change the status. Files that pinik writes are written whole or not at all: an error or an interrupt leaves
-the file that was there before.
+stderr do not change the status. Files that pinik writes are written whole or not at all: an error or an interrupt
+leaves the file that was there before.
 """
 
 STATUSES = {
