@@ -6,6 +6,7 @@ import importlib.metadata
 import json
 import os
 import re
+import resource
 import shutil
 import subprocess
 import sys
@@ -212,6 +213,20 @@ def test_an_installed_pinik_loads_and_solves_its_own_robots_outside_the_checkout
         assert answers[name]["poses"]
         assert Path(answers[name]["source"]) == installed / "pinik" / "urdf" / f"{name}.urdf"
         assert any(f"/meshes/{name}/" in mesh for mesh in answers[name]["meshes"])
+
+
+def test_an_installed_pinik_is_imported_within_a_few_times_of_what_it_imports(installed, tmp_path):
+    """In processor time, in turns, each at its best of several; an installed package holds its bytecode."""
+
+    def processor_time(statement: str) -> float:
+        before = resource.getrusage(resource.RUSAGE_CHILDREN)
+        run(*ELSEWHERE, "-c", statement, cwd=tmp_path, PYTHONPATH=paths(installed))
+        after = resource.getrusage(resource.RUSAGE_CHILDREN)
+        return after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
+
+    times = [(processor_time("import numpy, pinocchio"), processor_time("import pinik")) for _ in range(5)]
+    needed, whole = map(min, zip(*times, strict=True))
+    assert whole < 2.5 * needed  # about 1.7
 
 
 def test_the_installed_package_holds_every_file_of_urdf_and_of_the_source(installed):

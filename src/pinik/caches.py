@@ -8,7 +8,7 @@ from pathlib import Path
 
 from .files import write_whole
 
-__all__ = ["cache_folder", "keep"]
+__all__ = ["cache_folder", "digest", "keep"]
 
 
 def cache_folder(part: str) -> Path | None:
@@ -26,6 +26,17 @@ def cache_folder(part: str) -> Path | None:
         return None
     folder = Path(platformdirs.user_cache_dir("pinik", appauthor=False)) / part
     return folder if folder.is_absolute() else None
+
+
+def digest(*pieces: bytes) -> str:
+    """The SHA-256 of several pieces, whose boundaries count."""
+    from hashlib import sha256  # it loads OpenSSL, which few runs need
+
+    whole = sha256()
+    for piece in pieces:
+        whole.update(len(piece).to_bytes(8, "little"))
+        whole.update(piece)
+    return whole.hexdigest()
 
 
 def keep(path: Path, content: bytes) -> None:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from difflib import get_close_matches
 from functools import partial
 from typing import Any
 
@@ -100,6 +99,8 @@ def near_names(name: object, valid: Iterable[str], most: int = 4) -> tuple[str, 
     Names that begin with the given word come first, then close matches, then names that the word begins with.
     Upper and lower case count as equal.
     """
+    from difflib import get_close_matches  # which few runs need
+
     word = str(name).casefold()
     if not word:
         return ()

@@ -6,6 +6,7 @@ import inspect
 import sys
 import warnings
 from collections.abc import Callable, Sequence
+from importlib import import_module
 from typing import Annotated, Any
 
 import numpy as np
@@ -14,60 +15,54 @@ import typer
 from ..errors import PinikError
 from ..interrupts import Terminated, as_exceptions
 from ..version import __version__
-from .commands import (
-    accuracy,
-    batch,
-    check,
-    collisions,
-    compare,
-    fk,
-    info,
-    jacobian,
-    live,
-    reach,
-    robots,
-    solve,
-    solve_all,
-    track,
-)
 from .reports.solver_help import solvers_help
 from .terminal import output
 from .terminal.exits import CommandError, ExitStatus, in_words
 
 __all__ = ["main"]
 
-_COMMANDS: dict[str, Callable[..., ExitStatus]] = {
-    "solve": solve.solve,
-    "solve-all": solve_all.solve_all,
-    "track": track.track,
-    "batch": batch.batch,
-    "reach": reach.reach,
-    "fk": fk.fk,
-    "jacobian": jacobian.jacobian,
-    "info": info.info,
-    "check": check.check,
-    "collisions": collisions.collisions,
-    "robots": robots.robots,
-    "live": live.live,
-    "compare": compare.compare,
-    "accuracy": accuracy.accuracy,
-}
+_COMMANDS = (
+    "solve",
+    "solve-all",
+    "track",
+    "batch",
+    "reach",
+    "fk",
+    "jacobian",
+    "info",
+    "check",
+    "collisions",
+    "robots",
+    "live",
+    "compare",
+    "accuracy",
+)
+_WITH_METHODS = ("solve", "solve-all", "track", "batch", "reach")  # whose help explains the methods
 
 
-def _application() -> typer.Typer:
-    """The commands with their help, which names the methods that are registered now."""
+def _application(words: Sequence[str]) -> typer.Typer:
+    """The command that a command line names, or all if it names none; their help names the methods registered now."""
     app = typer.Typer(
         name="pinik",
         rich_markup_mode="rich",
         add_completion=False,
         context_settings={"help_option_names": ["--help", "-h"]},
     )
-    methods = dict.fromkeys(("solve", "solve-all", "track", "batch", "reach"), solvers_help())
-    epilogs = methods | {"compare": compare.EPILOG}
-    for name, command in _COMMANDS.items():
-        app.command(name, help=_flowing(command.__doc__), epilog=epilogs.get(name))(command)
+    for name in _named(words):
+        own_name = name.replace("-", "_")
+        module = import_module(f".commands.{own_name}", __package__)
+        command: Callable[..., ExitStatus] = getattr(module, own_name)
+        epilog = solvers_help() if name in _WITH_METHODS else getattr(module, "EPILOG", None)
+        app.command(name, help=_flowing(command.__doc__), epilog=epilog)(command)
     app.callback(invoke_without_command=True, help=_flowing(_pinik.__doc__))(_pinik)
     return app
+
+
+def _named(words: Sequence[str]) -> Sequence[str]:
+    """The commands that a command line needs: only the modules of these are loaded."""
+    if list(words) == ["--version"]:
+        return ()
+    return words[:1] if words and words[0] in _COMMANDS else _COMMANDS
 
 
 def _flowing(text: str | None) -> str:
@@ -127,7 +122,7 @@ def _run(words: Sequence[str]) -> ExitStatus:
     try:
         if for_help:
             _keep_help_texts_plain()
-        command = typer.main.get_command(_application())
+        command = typer.main.get_command(_application(words))
         # The commands return their status, and so do --help and --version, which end early.
         returned = command.main(args=list(words), prog_name="pinik", standalone_mode=False)
         if returned == ExitStatus.INTERRUPTED:  # which Typer makes of a KeyboardInterrupt

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Collection, Mapping
 from dataclasses import replace
-from difflib import SequenceMatcher
 from functools import lru_cache
 
 from ..echoes import QUOTED, shortened
@@ -107,6 +106,8 @@ def _likeness(name: str, known: str) -> float:
         return _SURELY
     if abs(len(word) - len(other)) == 1 and _has_one_more(*sorted((word, other), key=len)):
         return 2.0 * min(len(word), len(other)) / (len(word) + len(other))
+    from difflib import SequenceMatcher  # which few runs need
+
     return SequenceMatcher(None, word, other).ratio()
 
 

@@ -10,19 +10,21 @@ import importlib.util
 import json
 import os
 import re
-import subprocess
 import sys
 import threading
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import IO, Any
+from typing import IO, TYPE_CHECKING, Any
 
 from ..errors import InputError, RobotLoadError, UnknownNameError
 from ..extras import needed_by
 from ..files import megabytes
 from .packages import Surroundings
 from .xml import COMMENT, MAX_BYTES
+
+if TYPE_CHECKING:
+    import subprocess
 
 __all__ = ["Expansion", "check_arguments", "expand", "is_xacro"]
 
@@ -109,6 +111,8 @@ def _at(answer: Mapping[str, Any], path: Path) -> str:
 
 def _asked(request: Mapping[str, Any], surroundings: Surroundings, label: str) -> dict[str, Any]:
     """The answer of the process that runs xacro."""
+    import subprocess  # slow to import
+
     command = [sys.executable, "-I", str(_PROGRAM)]
     included: list[str] = []
     with subprocess.Popen(

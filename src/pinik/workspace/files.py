@@ -5,7 +5,6 @@ from __future__ import annotations
 import io
 import json
 import os
-import zipfile
 from pathlib import Path
 from typing import Any
 
@@ -52,6 +51,8 @@ def content_of(reach: VoxelMap, path: str | os.PathLike[str]) -> bytes:
 
 def load_fields(path: str | os.PathLike[str]) -> dict[str, Any]:
     """The fields of a `VoxelMap` from a file; see `ReachMap.load`."""
+    from zipfile import BadZipFile  # slow to import
+
     suffix = check_suffix(path, SUFFIXES[:2])
     try:
         content = read_within(Path(path), _MOST_BYTES, "a map")
@@ -64,7 +65,7 @@ def load_fields(path: str | os.PathLike[str]) -> dict[str, Any]:
         orientations = Orientations(head["directions"], head["rolls"], head["axis"])
         grid = Grid(tuple(head["origin"]), head["cell"], tuple(head["shape"]))
         counts = Counts.from_arrays(arrays, len(orientations))
-    except (ValueError, KeyError, TypeError, OSError, zipfile.BadZipFile, EOFError) as error:
+    except (ValueError, KeyError, TypeError, OSError, BadZipFile, EOFError) as error:
         raise InputError(f"{os.fspath(path)}: not a map of pinik: {error}") from None
     tool = None if head["tool"] is None else np.array(head["tool"])
     plain = ("robot", "frame", "relative_to", "samples", "counts_branches", "unit")

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import html
 import os
 from typing import Any
 
@@ -34,12 +33,14 @@ _STEPS = 2**16 - 1
 
 def save_page(reach: VoxelMap, path: str | os.PathLike[str], robot: Robot | None = None) -> None:
     """See `ReachMap.save_page`."""
+    from html import escape  # with its list of entities
+
     machine = reach.require_robot(robot, "the page of a map")
     with needed_by("the page of a map", "live"):
         from ..viewer.web.saved_page import json_in_html, saved_page
 
     title = f"What {reach.frame} of {reach.robot} can reach"
-    pieces = {"title": html.escape(title).encode(), "map": json_in_html(_document(reach, machine, title))}
+    pieces = {"title": escape(title).encode(), "map": json_in_html(_document(reach, machine, title))}
     write_whole(path, saved_page("reach.html", pieces))
 
 

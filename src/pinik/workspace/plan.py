@@ -10,10 +10,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from ..caches import digest
 from ..model.robot_model import RobotModel
 from ..problem.reach import reach_bounds
 from ..problem.targets import Target
-from ..scale.jobs.fingerprint import digest
 from ..solving.options import Options
 from ..solving.sampling import Sampler
 from .counts import Counts

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import functools
-import hashlib
 import json
 import platform
 from collections.abc import Mapping
@@ -17,7 +16,7 @@ from ...echoes import QUOTED, shortened
 from ...engine import ABI, load
 from ...version import __version__
 
-__all__ = ["Fingerprint", "as_json", "differences", "digest", "versions"]
+__all__ = ["Fingerprint", "as_json", "differences", "versions"]
 
 Fingerprint = Mapping[str, Any]
 """Name → what can be written as JSON, such as {"inputs": …, "options": {…}, "robot": …, "versions": versions()}."""
@@ -52,15 +51,6 @@ def _processor() -> str:
         return kind
     wide = [name for name in ("avx2", "fma", "avx512f") if name in flags]
     return f"{kind} with {', '.join(wide)}" if wide else kind
-
-
-def digest(*pieces: bytes) -> str:
-    """The SHA-256 of several pieces, whose boundaries count."""
-    whole = hashlib.sha256()
-    for piece in pieces:
-        whole.update(len(piece).to_bytes(8, "little"))
-        whole.update(piece)
-    return whole.hexdigest()
 
 
 def as_json(fingerprint: Fingerprint) -> dict[str, Any]:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import threading
 from collections.abc import Iterable
-from concurrent.futures import FIRST_EXCEPTION, ThreadPoolExecutor, wait
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -29,6 +28,8 @@ class Threads:
 
     def run(self, job: Job, numbers: Iterable[int], deliver: Deliver) -> None:
         """As `Runner.run`. Ctrl-C waits for the next `pause` of each thread."""
+        from concurrent.futures import FIRST_EXCEPTION, ThreadPoolExecutor, wait  # slow to import, with logging
+
         queue = _Queue(job, numbers, _AHEAD + self.count)
         with ThreadPoolExecutor(self.count, "pinik-job") as pool:
             try:

@@ -10,7 +10,7 @@ from pathlib import Path
 
 import umsgpack
 
-from ...caches import cache_folder, keep
+from ...caches import cache_folder, digest, keep
 from ...files import FileError, read_within
 from ...robot import Robot
 from .scene import Shapes, make_shapes
@@ -69,12 +69,9 @@ def _path(robot: Robot) -> Path | None:
 
 def _key(robot: Robot) -> str:
     """Return a file name that depends on the URDF, its mesh files and the code that reads them."""
-    digest = hashlib.sha256()
     makers = [maker.read_bytes() for maker in _MAKERS]
     texts = [str(FORMAT), *_mesh_files(robot)]
-    for piece in (robot.description.document, *makers, *map(os.fsencode, texts)):
-        digest.update(len(piece).to_bytes(8, "little") + piece)
-    return digest.hexdigest()
+    return digest(robot.description.document, *makers, *map(os.fsencode, texts))
 
 
 def _mesh_files(robot: Robot) -> Iterator[str]:
