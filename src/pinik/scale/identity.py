@@ -7,13 +7,13 @@ import dataclasses
 import inspect
 from typing import Any
 
+from ..caches import digest
 from ..files import FileError, read_within
 from ..model.robot_model import RobotModel
 from ..shapes.collisions import shapes_of
 from ..shapes.solids import Solid
 from ..solvers.base import Solver
 from ..solving.options import Options
-from .jobs.fingerprint import digest
 
 __all__ = ["identity_of_options", "identity_of_robot"]
 
