@@ -17,7 +17,7 @@ from ..inputs.options import AllowOutside, AsJson, Degrees, PackageDirs, RobotSo
 from ..inputs.targets import named_by_option
 from ..terminal import output
 from ..terminal.exits import CommandError, ExitStatus
-from ..terminal.progress import RowsProgress
+from ..terminal.progress import JobProgress
 from ..terminal.units import Units
 
 __all__ = ["batch"]
@@ -136,8 +136,10 @@ def batch(
     units = Units(degrees)
     solver = solver_with(method, param)
     machine = load_robot(robot, root=root, package_dirs=package_dir, xacro_args=xacro_arg, allow_outside=allow_outside)
+    sink: str | BinaryIO = sys.stdout.buffer if to_file == "-" else to_file
     options: dict[str, Any] = {"restarts": restarts, "max_iterations": max_iterations, "time_limit": time_limit}
     options |= {
+        "output": sink,
         "tool": tool,
         "relative_to": relative_to,
         "tolerance": given.tolerance_of(tolerance, tolerance_box),
@@ -159,15 +161,13 @@ def batch(
     }
     files: dict[str, Any] = {"form": form, "targets_form": targets_form, "times": times, "degrees": degrees}
     source: str | BinaryIO = sys.stdin.buffer if targets == "-" else targets
-    sink: str | BinaryIO = sys.stdout.buffer if to_file == "-" else to_file
     try:
-        with failures_in_words(solver, method), named_by_option(options), RowsProgress() as progress:
+        with failures_in_words(solver, method), named_by_option(options), JobProgress() as progress:
             summary = scale.run(
                 machine,
                 source,
                 frame,
                 solver,
-                output=sink,
                 on_bad=output.warn,
                 on_progress=progress,
                 **files,
