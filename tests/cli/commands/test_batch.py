@@ -202,6 +202,7 @@ def test_progress_names_rate_share_and_time_left():
     assert report(Tally(10), 10_000, 0.0) == "0 of 10,000 rows"
     tally = Tally(10, finished=1, notes={"rows": 1000, "CONVERGED": 1000})
     assert report(tally, 10_000_000, 1.0).endswith(", 1,000 rows/s, 2 h 46 min left")
+    assert report(Tally(120, finished=40, resumed=20), None, 30.0) == "40 of 120 parts, 2 min 00 s left"
 
 
 def test_progress_in_a_terminal_is_one_line_that_goes_away(many, environment, tmp_path):

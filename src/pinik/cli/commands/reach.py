@@ -40,7 +40,7 @@ from ..reports.reach_report import (
 )
 from ..terminal import output
 from ..terminal.exits import CommandError, ExitStatus
-from ..terminal.progress import progress_of
+from ..terminal.progress import JobProgress
 from ..terminal.units import Units
 
 __all__ = ["reach"]
@@ -231,6 +231,6 @@ def _placed(target: Target) -> Any:
 
 
 def _mapped(robot: Robot, frame: str | None, solver: Solver, by: str, options: Mapping[str, Any]) -> ReachMap:
-    """Make a map, with a progress bar in a terminal."""
-    with progress_of(f"reach by {by}") as tell:
+    """Make a map, and report how far it is."""
+    with JobProgress(f"reach by {by}: ") as tell:
         return reach_all(robot, frame or "", solver, by=by, on_progress=tell, **options)
