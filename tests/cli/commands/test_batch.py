@@ -141,9 +141,11 @@ def test_an_interrupt_keeps_what_is_finished_and_resume_goes_on(run, many, envir
     finished = len(list(parts_folder(out).glob("*.part")))
     refused = run(*words, out, "--chunk", "20")
     assert refused.status == 2
+    assert refused.err.startswith("error: "), "nothing advises --resume to a command that is refused"
     assert f"holds {finished} of 50 chunks of a run that was not finished" in refused.err
     other = run(*words, out, "--chunk", "21", "--resume")
     assert other.status == 2
+    assert other.err.startswith("error: ")
     assert "belongs to another run: chunk was 20 and is 21" in other.err
     done = run(*words, out, "--chunk", "20", "--resume")
     assert done.status == 1

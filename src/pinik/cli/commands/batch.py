@@ -8,6 +8,7 @@ from typing import Annotated, Any, BinaryIO
 
 import typer
 
+from ...errors import InputError
 from ..inputs import solve_options as given
 from ..inputs.assignments import failures_in_words, numbers_by_joint, origin, solver_with
 from ..inputs.files import check_file
@@ -174,7 +175,8 @@ def batch(
                 **options,
             )
     except BaseException as error:
-        _say_what_is_kept(to_file)
+        if not isinstance(error, (InputError, CommandError)):  # these come before any work
+            _say_what_is_kept(to_file)
         if isinstance(error, OSError):
             return _lost(to_file, error)
         raise
