@@ -65,7 +65,7 @@ sanitize: $(VENV)/installed-dev $(sanitized)/built
 		PINIK_REQUIRE_NATIVE=1 PINIK_SANITIZED_ENGINE="$$(echo $(sanitized)/pinik/_native*.so)" \
 		PYTHONPATH=tests $(python) -m pytest -p sanitized_engine --capture=sys --timeout=3600 \
 		tests/solving/test_native.py tests/solving/test_native_equivalence.py tests/solving/test_recalling.py \
-		tests/solving/test_track.py tests/solving/test_tracker.py tests/solving/test_batch.py
+		tests/solving/test_track.py tests/solving/test_tracker.py tests/solving/test_frame_arrays.py
 
 bench: $(VENV)/installed-dev
 	@$(python) -m pytest benchmarks --benchmark-enable --benchmark-only

@@ -7,6 +7,8 @@ Where are its frames (`Robot.placement`, `Robot.jacobian`), and which joint valu
 from . import early_signals as early_signals  # before the others, whose loading takes most of a short command's time
 
 # isort: split
+import typing as _typing
+
 from .closed_form.robot_bones import TwoBone, TwoBoneConfigurations
 from .closed_form.two_bone import TwoBoneAnswers, two_bone
 from .description.catalog import catalog
@@ -52,8 +54,28 @@ from .solving.track import Track, track
 from .solving.tracker import Tracker, TrackerStatus
 from .version import __version__ as __version__
 from .viewer.live import live
-from .workspace.front import reach
-from .workspace.reach_map import ReachMap
+
+if _typing.TYPE_CHECKING:
+    from .scale import batch as batch
+    from .workspace.front import reach
+    from .workspace.reach_map import ReachMap
+else:
+
+    def __getattr__(name: str) -> object:
+        """`pinik.batch`, `pinik.reach` and `ReachMap`, which few programs need, are loaded when they are asked for."""
+        if name == "batch":
+            from .scale import batch as found
+        elif name == "reach":
+            from .workspace.front import reach as found
+        elif name == "ReachMap":
+            from .workspace import reach_map
+
+            found = reach_map.ReachMap
+        else:
+            raise AttributeError(f"module 'pinik' has no attribute {name!r}")
+        globals()[name] = found
+        return found
+
 
 __all__ = [
     "CCD",

@@ -18,7 +18,7 @@ from .shapes.collisions import Clearance, Collision, clearance, collision_pairs,
 from .shapes.pairs import CollisionPairs
 from .shapes.world import World
 from .solvers.registry import Method
-from .solving import batch
+from .solving import frame_arrays
 from .solving.answer import answer
 from .solving.branches import Branches
 from .solving.native.recalling import recalling
@@ -50,7 +50,7 @@ class Robot(RobotModel):
             UnknownNameError: No such frame; the message lists near names.
             InputError: `Q` has a wrong shape, or one of its rows is not a configuration; the message names the first.
         """
-        return batch.placements(self, frame, Q, relative_to)
+        return frame_arrays.placements(self, frame, Q, relative_to)
 
     def jacobians(
         self,
@@ -77,7 +77,7 @@ class Robot(RobotModel):
             InputError: Unknown axes, `Q` has a wrong shape, or one of its rows is not a configuration; the message
                 names the first.
         """
-        return batch.jacobians(self, frame, Q, axes, relative_to)
+        return frame_arrays.jacobians(self, frame, Q, axes, relative_to)
 
     def collisions(self, q: ArrayLike, world: World | None = None) -> list[Collision]:
         """What touches at a configuration: links of the robot, and links and objects of a world.

@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 from .checks import as_array, as_many, as_point
 from .errors import InputError, InputWarning
 
-__all__ = ["as_rotation", "as_rotations", "as_se3"]
+__all__ = ["as_rotation", "as_rotations", "as_se3", "rotations_of_quaternions", "rotations_of_rpy"]
 
 # Of rotation matrices. The first is the largest entry of R Rᵀ − I, the others differences to the nearest rotation.
 _EXACT = 1e-14
@@ -94,6 +94,29 @@ def as_se3(value: pinocchio.SE3 | ArrayLike, what: str) -> pinocchio.SE3:
             f"must be a homogeneous matrix, whose last row is 0 0 0 1; got {array[3].tolist()}", argument=what
         )
     return pinocchio.SE3(as_rotation(array[:3, :3], what), as_point(array[:3, 3], what))
+
+
+def rotations_of_quaternions(quaternions: Array) -> Array:
+    """The rotation matrices (n, 3, 3) of quaternions (n, 4), scalar last, that are finite and not zero."""
+    scaled = quaternions / np.abs(quaternions).max(axis=1, keepdims=True)  # first, so that no square overflows
+    x, y, z, w = (scaled / np.linalg.norm(scaled, axis=1, keepdims=True)).T
+    entries = [
+        1.0 - 2.0 * (y * y + z * z), 2.0 * (x * y - z * w), 2.0 * (x * z + y * w),
+        2.0 * (x * y + z * w), 1.0 - 2.0 * (x * x + z * z), 2.0 * (y * z - x * w),
+        2.0 * (x * z - y * w), 2.0 * (y * z + x * w), 1.0 - 2.0 * (x * x + y * y),
+    ]  # fmt: skip
+    return np.stack(entries, axis=1).reshape(-1, 3, 3)
+
+
+def rotations_of_rpy(angles: Array) -> Array:
+    """The rotation matrices (n, 3, 3) of fixed-axis roll, pitch and yaw (n, 3) [rad]: Rz(yaw) Ry(pitch) Rx(roll)."""
+    (cr, cp, cy), (sr, sp, sy) = np.cos(angles).T, np.sin(angles).T
+    entries = [
+        cy * cp, cy * sp * sr - sy * cr, cy * sp * cr + sy * sr,
+        sy * cp, sy * sp * sr + cy * cr, sy * sp * cr - cy * sr,
+        -sp, cp * sr, cp * cr,
+    ]  # fmt: skip
+    return np.stack(entries, axis=1).reshape(-1, 3, 3)
 
 
 def _nearest_rotations(matrices: Array) -> tuple[Array, Array]:

@@ -11,7 +11,7 @@ import pytest
 
 import pinik
 
-COMMANDS = ("solve", "solve-all", "track", "fk", "jacobian", "info", "check", "robots", "compare")
+COMMANDS = ("solve", "solve-all", "track", "batch", "fk", "jacobian", "info", "check", "robots", "compare")
 
 
 def examples(text: str) -> list[str]:

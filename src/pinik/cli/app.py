@@ -16,6 +16,7 @@ from ..interrupts import Terminated, as_exceptions
 from ..version import __version__
 from .commands import (
     accuracy,
+    batch,
     check,
     collisions,
     compare,
@@ -40,6 +41,7 @@ _COMMANDS: dict[str, Callable[..., ExitStatus]] = {
     "solve-all": solve_all.solve_all,
     "track": track.track,
     "reach": reach.reach,
+    "batch": batch.batch,
     "fk": fk.fk,
     "jacobian": jacobian.jacobian,
     "info": info.info,
@@ -60,7 +62,7 @@ def _application() -> typer.Typer:
         add_completion=False,
         context_settings={"help_option_names": ["--help", "-h"]},
     )
-    methods = dict.fromkeys(("solve", "solve-all", "track", "reach"), solvers_help())
+    methods = dict.fromkeys(("solve", "solve-all", "track", "reach", "batch"), solvers_help())
     epilogs = methods | {"compare": compare.EPILOG}
     for name, command in _COMMANDS.items():
         app.command(name, help=_flowing(command.__doc__), epilog=epilogs.get(name))(command)

@@ -33,7 +33,7 @@ from .state import Status
 from .verdict import measure_errors
 from .words import check_words
 
-__all__ = ["Solutions", "solve_goals", "solve_many"]
+__all__ = ["Solutions", "attempt_all", "solve_many"]
 
 Array = NDArray[np.float64]
 
@@ -109,28 +109,32 @@ def solve_many(
     pattern, goals = read_questions(targets, places, tool, relative_to, count)
     starts, turned = _starts(robot, q0, len(goals))
     prepared = Prepared(robot, pattern, options) if pattern else None
-    outcomes = _nothing(robot) if prepared is None else solve_goals(prepared, goals, starts, is_nearest(q0), count)
+    outcomes = _nothing(robot) if prepared is None else attempt_all(prepared, goals, starts, is_nearest(q0), count)
     seconds = time.perf_counter() - began
     return Solutions(
         **vars(outcomes), total_time=seconds, prepared=prepared, _goals=goals, _starts=starts, _turned=turned
     )
 
 
-def solve_goals(prepared: Prepared, goals: Array, starts: Array, nearest: bool, threads: int) -> Outcomes:
-    """Solve for targets as numbers, as `native.codec.goals_of` encodes them; nothing is checked.
+def attempt_all(
+    prepared: Prepared, goals: Array, starts: Array, nearest: bool, threads: int, *, numbered: bool = True
+) -> Outcomes:
+    """Solve for goals of the same kinds, independently of each other.
 
     Args:
         prepared: The compiled problem.
         goals: The numbers of the targets (N, targets, 18).
-        starts: Starts (1, nq) or (N, nq).
-        nearest: Whether each first attempt starts near its target instead, from a table.
-        threads: The number of threads.
+        starts: One start for each, or one for all (N or 1, nq).
+        nearest: Whether each starts from the configuration of the table that is nearest to its targets.
+        threads: The number of threads of the compiled engine.
+        numbered: Whether the number of each question seeds its random starts; otherwise each is answered as if it were
+            alone, so that its answer does not depend on its place among the others.
     """
     if prepared.native is not None:
-        return attempt_many(prepared.native, goals, starts, nearest, threads)
+        return attempt_many(prepared.native, goals, starts, nearest, threads, numbered)
     if lands_at_once(prepared.question) and not nearest:
         return attempt_at_once(prepared.question, goals, starts)
-    return _attempt_one_by_one(prepared, goals, starts, nearest)
+    return _attempt_one_by_one(prepared, goals, starts, nearest, numbered)
 
 
 def _nothing(robot: RobotModel) -> Outcomes:
@@ -230,11 +234,11 @@ def _starts(robot: RobotModel, q0: Any, count: int) -> tuple[Array, Mapping[str,
     return starts, {}
 
 
-def _attempt_one_by_one(prepared: Prepared, goals: Array, starts: Array, nearest: bool) -> Outcomes:
+def _attempt_one_by_one(prepared: Prepared, goals: Array, starts: Array, nearest: bool, numbered: bool) -> Outcomes:
     attempts, pattern = prepared.attempts, prepared.targets
     outcomes = [
-        attempts(targets_of(pattern, goal), starts[number % len(starts)], number=number, nearest=nearest)
-        for number, goal in enumerate(goals)
+        attempts(targets_of(pattern, goal), starts[k % len(starts)], number=k if numbered else 0, nearest=nearest)
+        for k, goal in enumerate(goals)
     ]
     largest = np.array([largest_of(outcome.errors) for outcome in outcomes], dtype=np.float64)  # None becomes NaN
     largest = largest.reshape(-1, 2)

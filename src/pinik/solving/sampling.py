@@ -12,7 +12,7 @@ from ..model.limits import Limits
 from ..model.robot_model import RobotModel
 from ..problem.problem import Problem
 from ..problem.targets import Target
-from .batch import placements
+from .frame_arrays import placements
 from .table import drawn_joints, range_of
 
 __all__ = ["Sampler", "uniform_rows"]

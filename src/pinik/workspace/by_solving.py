@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from ..problem.targets import Target
 from ..scale.jobs.job import Pause, never_pause
 from ..solving.attempts import Outcomes
-from ..solving.many import solve_goals
+from ..solving.many import attempt_all
 from ..solving.native.codec import goals_of, targets_of
 from ..solving.prepared import Prepared
 from ..solving.solve_all import find_all
@@ -99,7 +99,7 @@ class SolvedParts:
             counts.branches[row] += sum(self._branches(goals[k]) for k in reached)
 
     def _solve(self, prepared: Prepared, goals: Array) -> Outcomes:
-        return solve_goals(prepared, goals, self.plan.start[None], True, 1)  # from near each target
+        return attempt_all(prepared, goals, self.plan.start[None], nearest=True, threads=1, numbered=False)
 
     def _branches(self, goals: Array) -> int:
         """The number of distinct answers for a pose that is reached; at least the one that reaches it."""

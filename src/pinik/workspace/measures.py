@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from ..solving.batch import jacobians
+from ..solving.frame_arrays import jacobians
 from ..solving.sampling import Sampler
 
 __all__ = ["manipulabilities", "rooms"]

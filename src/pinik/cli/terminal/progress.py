@@ -1,15 +1,23 @@
-"""A progress bar on stderr, in terminals only."""
+"""Progress on stderr: a bar in terminals; and the rate of a batch, its share of solved rows, and the time left."""
 
 from __future__ import annotations
 
+import contextlib
 import sys
+import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from typing import TYPE_CHECKING, Self
 
-from ...scale.jobs.job import Tally
-from .output import is_terminal
+from .output import is_terminal, say
 
-__all__ = ["progress", "progress_of"]
+__all__ = ["RowsProgress", "progress", "progress_of"]
+
+if TYPE_CHECKING:
+    from ...scale.jobs.job import Tally
+
+_SECONDS = (0.2, 10.0)  # between two reports: in a terminal, where one replaces the other, and elsewhere
+_CLEAR = "\r\x1b[K"
 
 
 @contextmanager
@@ -39,3 +47,68 @@ def progress_of(words: str) -> Iterator[Callable[[Tally], None]]:
     with Progress(*columns, console=Console(stderr=True), transient=True) as bar:
         task = bar.add_task(words, total=None)
         yield lambda tally: bar.update(task, completed=tally.finished, total=tally.chunks)
+
+
+class RowsProgress:
+    """Reports how far a batch is: its rate, the share of solved rows, and the time left.
+
+    In a terminal one line is written again and again, and in the end removed; elsewhere there is a line now and then.
+    """
+
+    def __init__(self) -> None:
+        self._in_place = is_terminal(sys.stderr)
+        self._began = time.monotonic()
+        self._next = self._began + _SECONDS[not self._in_place]
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        if self._in_place:
+            self._write(_CLEAR)
+
+    def __call__(self, tally: Tally, rows: int) -> None:
+        """Report, unless the last report was a moment ago."""
+        now = time.monotonic()
+        if tally.finished == tally.resumed:  # the work begins now
+            self._began = now
+        if now < self._next or tally.finished == tally.chunks:
+            return
+        self._next = now + _SECONDS[not self._in_place]
+        words = report(tally, rows, now - self._began)
+        if self._in_place:
+            self._write(_CLEAR + words)
+        else:
+            say(words)
+
+    @staticmethod
+    def _write(text: str) -> None:
+        with contextlib.suppress(OSError, ValueError):
+            sys.stderr.write(text)
+            sys.stderr.flush()
+
+
+def report(tally: Tally, rows: int, seconds: float) -> str:
+    """How far a batch is, in words.
+
+    Args:
+        tally: What is finished.
+        rows: The number of all rows.
+        seconds: How long this run has worked [s].
+    """
+    done = tally.notes.get("rows", 0)
+    words = f"{done:,.0f} of {rows:,} rows"
+    if done:
+        words += f", {100.0 * tally.notes.get('CONVERGED', 0) / done:.1f} % solved"
+    own = done - tally.earlier.get("rows", 0)
+    if own and seconds > 0.0:
+        words += f", {own / seconds:,.0f} rows/s, {_duration((rows - done) * seconds / own)} left"
+    return words
+
+
+def _duration(seconds: float) -> str:
+    minutes, rest = divmod(round(seconds), 60)
+    hours, minutes = divmod(minutes, 60)
+    if hours:
+        return f"{hours} h {minutes:02d} min"
+    return f"{minutes} min {rest:02d} s" if minutes else f"{rest} s"

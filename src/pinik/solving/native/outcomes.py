@@ -13,6 +13,7 @@ from ...problem.reach import Shortfall
 from ...problem.targets import Target
 from ...problem.tolerance import TargetError
 from ..attempts import Outcomes
+from ..starts import NEAREST
 from ..state import State, Status
 from .codec import targets_of
 
@@ -41,9 +42,20 @@ def _numbered() -> NDArray[np.object_]:
     return numbered
 
 
-def attempt_many(engine: Engine, goals: Array, starts: Array, nearest: bool, threads: int) -> Outcomes:
-    """Solve for goals (N, n, 18) from starts (N or 1, nq). The number of a question seeds its restarts."""
-    return _outcomes(*engine.solve_many(starts, goals, nearest, threads))
+def attempt_many(engine: Engine, goals: Array, starts: Array, nearest: bool, threads: int, numbered: bool) -> Outcomes:
+    """Solve for goals (N, n, 18) from starts (N or 1, nq).
+
+    If they are numbered, the number of a question seeds its restarts; otherwise each is answered as if it were alone.
+    """
+    columns: tuple[Any, ...] = engine.solve_many(starts, goals, nearest, threads)
+    if not numbered:
+        restarts = columns[6]
+        for k in np.flatnonzero(restarts >= NEAREST):  # the number seeds only restarts that the table does not give
+            own = starts if len(starts) == 1 else starts[k : k + 1]
+            alone: tuple[Any, ...] = engine.solve_many(own, goals[k : k + 1], nearest, 1)
+            for column, answer in zip(columns, alone, strict=True):
+                column[k] = answer[0]
+    return _outcomes(*columns)
 
 
 def follow(engine: Engine, goals: Array, start: Array, on_miss: str) -> Outcomes:

@@ -18,7 +18,7 @@ import pinik
 from by_hand import ZOO, chains
 from engines import needs_native
 from pinik import InputError, UnknownNameError
-from pinik.solving import batch
+from pinik.solving import frame_arrays
 from pinik.solving.native import module
 from robots import load_quietly
 
@@ -41,7 +41,7 @@ def engine(request, monkeypatch) -> str:
         if module.why_not():
             pytest.skip("there is no compiled engine")
     else:
-        monkeypatch.setattr(batch, "why_not", lambda: "it is left out in this test")
+        monkeypatch.setattr(frame_arrays, "why_not", lambda: "it is left out in this test")
     return request.param
 
 
@@ -172,7 +172,7 @@ def test_every_row_of_a_long_array_is_its_own(panda, engine):
 def test_the_number_of_threads_changes_nothing(panda, monkeypatch):
     Q, found = drawn(panda, 2000), []
     for count in (1, 2, 7):
-        monkeypatch.setattr(batch, "processors", lambda count=count: count)
+        monkeypatch.setattr(frame_arrays, "processors", lambda count=count: count)
         found.append((panda.placements(TIP, Q), panda.jacobians(TIP, Q)))
     for placements, jacobians in found[1:]:
         np.testing.assert_array_equal(placements, found[0][0])

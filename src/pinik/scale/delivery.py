@@ -1,0 +1,89 @@
+"""Where the answers of a job go: to a file that appears once it is whole, or to a stream."""
+
+from __future__ import annotations
+
+import os
+import shutil
+import tempfile
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import BinaryIO
+
+from ..errors import InputError
+from ..files import check_writable
+from .jobs.job import Job, Runner, Tally
+from .jobs.parts import Parts
+from .jobs.run import OnProgress, run, stream
+from .tables.formats import FORMATS, format_of
+from .tables.table import Column
+
+__all__ = ["AnswersGiven", "Delivery"]
+
+AnswersGiven = str | os.PathLike[str] | BinaryIO
+"""The path of a file, or an open binary stream."""
+
+
+@dataclass(frozen=True)
+class Delivery:
+    """Where the answers go.
+
+    Attributes:
+        output: The file, or the stream.
+        form: The name of the format.
+        resume: Whether to go on with an earlier run.
+    """
+
+    output: Path | BinaryIO
+    form: str
+    resume: bool
+
+    @classmethod
+    def of(cls, output: AnswersGiven, form: str | None, resume: bool) -> Delivery:
+        """Check where the answers are to go.
+
+        Args:
+            output: The file, or a stream.
+            form: The name of the format; by the ending of the file, and CSV for a stream, when None.
+            resume: Whether to go on with an earlier run.
+
+        Raises:
+            InputError: The ending tells no format, or a stream is to be resumed.
+            UnknownNameError: There is no such format.
+            OSError: The file cannot be written.
+        """
+        if isinstance(output, (str, os.PathLike)):
+            path = Path(output).expanduser()
+            form = format_of(path, form)
+            check_writable(path)
+            return cls(path, form, resume)
+        if resume:
+            raise InputError("must be False for a stream, of which nothing is kept", argument="resume")
+        return cls(output, format_of(Path(), form or "csv"), resume)
+
+    def run(self, job: Job, columns: Sequence[Column], runner: Runner, on_progress: OnProgress | None) -> Tally:
+        """Work on a job, and deliver what it comes to."""
+        writer = FORMATS[self.form].writer
+
+        def assemble(parts: Parts, file: BinaryIO) -> None:
+            writer.assemble(columns, parts, file)
+
+        if isinstance(self.output, Path):
+            return run(job, self.output, assemble, runner, resume=self.resume, on_progress=on_progress)
+        output = self.output
+        if writer.streams:
+            output.write(writer.start(columns))
+            tally = stream(job, lambda content: _put(output, content), runner, on_progress=on_progress)
+        else:
+            with tempfile.TemporaryDirectory(prefix="pinik-") as folder:
+                whole = Path(folder) / "answers"
+                tally = run(job, whole, assemble, runner, on_progress=on_progress)
+                with whole.open("rb") as file:
+                    shutil.copyfileobj(file, output)
+        output.flush()
+        return tally
+
+
+def _put(output: BinaryIO, content: bytes) -> None:
+    output.write(content)
+    output.flush()
