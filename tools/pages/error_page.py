@@ -107,8 +107,9 @@ def _meaning(name: str) -> str:
 def _table(found: set[str]) -> str:
     if not found:
         return ""
-    rows = "".join(f"    * {_escaped(message)}\n" for message in sorted(found, key=lambda message: (message.casefold(), message)))
-    return f'\n??? info "{len(found)} messages"\n\n{rows}'
+    in_order = sorted(found, key=lambda message: (message.casefold(), message))
+    rows = "".join(f"    * {_escaped(message)}\n" for message in in_order)
+    return f'\n??? info "{len(found)} message{"s" * (len(found) > 1)}"\n\n{rows}'
 
 
 def _escaped(message: str) -> str:
