@@ -54,20 +54,27 @@ from .solving.track import Track, track
 from .solving.tracker import Tracker, TrackerStatus
 from .version import __version__ as __version__
 from .viewer.live import live
-from .workspace.front import reach
-from .workspace.reach_map import ReachMap
 
 if _typing.TYPE_CHECKING:
     from .scale import batch as batch
+    from .workspace.front import reach
+    from .workspace.reach_map import ReachMap
 else:
 
     def __getattr__(name: str) -> object:
-        """`pinik.batch`, which few programs need, is loaded when it is first asked for."""
-        if name != "batch":
-            raise AttributeError(f"module 'pinik' has no attribute {name!r}")
-        from .scale import batch
+        """`pinik.batch`, `pinik.reach` and `ReachMap`, which few programs need, are loaded when they are asked for."""
+        if name == "batch":
+            from .scale import batch as found
+        elif name == "reach":
+            from .workspace.front import reach as found
+        elif name == "ReachMap":
+            from .workspace import reach_map
 
-        return batch
+            found = reach_map.ReachMap
+        else:
+            raise AttributeError(f"module 'pinik' has no attribute {name!r}")
+        globals()[name] = found
+        return found
 
 
 __all__ = [

@@ -45,7 +45,7 @@ STATUSES = {
 
 def command_page() -> str:
     statuses = "".join(f"| {status.value} | {STATUSES[status]} |\n" for status in ExitStatus)
-    commands = typer.main.get_command(_application()).commands.items()
+    commands = typer.main.get_command(_application(())).commands.items()
     return INTRODUCTION + statuses + STREAMS + "".join(_command(name, command) for name, command in commands)
 
 

@@ -109,7 +109,7 @@ def _table(found: set[str]) -> str:
         return ""
     in_order = sorted(found, key=lambda message: (message.casefold(), message))
     rows = "".join(f"    * {_escaped(message)}\n" for message in in_order)
-    return f'\n??? info "{len(found)} messages"\n\n{rows}'
+    return f'\n??? info "{len(found)} message{"s" * (len(found) > 1)}"\n\n{rows}'
 
 
 def _escaped(message: str) -> str:

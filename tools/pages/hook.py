@@ -8,6 +8,7 @@ from typing import Any
 from api_names import check_public_names
 from formulas import with_formulas
 from links import with_links_of_the_site
+from lists import with_wide_lists
 from mkdocs.config.defaults import MkDocsConfig
 from mkdocs.structure.files import File, Files
 from mkdocs.structure.pages import Page
@@ -52,7 +53,8 @@ def on_files(files: Files, config: MkDocsConfig) -> Files:
 
 
 def on_page_markdown(markdown: str, page: Page, config: MkDocsConfig, files: Files) -> str:
-    return with_links_of_the_site(markdown, page.file.src_uri, lambda place: place in files.src_uris)
+    text = with_links_of_the_site(markdown, page.file.src_uri, lambda place: place in files.src_uris)
+    return with_wide_lists(text)
 
 
 def on_page_content(html: str, **_: Any) -> str:

@@ -6,6 +6,8 @@ import posixpath
 import re
 from collections.abc import Callable
 
+from lists import outside_code
+
 ELSEWHERE = {
     "CHANGELOG.md": "changelog.md",
     "CONTRIBUTING.md": "contributing.md",
@@ -13,7 +15,6 @@ ELSEWHERE = {
     "notebooks": "notebooks/index.md",
 }
 LINK = re.compile(r"(?P<before>!?\[(?P<text>[^\]]*)\]\()(?P<address>[^)#\s]+)(?P<anchor>#[^)\s]*)?\)")
-CODE = re.compile(r"(^```.*?^```$)", re.MULTILINE | re.DOTALL)
 
 
 def with_links_of_the_site(markdown: str, source: str, is_there: Callable[[str], bool]) -> str:
@@ -36,10 +37,7 @@ def with_links_of_the_site(markdown: str, source: str, is_there: Callable[[str],
         way = posixpath.relpath(place, posixpath.dirname(source) or ".")
         return f"{link['before']}{way}{link['anchor'] or ''})"
 
-    # Every second part is code.
-    parts = CODE.split(markdown)
-    parts[::2] = [LINK.sub(moved, part) for part in parts[::2]]
-    return "".join(parts)
+    return outside_code(markdown, lambda text: LINK.sub(moved, text))
 
 
 def _in_repository(place: str) -> str:

@@ -14,7 +14,7 @@ from .question import Question
 from .state import Status
 from .verdict import Verdict
 
-__all__ = ["explain", "overlap"]
+__all__ = ["explain", "how_far", "overlap"]
 
 
 def explain(
@@ -39,11 +39,8 @@ def explain(
     """
     status, errors, proof = verdict
     if status is Status.CONVERGED:
-        position, orientation = largest_of(errors)
-        words = [] if position is None else [_length(position)]
-        words += [] if orientation is None else [_angle(orientation)]
         chosen = f"; the nearest of {chosen_from} answers" if chosen_from > 1 else ""
-        return f"converged, {' and '.join(words)} off{chosen}"
+        return f"converged, {how_far(errors)} off{chosen}"
     if status is Status.COLLIDING:
         return _colliding(targets, collisions, chosen_from)
     tolerances = [term.tolerance for term in question.problem.terms]
@@ -60,6 +57,14 @@ def explain(
     why = _out_of_reach(targets, tolerances, proof, off_plane) or _each_alone(alone)
     first, *others = [*why, missed] if status is Status.UNREACHABLE else [missed, *why]
     return "; ".join([f"{begin} {first}", *others, *_limits(active)])
+
+
+def how_far(errors: Sequence[TargetError]) -> str:
+    """The largest distance and the largest angle of all errors, such as "4.1 cm and 3.2°"."""
+    position, orientation = largest_of(errors)
+    words = [] if position is None else [_length(position)]
+    words += [] if orientation is None else [_angle(orientation)]
+    return " and ".join(words)
 
 
 def _colliding(targets: Sequence[Target], collisions: Sequence[Collision], answers: int) -> str:

@@ -99,7 +99,7 @@ class SolvedParts:
             counts.branches[row] += sum(self._branches(goals[k]) for k in reached)
 
     def _solve(self, prepared: Prepared, goals: Array) -> Outcomes:
-        return attempt_all(prepared, goals, self.plan.start[None], True, 1)  # from near each target
+        return attempt_all(prepared, goals, self.plan.start[None], nearest=True, threads=1, numbered=False)
 
     def _branches(self, goals: Array) -> int:
         """The number of distinct answers for a pose that is reached; at least the one that reaches it."""

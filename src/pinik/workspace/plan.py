@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import pickle
 from dataclasses import dataclass, fields
 from functools import cached_property
 from typing import Any
@@ -10,10 +9,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..caches import digest
 from ..model.robot_model import RobotModel
 from ..problem.reach import reach_bounds
 from ..problem.targets import Target
+from ..scale.identity import identity_of_options, identity_of_robot
 from ..solving.options import Options
 from ..solving.sampling import Sampler
 from .counts import Counts
@@ -96,10 +95,9 @@ class Plan:
     @property
     def fingerprint(self) -> dict[str, Any]:
         """What the map depends on, by name, as JSON."""
-        options = self.options
-        solver = {name: repr(value) for name, value in sorted(options.method.parameters.items())}
         return {
-            "robot": {"name": self.robot.name, "urdf": digest(self.robot.urdf.encode()), "root": self.robot.root},
+            "robot": identity_of_robot(self.robot, self.options),
+            "options": identity_of_options(self.options),
             "target": self.target.to_dict(),
             "grid": {"origin": self.grid.origin, "cell": self.grid.size, "shape": self.grid.shape},
             "orientations": {
@@ -111,17 +109,6 @@ class Plan:
             "part_size": self.part_size,
             "branches": self.branches,
             "q0": self.start.tolist(),
-            "method": {"name": options.method.name, **solver},
-            "options": {
-                "limits": options.limits,
-                "locked": list(options.locked),
-                "restarts": options.restarts,
-                "seed": options.seed,
-                "max_iterations": options.max_iterations,
-                "tolerance": repr(options.tolerance),
-                "engine": options.engine,
-                "avoid": digest(pickle.dumps(options.avoid)) if options.avoid else None,
-            },
         }
 
     def __reduce__(self) -> tuple[Any, ...]:

@@ -203,3 +203,20 @@ def test_a_balls_own_tolerance_is_what_the_page_calls_reached(open_panel):
         desk.expect(part).to_contain_text("reached")
     (hand,) = desk.effectors(state)
     assert 1e-3 < np.linalg.norm(pinocchio.log3(turned @ hand.rotation.T)) <= 0.35
+
+
+def test_a_ball_that_is_moved_while_stopped_is_not_called_reached(open_panel):
+    desk = open_panel(methods=("dls",))
+    desk.click("step")
+    desk.until(lambda s: s["instances"][0]["status"] == "CONVERGED")
+    desk.expect("label-0").to_contain_text("reached")
+    z = desk.state["balls"][0]["position"][2]
+    desk.type("target-z", z - 0.25)
+    state = desk.until(lambda s: s["instances"][0]["status"] == "IDLE")
+    assert state["instances"][0]["position_error"] == pytest.approx(0.25, abs=2e-3)
+    desk.expect("message-0").to_contain_text("no step has been taken since a ball changed")
+    for part in ("label-0", "status-0"):
+        desk.expect(part).to_contain_text("cm away")
+    desk.click("step")
+    desk.until(lambda s: s["instances"][0]["status"] == "CONVERGED")
+    desk.expect("label-0").to_contain_text("reached")

@@ -150,6 +150,23 @@ def test_before_the_first_step_it_says_so(arm):
     assert (one.status, one.verdict().message) == ("IDLE", "no step has been taken yet")
 
 
+def test_once_other_targets_are_asked_for_the_last_result_is_void(arm):
+    one = instance(arm)
+    target = pinik.Target("tip", REACHABLE)
+    while one.status != "CONVERGED":
+        one.step([target])
+    assert one.verdict([target]) == one.verdict()
+    overdue = one.verdict([pinik.Target("tip", FAR)])
+    assert overdue.status == "IDLE"
+    assert overdue.position_error == pytest.approx(distance(arm, one.q, "tip", FAR))
+    assert overdue.message == f"no step has been taken since a ball changed; {overdue.position_error:.3g} m off"
+    two = one.verdict([target, pinik.Target("bone3", REACHABLE, rpy=[0.0, 0.0, 0.0])])
+    assert two.position_error == pytest.approx(distance(arm, one.q, "bone3", REACHABLE))
+    assert two.orientation_error > 0.0
+    assert one.verdict([]) == ("IDLE", "there are no targets", None, None, ())
+    assert one.verdict().status == "CONVERGED"
+
+
 def test_another_solver_goes_on_from_where_the_robot_is(arm):
     one = instance(arm)
     one.step([pinik.Target("tip", REACHABLE)])

@@ -59,6 +59,7 @@ class JobProgress:
         now = time.monotonic()
         if tally.finished == tally.resumed:  # the work begins now
             self._began = now
+            self._next = now + _SECONDS[not self._in_place]
         if now < self._next or tally.finished == tally.chunks:
             return
         self._next = now + _SECONDS[not self._in_place]

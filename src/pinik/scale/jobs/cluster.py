@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import contextlib
+import functools
+import logging
 import pickle
 import queue
 from collections.abc import Iterable, Iterator, Mapping
@@ -13,7 +15,7 @@ from ...checks import as_count
 from ...errors import InputError, PinikError
 from ...extras import needed_by
 from .fingerprint import versions
-from .job import Deliver, Job, Result, never_pause
+from .job import Deliver, Job, Result, Work, never_pause
 
 __all__ = ["Cluster", "ClusterError"]
 
@@ -74,7 +76,11 @@ class Cluster:
             return
         with (
             distributed.LocalCluster(
-                n_workers=self.workers, threads_per_worker=1, dashboard_address=None, memory_limit=0
+                n_workers=self.workers,
+                threads_per_worker=1,
+                dashboard_address=None,
+                memory_limit=0,
+                silence_logs=logging.CRITICAL,  # what fails is raised here
             ) as cluster,
             distributed.Client(cluster, set_as_default=False) as client,
         ):
@@ -129,8 +135,15 @@ def _task(work: bytes, payload: Any, expected: Mapping[str, str]) -> Result:
     differing = _differing(expected, versions())
     if differing:  # of a worker that has joined since the others were checked
         raise ClusterError(f"a worker differs from the process that runs the job: {differing}")
-    result: Result = pickle.loads(work)(payload, never_pause)
+    result: Result = _loaded(work)(payload, never_pause)
     return result
+
+
+@functools.lru_cache(maxsize=1)
+def _loaded(work: bytes) -> Work:
+    """The work of a job, which a worker unpacks once."""
+    unpacked: Work = pickle.loads(work)
+    return unpacked
 
 
 def _versions_here() -> dict[str, str]:

@@ -9,7 +9,7 @@ from typing import Any, NamedTuple, Protocol
 
 from .fingerprint import Fingerprint
 
-__all__ = ["Deliver", "Job", "Pause", "Result", "Runner", "Stopped", "Tally", "never_pause"]
+__all__ = ["Deliver", "Job", "Pause", "Result", "Runner", "Stopped", "Tally", "Work", "never_pause"]
 
 
 class Stopped(BaseException):
@@ -36,6 +36,10 @@ class Result(NamedTuple):
     notes: Mapping[str, int | float]
 
 
+Work = Callable[[Any, Pause], Result]
+"""Computes a chunk from its payload."""
+
+
 @dataclass(frozen=True)
 class Job:
     """Work in numbered chunks, 0 to `chunks` − 1, whose results depend on the fingerprint and the number alone.
@@ -52,7 +56,7 @@ class Job:
     fingerprint: Fingerprint
     chunks: int
     payload: Callable[[int], Any]
-    work: Callable[[Any, Pause], Result]
+    work: Work
 
 
 Deliver = Callable[[int, Result], None]

@@ -19,7 +19,7 @@ from .table import Cells, Column, Contents, Fault, Pieces, Table, not_a_number
 __all__ = ["CsvSource", "CsvWriter"]
 
 
-class CsvSource:
+class CsvSource(LinesFile):
     """A CSV file. A quoted cell may hold commas and quotes, but no line break."""
 
     place = "line"
@@ -27,32 +27,26 @@ class CsvSource:
     def __init__(self, path: Path, rows: int) -> None:
         """Open it; `ValueError` says what is wrong with its header."""
         try:
-            self._lines = LinesFile(path, rows, has_header=True)
+            super().__init__(path, rows, has_header=True)
         except UnicodeDecodeError as error:
             raise ValueError(f"the header: {not_utf8(error)}") from None
         try:
-            self.names = _names(self._lines.header)
+            self.names = _names(self.header)
         except ValueError:
             self.close()
             raise
 
-    @property
-    def chunks(self) -> int:
-        """The number of chunks."""
-        return self._lines.chunks
-
-    def raw(self, number: int) -> RawLines:
-        """One chunk."""
-        return self._lines.raw(number)
-
     @staticmethod
     def decode(raw: RawLines, cells: Cells) -> Table:
         """Read a chunk."""
-        return decode(raw, cells)
-
-    def close(self) -> None:
-        """Close the file."""
-        self._lines.close()
+        text, width = raw.text(), len(cells.names)
+        if text is not None and '"' not in text:
+            lines = text.split("\n")
+            if all(line.count(",") == width - 1 for line in lines):
+                all_cells = ",".join(lines).split(",")
+                table = Table(np.arange(raw.first, raw.first + len(lines)))
+                return _filled(table, cells, [all_cells[k::width] for k in range(width)], careful="_" in text)
+        return _read_one_by_one(raw, cells)
 
 
 def _names(header: Line | None) -> tuple[str, ...]:
@@ -78,18 +72,6 @@ def _reason(error: csv.Error) -> str:
     if "unexpected end" in str(error):
         return "a quote is not closed on the same line; a cell can hold no line break"
     return str(error)
-
-
-def decode(raw: RawLines, cells: Cells) -> Table:
-    """The rows of neighbouring lines."""
-    text, width = raw.text(), len(cells.names)
-    if text is not None and '"' not in text:
-        lines = text.split("\n")
-        if all(line.count(",") == width - 1 for line in lines):
-            all_cells = ",".join(lines).split(",")
-            table = Table(np.arange(raw.first, raw.first + len(lines)))
-            return _filled(table, cells, [all_cells[k::width] for k in range(width)], careful="_" in text)
-    return _read_one_by_one(raw, cells)
 
 
 def _read_one_by_one(raw: RawLines, cells: Cells) -> Table:

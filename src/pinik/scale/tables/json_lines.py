@@ -18,14 +18,14 @@ from .table import Cells, Column, Contents, Fault, Pieces, Table, not_a_name, no
 __all__ = ["JsonSource", "JsonWriter"]
 
 
-class JsonSource:
+class JsonSource(LinesFile):
     """A file of JSON Lines. Keys that are absent, and null, are empty cells."""
 
     place = "line"
 
     def __init__(self, path: Path, rows: int) -> None:
         """Open it, and find its columns, which are the keys of all objects."""
-        self._lines = LinesFile(path, rows, has_header=False)
+        super().__init__(path, rows, has_header=False)
         names: dict[str, None] = {}
         fault = ""
         for number in range(self.chunks):
@@ -39,15 +39,6 @@ class JsonSource:
         if fault and not names:
             self.close()
             raise ValueError(fault)
-
-    @property
-    def chunks(self) -> int:
-        """The number of chunks."""
-        return self._lines.chunks
-
-    def raw(self, number: int) -> RawLines:
-        """One chunk."""
-        return self._lines.raw(number)
 
     @staticmethod
     def decode(raw: RawLines, cells: Cells) -> Table:
@@ -70,10 +61,6 @@ class JsonSource:
             else:
                 table.numbers[name] = _numbers(values, name, faults)
         return table
-
-    def close(self) -> None:
-        """Close the file."""
-        self._lines.close()
 
 
 def _read(line: str | UnicodeDecodeError) -> Mapping[str, Any] | str:

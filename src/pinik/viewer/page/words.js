@@ -88,12 +88,12 @@ function shortAngle(radians) {
 export function verdict(status, positionError, orientationError, state) {
     if (status === "FAILED") return "solver failed";
     if (status === "REFUSED") return "cannot do this";
-    if (status === "IDLE") return "idle";
+    if (status === "IDLE") return Number.isFinite(positionError) ? `${shortLength(positionError)} away` : "idle";
     if (status === "CONVERGED") return "reached";
     const tolerance = tightest(state);
     const away = Number.isFinite(positionError) && positionError > tolerance.position;
     const turned = Number.isFinite(orientationError) && orientationError > tolerance.orientation;
     if (away) return `${shortLength(positionError)} short`;
     if (turned) return `${shortAngle(orientationError)} off`;
-    return "reached";
+    return status === "COLLIDING" ? "touches something" : "reached";
 }

@@ -18,13 +18,13 @@ from ...problem.tolerance import largest_of
 from ...robot import Robot
 from ...shapes.avoid import Avoid
 from ...solvers.base import Solver
-from ...solving.message import explain
+from ...solving.message import explain, how_far
 from ...solving.native.module import engine_for
 from ...solving.options import Options
 from ...solving.pursuit import Pursuit, pursue
 from ...solving.question import Question
 from ...solving.state import State, Status
-from ...solving.verdict import judge
+from ...solving.verdict import judge, measure_errors
 from .contacts import Contacts
 from .detour import Detours
 from .standing import Standing
@@ -40,6 +40,7 @@ _NOWHERE = 1e-10
 """The largest change of a joint in a step [rad or m] from which the next one would begin in the same place."""
 _GIVEN_UP = 2
 """How many steps in a row stall in one place before the method is asked no more."""
+_NO_TARGETS = "there are no targets"
 
 
 def same_objects(some: Sequence[object], others: Sequence[object]) -> bool:
@@ -133,7 +134,7 @@ class Instance:
         """
         asked = tuple(targets)
         if not asked:
-            self._forget_run("there are no targets")
+            self._forget_run(_NO_TARGETS)
             return
         avoided = self.contacts.avoided
         moved = not same_objects(asked, self._targets) or avoided is not self._avoided
@@ -238,12 +239,19 @@ class Instance:
         """Joint name → "lower", "upper" or "both", for joints at or beyond a limit, even if limits are not enforced."""
         return self._all_limits.active(self.q)
 
-    def verdict(self) -> Standing:
-        """The present result: errors recomputed by plain forward kinematics, and the reason if a target is missed."""
+    def verdict(self, asked: Sequence[Target] | None = None) -> Standing:
+        """The present result: errors recomputed by plain forward kinematics, and the reason if a target is missed.
+
+        Args:
+            asked: What the balls ask for now. If it is not what the last step was taken for, the result is IDLE, with
+                the errors that are left. When None, the result is that of the last step.
+        """
         if self._trouble:
             return Standing(self.status, self._trouble, None, None, ())
         if self._question is None or not self._targets:
             return Standing("IDLE", self._idle, None, None, ())
+        if asked is not None and not same_objects(asked, self._targets):
+            return self._overdue(asked)
         question = self._question
         verdict = judge(question, self._targets, self.q, Status[self.status])
         active = question.active_limits(self.q) if question.options.limits else {}
@@ -255,3 +263,12 @@ class Instance:
             words = f"waits, since every answer that was found touches something: {self._blocked}"
             return Standing(Status.COLLIDING.name, words, off.position, off.orientation, tuple(active))
         return Standing(verdict.status.name, words, off.position, off.orientation, tuple(active))
+
+    def _overdue(self, asked: Sequence[Target]) -> Standing:
+        """The result while a step is due, because a ball has changed since the last one."""
+        if not asked:
+            return Standing("IDLE", _NO_TARGETS, None, None, ())
+        errors = measure_errors(self.robot, asked, self.q, self._settings.tolerance)
+        off = largest_of(errors)
+        words = f"no step has been taken since a ball changed; {how_far(errors)} off"
+        return Standing("IDLE", words, off.position, off.orientation, ())
