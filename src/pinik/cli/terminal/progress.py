@@ -85,9 +85,9 @@ def report(tally: Tally, rows: int | None, seconds: float) -> str:
         seconds: How long this run has worked [s].
     """
     if rows is None:
-        words, own = f"{tally.finished:,} of {tally.chunks:,} parts", tally.finished - tally.resumed
-        if own and seconds > 0.0:
-            words += f", {_duration((tally.chunks - tally.finished) * seconds / own)} left"
+        words, parts = f"{tally.finished:,} of {tally.chunks:,} parts", tally.finished - tally.resumed
+        if parts and seconds > 0.0:
+            words += f", {_duration((tally.chunks - tally.finished) * seconds / parts)} left"
         return words
     done = tally.notes.get("rows", 0)
     words = f"{done:,.0f} of {rows:,} rows"
