@@ -12,11 +12,11 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from draw_gallery import FOLDER as GALLERY
+from draw_gallery import PAGE as GALLERY_PAGE
 from PIL import Image
 
 import pinik
-from draw_gallery import FOLDER as GALLERY
-from draw_gallery import PAGE as GALLERY_PAGE
 
 ROOT = Path(__file__).parents[1]
 PAGES = [ROOT / "README.md", ROOT / "CONTRIBUTING.md", ROOT / "CHANGELOG.md", *sorted((ROOT / "docs").rglob("*.md"))]

@@ -16,13 +16,14 @@ from pathlib import Path
 
 import nbformat
 import pytest
-
-import pinik
 import write_reference
-from desk import CHROMIUM, Faults, need_browser
-from page_fixtures import FLAGS
 from pages.api_names import faults_of_public_names
 from pages.formulas import with_formulas
+from pymdownx.slugs import slugify
+
+import pinik
+from desk import CHROMIUM, Faults, need_browser
+from page_fixtures import FLAGS
 from pinik.description.advice import ADVICE
 
 ROOT = Path(__file__).parents[1]
@@ -129,11 +130,36 @@ def test_every_notebook_is_a_page_with_its_pictures(site):
         assert len(re.findall(rf'<img[^>]+src="{path.stem}-\d+\.png"', page)) == shown > 0
 
 
+def test_at_least_forty_questions_are_answered_and_the_index_has_them_all():
+    howto = ROOT / "docs" / "howto"
+    index = (howto / "index.md").read_text("utf-8")
+    linked = set(re.findall(r"\]\((\w+\.md#[\w-]+)\)", index))
+    asked = {
+        f"{page.name}#{slugify(case='lower')(heading, '-')}"
+        for page in howto.glob("*.md")
+        if page.name not in ("index.md", "coming-from.md")
+        for heading in re.findall(r"^## (.+)$", page.read_text("utf-8"), re.MULTILINE)
+    }
+    assert linked == asked
+    assert len(asked) >= 40
+    assert "(coming-from.md)" in index
+
+
+def test_no_markdown_is_left_in_a_page(site):
+    """Lists and formulas that GitHub reads and Python-Markdown does not would show their signs."""
+    for page in site.rglob("*.html"):
+        text = re.sub(r"<(pre|code|script|math)\b.*?</\1>", "", page.read_text("utf-8"), flags=re.DOTALL)
+        found = re.search(r"\$|^\s*\* |\*\*|\|---|```", re.sub(r"<[^>]+>", "", text), re.MULTILINE)
+        assert found is None, f"{page.name}: {text[found.start() - 60 : found.end() + 60]}"
+
+
 def test_formulas_are_mathml_and_no_latex_is_left(site):
     for page in [site / "methods.html", *(site / "notebooks").glob("0*.html")]:
         text = page.read_text("utf-8")
         assert "arithmatex" not in text
-        assert not re.search(r"\\(?:frac|lambda|Delta|top)\b", re.sub(r"<pre>.*?</pre>|<code>.*?</code>", "", text, flags=re.DOTALL)), page
+        assert not re.search(
+            r"\\(?:frac|lambda|Delta|top)\b", re.sub(r"<pre>.*?</pre>|<code>.*?</code>", "", text, flags=re.DOTALL)
+        ), page
     assert "<math" in (site / "methods.html").read_text("utf-8")
     assert with_formulas('<span class="arithmatex">\\(a &lt; b\\)</span>').count("<mi>") == 2
 
@@ -172,7 +198,10 @@ def test_the_page_of_errors_has_the_messages_that_a_user_meets():
 
 
 def matches(template: str, message: str) -> bool:
-    return re.fullmatch(".*".join(map(re.escape, template.split("…"))), message, re.DOTALL) is not None and len(template) > 12
+    return (
+        re.fullmatch(".*".join(map(re.escape, template.split("…"))), message, re.DOTALL) is not None
+        and len(template) > 12
+    )
 
 
 @pytest.fixture(scope="module")
@@ -197,9 +226,12 @@ def test_a_reader_searches_and_follows_without_another_host(address, scheme):
         context = browser.new_context(color_scheme=scheme, viewport={"width": 1280, "height": 800})
         faults = Faults(context)
         faults.allow(address)
+        faults.excuse("ERR_ABORTED")  # the search was still being read when the reader went on
         page = context.new_page()
         page.goto(f"http://{address}/index.html")
-        assert page.locator("body").get_attribute("data-md-color-scheme") == {"light": "default", "dark": "slate"}[scheme]
+        assert (
+            page.locator("body").get_attribute("data-md-color-scheme") == {"light": "default", "dark": "slate"}[scheme]
+        )
         page.keyboard.press("/")
         page.keyboard.type("did you mean")
         page.locator(".md-search-result__link[href*='/errors.html']").first.click()

@@ -1,7 +1,7 @@
 """Film the live view for the README: `python tools/film.py` writes docs/images/live.webp.
 
-A tab of headless Chromium shows three scenes, one after the other. In each the ball makes a lap along its curve, and every
-picture is taken when the page has drawn it in full detail, so the film runs smoothly however slow the machine is.
+A tab of headless Chromium shows three scenes, one after the other. In each the ball makes a lap along its curve, and
+every picture is taken when the page has drawn it in full detail, so the film runs smoothly on any machine.
 """
 
 from __future__ import annotations
@@ -74,9 +74,8 @@ def main() -> None:
         browser.close()
     first, *others = faded(scenes)
     for quality in range(80, 30, -5):
-        # Every picture is whole: differences between pictures would be smaller, and leave traces behind what moves.
         first.save(
-            OUT, save_all=True, append_images=others, duration=round(1000 / RATE), loop=0, quality=quality, method=4, kmax=1
+            OUT, save_all=True, append_images=others, duration=round(1000 / RATE), loop=0, quality=quality, method=4
         )
         if OUT.stat().st_size <= LARGEST:
             break

@@ -27,10 +27,10 @@ This page is made from the commands themselves, which say the same with `--help`
 """
 
 STREAMS = """
-If stdout is closed or its disk is full, the answer is lost, and the status is 2. If only the reader of a pipe has gone, as
-in `pinik info arm | head`, the command ends silently with its usual status. Messages that cannot be written to stderr do
-not change the status. Files that pinik writes are written whole or not at all: an error or an interrupt leaves the file
-that was there before.
+If stdout is closed or its disk is full, the answer is lost, and the status is 2. If only the reader of a pipe has gone,
+as in `pinik info arm | head`, the command ends silently with its usual status. Messages that cannot be written to
+stderr do not change the status. Files that pinik writes are written whole or not at all: an error or an interrupt
+leaves the file that was there before.
 """
 
 STATUSES = {
@@ -63,7 +63,7 @@ def _command(name: str, command: Any) -> str:
             text += f"\n**{panel}**\n"
         text += "\n| | |\n|---|---|\n" + "".join(_row(parameter, context) for parameter in parameters)
     if command.epilog:
-        text += f"\n??? note \"{command.epilog.partition(':')[0]}\"\n\n    ```text\n"
+        text += f'\n??? note "{command.epilog.partition(":")[0]}"\n\n    ```text\n'
         body = command.epilog.partition("\n\n")[2] if "\n\n" in command.epilog else command.epilog
         text += "".join(f"    {line}\n" if line else "\n" for line in _plain(body).splitlines()) + "    ```\n"
     return text

@@ -23,14 +23,14 @@ WHAT_TO_DO = {
     "and `pinik check FILE --fix OUT.urdf` mends what has one answer.",
     "SolveError": "The target was missed; `error.solution` has the best configuration and says why. "
     "[Missed targets](howto/answers.md#why-was-my-target-missed) has the usual causes.",
-    "EngineError": "Leave out `engine=\"native\"`, or install pinik where a C++ compiler is, as the message says.",
+    "EngineError": 'Leave out `engine="native"`, or install pinik where a C++ compiler is, as the message says.',
     "MissingExtraError": "Run the install line that the message ends with.",
-    "InputWarning": "The answer is for the rounded argument. Give more digits, or compute the matrix from a quaternion.",
+    "InputWarning": "The answer is for the rounded argument. Give more digits, or take a quaternion.",
     "UrdfWarning": "The robot works, and something in its file is not as it should be. `pinik check FILE` says more. "
     "With `pinik.load(..., strict=True)` it is an error.",
     "RuntimeWarning": "Install pinik again: its compiled engine belongs to another build, so solves run in Python.",
-    "DeprecationWarning": "Use the new name, which the message gives. The old one works for one more minor version; see "
-    "[Versions](versions.md).",
+    "DeprecationWarning": "Use the new name, which the message gives. The old one works for one more minor version; "
+    "see [Versions](versions.md).",
 }
 
 INTERNAL = {  # the errors inside pinik, and what users meet instead
@@ -87,7 +87,7 @@ def error_page() -> str:
     text += "".join(f"| `{one.name}` | {one.value} | {TRACKER_STATUSES[one.name]} |\n" for one in pinik.TrackerStatus)
     found = messages()
     for name, advice in WHAT_TO_DO.items():
-        text += f"\n## {name}\n\n{_meaning(name)}\n\n**What to do:** {advice}\n" + _table(found.get(name, {}))
+        text += f"\n## {name}\n\n{_meaning(name)}\n\n**What to do:** {advice}\n" + _table(found.get(name, set()))
         if name == "UrdfWarning":
             text += _flaws()
     text += "\n## The command line\n\nA command prints its error on stderr and ends with a [status](command-line.md"
@@ -104,11 +104,12 @@ def _meaning(name: str) -> str:
     return f"{meaning} It is also a `{builtins[0]}`." if builtins else meaning
 
 
-def _table(found: dict[str, set[str]]) -> str:
+def _table(found: set[str]) -> str:
     if not found:
         return ""
-    rows = "".join(f"    * {_escaped(message)}\n" for message in sorted(found, key=str.casefold))
-    return f"\n??? info \"{len(found)} messages\"\n\n{rows}"
+    in_order = sorted(found, key=lambda message: (message.casefold(), message))
+    rows = "".join(f"    * {_escaped(message)}\n" for message in in_order)
+    return f'\n??? info "{len(found)} message{"s" * (len(found) > 1)}"\n\n{rows}'
 
 
 def _escaped(message: str) -> str:
@@ -119,22 +120,18 @@ def _flaws() -> str:
     rows = "".join(f"| `{code}` | {advice.why} | {advice.mend} |\n" for code, advice in ADVICE.items())
     return (
         "\nA flaw of a robot description has a code, which `warning.code` and [`pinik check`](check.md#codes) show:\n\n"
-        f"| code | why it matters | what to do |\n|---|---|---|\n{_table_text(rows)}"
+        "| code | why it matters | what to do |\n|---|---|---|\n" + re.sub(r"(<[^>|`]+>)", r"`\1`", rows)
     )
 
 
-def _table_text(rows: str) -> str:
-    return re.sub(r"(<[^>|`]+>)", r"`\1`", rows)
-
-
-def messages() -> dict[str, dict[str, set[str]]]:
-    """Class → message, with … for what differs → the modules that say so; read from the source."""
-    found: dict[str, dict[str, set[str]]] = {}
+def messages() -> dict[str, set[str]]:
+    """Class → its messages, with … for what differs, read from the source."""
+    found: dict[str, set[str]] = {}
     for path in sorted(SOURCE.rglob("*.py")):
         for name, message in _said_in(ast.parse(path.read_text("utf-8"))):
             name = INTERNAL.get(name, name)
             if name in WHAT_TO_DO or name in INTERNAL.values():
-                found.setdefault(name, {}).setdefault(message, set()).add(path.stem)
+                found.setdefault(name, set()).add(message)
     return found
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import base64
 import re
+from collections.abc import Sequence
 from pathlib import Path
 
 import nbformat
@@ -12,6 +13,16 @@ import nbformat
 def title_of(path: Path) -> str:
     first = nbformat.read(path, as_version=4).cells[0].source
     return first.splitlines()[0].removeprefix("# ")
+
+
+def notebooks_page(paths: Sequence[Path]) -> str:
+    """The page that lists all notebooks."""
+    introduction = (
+        "# Notebooks\n\nInverse kinematics explained with pictures, from a URDF to every answer there is. Read them "
+        "here, or run them with `pip install 'pinik[notebooks]'` and `jupyter lab notebooks`. Each ends with exercises "
+        "and their solutions.\n\n"
+    )
+    return introduction + "".join(f"* [{title_of(path)}]({path.stem}.ipynb)\n" for path in paths)
 
 
 def notebook_page(path: Path) -> tuple[str, dict[str, bytes]]:
