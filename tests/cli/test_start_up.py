@@ -9,10 +9,22 @@ from start_up import SOLVE, modules_after
 HEAVY = ("yourdfpy", "trimesh", "meshcat", "scipy", "matplotlib", "IPython")
 # Modules of Python that are slow to load, and that few runs need; only what numpy and Pinocchio import is free.
 ON_DEMAND = (
-    "concurrent.futures", "difflib", "hashlib", "html", "logging", "multiprocessing", "numpy.polynomial", "socket", "ssl",
-    "subprocess", "tempfile", "zipfile",
+    "concurrent.futures", "difflib", "hashlib", "html", "logging", "multiprocessing", "numpy.polynomial", "socket",
+    "ssl", "subprocess", "tempfile", "zipfile",
 )  # fmt: skip
-EXTRAS = ("dask", "distributed", "h5py", "matplotlib", "PIL", "pyarrow", "rich", "tornado", "trimesh", "typer", "yourdfpy")
+EXTRAS = (
+    "dask",
+    "distributed",
+    "h5py",
+    "matplotlib",
+    "PIL",
+    "pyarrow",
+    "rich",
+    "tornado",
+    "trimesh",
+    "typer",
+    "yourdfpy",
+)
 FEW = 250  # modules of others than numpy and Pinocchio; there are about 205
 TIMES = 6.0  # as long as importing numpy and Pinocchio; it takes about 3.4 times as long
 
@@ -27,7 +39,7 @@ def test_importing_pinik_imports_no_extra_and_no_slow_module_that_few_runs_need(
     done = subprocess.run(
         [sys.executable, "-c", script], env=environment, capture_output=True, text=True, timeout=60, check=True
     )
-    assert {*done.stdout.split()}.isdisjoint((*ON_DEMAND, *EXTRAS))
+    assert {*done.stdout.split()}.isdisjoint({*ON_DEMAND, *EXTRAS})
 
 
 def test_a_command_imports_no_module_of_another_command(environment):
