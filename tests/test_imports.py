@@ -40,10 +40,11 @@ ONLY_THERE = {
     "cloudpickle": {"scale.jobs.cluster"},
     "dask": set(),
     "h5py": {"workspace.reuleaux"},
+    "pandas": {f"solving.{name}" for name in ("data_frame", "many", "track", "self_motion", "branches")},
 }
 HEAVY = {
     "yourdfpy", "trimesh", "scipy", "PIL", "meshcat", "matplotlib", "typer", "rich", "tornado", "umsgpack",
-    "pyarrow", "h5py", "dask", "distributed", "cloudpickle",
+    "pyarrow", "h5py", "pandas", "dask", "distributed", "cloudpickle",
 }  # fmt: skip
 
 
