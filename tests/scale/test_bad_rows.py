@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 import io
+import json
 from pathlib import Path
 
 import numpy as np
@@ -42,7 +43,10 @@ BAD = {
     "empty id": (",0.4,0.1,0.5,0,1,0,0", "column id: must not be empty"),
     "short": ("p2,0.4,0.1,0.5,0,1,0", "there must be 8 cells, as in the header; got 7"),
     "long": ("p2,0.4,0.1,0.5,0,1,0,0,7", "there must be 8 cells, as in the header; got 9"),
-    "open quote": ('"p2,0.4,0.1,0.5,0,1,0,0', "not CSV: unexpected end of data"),
+    "open quote": (
+        '"p2,0.4,0.1,0.5,0,1,0,0',
+        "not CSV: a quote is not closed on the same line; a cell can hold no line break",
+    ),
     "nothing asked": ("p2,,,,,,,", "nothing is asked for; give a position or an orientation"),
 }
 
@@ -73,7 +77,7 @@ def test_wrong_encoding_is_named_by_its_line(panda, tmp_path):
         run(panda, path)
     assert run(panda, path, skip_bad=True).solved == 7
     path.write_bytes("id,x,y,z,caf\xe9\n".encode("latin-1"))
-    with pytest.raises(InputError, match="the header is not UTF-8"):
+    with pytest.raises(InputError, match="the header: not UTF-8"):
         run(panda, path)
 
 
@@ -122,7 +126,7 @@ def test_quotes_blank_lines_and_line_ends_are_read(panda, tmp_path, end, mark):
             "the column 'start.panda_joint9': no joint 'panda_joint9'; did you mean 'panda_joint",
         ),
         ("x,y,z,start.panda_finger_joint2", "joint 'panda_finger_joint2' mimics"),
-        ('x,y,"z', "line 1: not CSV: unexpected end of data"),
+        ('x,y,"z', "line 1: not CSV: a quote is not closed on the same line"),
     ],
 )
 def test_columns_are_checked(panda, tmp_path, header, words):
@@ -206,3 +210,100 @@ def test_bad_rows_of_a_stream_are_named_too(panda):
     stream = io.BytesIO("\n".join(lines(l4="p2,0.4,nan,0.5,0,1,0,0")).encode())
     with pytest.raises(InputError, match=r"the stream: line 4: column y"):
         pinik.batch.run(panda, stream, "panda_hand_tcp", output=io.BytesIO())
+
+
+@pytest.mark.parametrize(
+    ("content", "words"),
+    [
+        (b"id;x;y;z\na;0,4;0,1;0,5\n", "line 1: the cells are divided by semicolons; there must be commas"),
+        (b"x\ty\tz\n0.4\t0.1\t0.5\n", "line 1: the cells are divided by tabs; there must be commas"),
+        (b"x,y,z\r0.4,0.1,0.5\r", "line 1: lines must end in"),
+        ("x,y,z\n0.4,0.1,0.5\n".encode("utf-16"), "the header: not UTF-8"),
+    ],
+)
+def test_what_spreadsheets_write_instead_of_csv_is_named(panda, tmp_path, content, words):
+    path = tmp_path / "poses.csv"
+    path.write_bytes(content)
+    with pytest.raises(InputError, match=words):
+        run(panda, path)
+
+
+def test_the_targets_are_not_overwritten_by_the_answers(panda, tmp_path):
+    path = tmp_path / "out.csv"
+    path.write_text("\n".join(lines()) + "\n")
+    (tmp_path / "poses.csv").symlink_to(path)
+    with pytest.raises(InputError, match="output is the file of the targets, which would be lost"):
+        run(panda, tmp_path / "poses.csv")
+    assert path.read_text() == "\n".join(lines()) + "\n"
+
+
+X = {"x": np.array([0.4, 0.4]), "y": np.array([0.1, 0.2]), "z": np.array([0.5, 0.5])}
+
+
+@pytest.mark.parametrize(
+    ("changed", "words"),
+    [
+        ({"x": np.array(["0.4", "b"])}, "row 0: column x: must be a number; got '0.4'; 1 more row"),
+        ({"id": np.array([1.0, 2.0])}, "row 0: column id: must be a text or a whole number; got 1.0; 1 more row"),
+        ({"id": np.array(["a", ""])}, "row 1: column id: must not be empty"),
+    ],
+)
+def test_faulty_cells_of_arrays(panda, tmp_path, changed, words):
+    np.savez(tmp_path / "poses.npz", **(X | changed))
+    with pytest.raises(InputError, match=words):
+        run(panda, tmp_path / "poses.npz")
+
+
+def test_empty_frames_of_arrays_take_the_frame_of_all_rows(panda, tmp_path):
+    np.savez(tmp_path / "poses.npz", **X, frame=np.array(["", "panda_link8"]))
+    assert run(panda, tmp_path / "poses.npz").solved == 2
+
+
+def test_a_file_damaged_in_its_middle_is_said_in_words(panda, tmp_path):
+    np.savez(tmp_path / "poses.npz", **X)
+    pq.write_table(pa.table(X), tmp_path / "poses.parquet")
+    for name, at in (("poses.npz", slice(150, 151)), ("poses.parquet", slice(8, 60))):
+        content = bytearray((tmp_path / name).read_bytes())
+        content[at] = bytes(byte ^ 0x55 for byte in content[at])
+        (tmp_path / name).write_bytes(content)
+        with pytest.raises(InputError, match=f"{name}: the file is damaged: "):
+            run(panda, tmp_path / name)
+
+
+@pytest.mark.parametrize("form", ["csv", "jsonl", "npz", "parquet"])
+def test_ids_too_large_for_a_column_of_whole_numbers_are_texts(panda, tmp_path, form):
+    np.savez(tmp_path / "poses.npz", **X, id=np.array([2**63, 2], dtype=np.uint64))
+    pq.write_table(pa.table(X | {"id": pa.array([2**63, 2], pa.uint64())}), tmp_path / "poses.parquet")
+    rows = [{"id": name, "x": 0.4, "y": 0.1, "z": 0.5} for name in (10**30, 2)]
+    (tmp_path / "poses.jsonl").write_text("\n".join(map(json.dumps, rows)))
+    for name, first in (("poses.npz", 2**63), ("poses.parquet", 2**63), ("poses.jsonl", 10**30)):
+        output = tmp_path / f"out.{form}"
+        pinik.batch.run(panda, tmp_path / name, "panda_hand_tcp", output=output)
+        if form == "npz":
+            ids = np.load(output)["id"].tolist()
+        elif form == "parquet":
+            ids = pq.read_table(output)["id"].to_pylist()
+        elif form == "jsonl":
+            ids = [json.loads(line)["id"] for line in output.read_text().splitlines()]
+        else:
+            ids = [row["id"] for row in csv.DictReader(io.StringIO(output.read_text()))]
+        assert ids == [str(first), "2"]
+
+
+def test_half_a_character_in_an_id_is_a_fault(panda, tmp_path):
+    path = tmp_path / "poses.jsonl"
+    path.write_text('{"id": "\\ud800", "x": 0.4, "y": 0.1, "z": 0.5}\n')
+    with pytest.raises(InputError, match="line 1: column id: must be a text or a whole number"):
+        run(panda, path)
+
+
+def test_a_file_without_one_object_of_json_is_named_by_its_first_line(panda, tmp_path):
+    path = tmp_path / "poses.jsonl"
+    path.write_text("x,y,z\n0.4,0.1,0.5\n")
+    with pytest.raises(InputError, match="line 1: not JSON"):
+        run(panda, path)
+
+
+def test_views_of_texts_are_ids(panda, tmp_path):
+    pq.write_table(pa.table(X | {"id": pa.array(["a", "b"], pa.string_view())}), tmp_path / "poses.parquet")
+    assert run(panda, tmp_path / "poses.parquet").solved == 2

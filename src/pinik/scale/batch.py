@@ -143,6 +143,7 @@ def run(
     delivery = Delivery.of(output, form, resume)
     rows = as_count(chunk, "chunk")
     with opened(targets, targets_form, rows) as table:
+        delivery.check_not(table.path)
         reading = _reading(robot, table, frame, tool, relative_to, options.tolerance, q0, degrees)
         found = _surveyed(table, reading, (on_bad or _unsaid) if skip_bad else None)
         _check_kinds(found, reading, options)

@@ -61,6 +61,11 @@ class Delivery:
             raise InputError("must be False for a stream, of which nothing is kept", argument="resume")
         return cls(output, format_of(Path(), form or "csv"), resume)
 
+    def check_not(self, targets: Path) -> None:
+        """Check that the answers do not take the place of the targets; InputError if they would."""
+        if isinstance(self.output, Path) and self.output.exists() and self.output.samefile(targets):
+            raise InputError("is the file of the targets, which would be lost", argument="output")
+
     def run(self, job: Job, columns: Sequence[Column], runner: Runner, on_progress: OnProgress | None) -> Tally:
         """Work on a job, and deliver what it comes to."""
         writer = FORMATS[self.form].writer

@@ -10,6 +10,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
+from ..errors import InputError
 from .asked import Reading
 from .kinds import Kind
 from .solving import RawChunk
@@ -18,6 +19,7 @@ from .tables.table import Fault, Source, Table
 __all__ = ["Survey", "digest_of", "survey"]
 
 _PIECE = 1 << 20  # [bytes]
+_WHOLE = range(-(2**63), 2**63)  # what a column of whole numbers can hold
 
 
 @dataclass
@@ -29,7 +31,7 @@ class Survey:
         faulty: The number of faulty rows.
         firsts: The number of the first row of each chunk.
         repeated: Chunk → the indices of rows in it whose id belongs to an earlier row.
-        whole_ids: Whether the ids are whole numbers.
+        whole_ids: Whether the ids are whole numbers of at most 64 bits.
         kinds: The kinds of rows, tolerances aside, with the place of the first row of each.
     """
 
@@ -53,11 +55,18 @@ def survey(source: Source, reading: Reading, label: str, on_bad: Callable[[str],
         reading: How its rows are read.
         label: What messages call the file.
         on_bad: Takes each fault in words, with file, line and column. Those of repeated ids come last.
+
+    Raises:
+        InputError: The file is damaged.
     """
     found = Survey()
     ids = _Ids()
     for number in range(source.chunks):
-        table = source.decode(source.raw(number), reading.columns.cells)
+        try:
+            raw = source.raw(number)
+        except ValueError as error:
+            raise InputError(f"{label}: {error}") from None
+        table = source.decode(raw, reading.columns.cells)
         found.firsts.append(found.rows)
         found.rows += len(table)
         if "id" in table.texts:
@@ -94,7 +103,7 @@ class _Ids:
     def add(self, table: Table) -> None:
         """Take the ids of the next chunk."""
         names = table.texts["id"]
-        self.whole = self.whole and all(isinstance(name, int) for name in names if name is not None)
+        self.whole = self.whole and all(isinstance(name, int) and name in _WHOLE for name in names if name is not None)
         self._hashes.append(np.array([hash(str(name)) for name in names], dtype=np.int64))
 
     def repeated(self, source: Source, reading: Reading) -> Iterator[tuple[int, int, int, int]]:

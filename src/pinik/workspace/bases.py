@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -11,6 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from ..checks import as_array, as_count, as_positive_number
 from ..solving.many import solve_many
+from ..solving.origin import Origin
 from ..solving.places import read_placements
 from .voxel_map import VoxelMap
 
@@ -53,7 +55,16 @@ class Bases:
         return f"best base: x {x:.3f} m, y {y:.3f} m, z {z:.3f} m, yaw {yaw:.0f}°: {count} of {self.targets} targets"
 
 
-def find_bases(reach: VoxelMap, targets: Any, *, heights: ArrayLike, yaws: int, step: float | None, most: int) -> Bases:
+def find_bases(
+    reach: VoxelMap,
+    targets: Any,
+    *,
+    heights: ArrayLike,
+    yaws: int,
+    step: float | None,
+    most: int,
+    options: Mapping[str, Any],
+) -> Bases:
     """See `ReachMap.bases`."""
     rotations, points = read_placements(targets)
     levels = as_array(np.atleast_1d(np.asarray(heights, dtype=np.float64)), np.atleast_1d(heights).shape, "heights")
@@ -76,7 +87,7 @@ def find_bases(reach: VoxelMap, targets: Any, *, heights: ArrayLike, yaws: int, 
     placements, reached, margin = (np.concatenate(parts) for parts in zip(*found, strict=True))
     best = np.lexsort((-margin, -reached))[:most]
     placements, reached, margin = placements[best], reached[best], margin[best]
-    solved = _solved(reach, placements, targets)
+    solved = _solved(reach, placements, targets, options)
     if solved is not None:
         best = np.lexsort((-margin, -solved))
         placements, reached, margin, solved = placements[best], reached[best], margin[best], solved[best]
@@ -111,11 +122,13 @@ def _seen_from(
     return np.concatenate(reached), np.concatenate(margin)
 
 
-def _solved(reach: VoxelMap, placements: Array, targets: Any) -> Counts | None:
+def _solved(reach: VoxelMap, placements: Array, targets: Any, options: Mapping[str, Any]) -> Counts | None:
     """How many targets are reached from each base, by solving for them; None if the robot is not known."""
     if reach.machine is None:
         return None
     rotations, points = read_placements(targets)
+    start = Origin.of(reach.machine, options.get("q0"), searches=False).q
+    own = {**options, "q0": start, "tool": reach.tool, "relative_to": reach.relative_to}
     counts = []
     for base in placements:
         local = (points - base[:3, 3]) @ base[:3, :3]
@@ -123,6 +136,6 @@ def _solved(reach: VoxelMap, placements: Array, targets: Any) -> Counts | None:
         if rotations is not None:
             places = np.tile(np.eye(4), (len(points), 1, 1))
             places[:, :3, :3], places[:, :3, 3] = base[:3, :3].T @ rotations, local
-        answers = solve_many(reach.machine, reach.frame, places, tool=reach.tool, relative_to=reach.relative_to)
+        answers = solve_many(reach.machine, reach.frame, places, **own)
         counts.append(int(answers.success.sum()))
     return np.array(counts, dtype=np.int64)

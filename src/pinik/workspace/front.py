@@ -182,7 +182,7 @@ def make_plan(
     sampler = Sampler(robot, target, start, locked=options.locked, limits=options.limits)
     axes = len(sampler.drawn)
     if not axes:
-        raise InputError(f"no joint moves {frame!r}, so there is nothing to map", argument="frame")
+        raise InputError(f"must be one that joints move; none moves {frame!r}", argument="frame")
     if directions is None:
         directions = DIRECTIONS if axes >= 5 else 0
     if rolls is None:

@@ -56,7 +56,7 @@ class Grid:
         """
         lower, upper = as_array(box, (2, 3), "box", "the lower and the upper corner")
         if not (upper > lower).all():
-            raise InputError("its upper corner must be above the lower one in x, y and z", argument="box")
+            raise InputError("must have its upper corner above the lower one in x, y and z", argument="box")
         shape = np.ceil((upper - lower) / size - 1e-9).clip(min=1.0)
         return cls._checked(lower + 0.5 * size, size, shape)
 

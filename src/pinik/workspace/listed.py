@@ -58,9 +58,11 @@ class ReachedTargets:
 
     def __str__(self) -> str:
         words = f"{int(self.reached.sum())} of {len(self)} targets reached; mean score {self.score.mean():.2f}"
+        if not self.success:
+            words += ", with 0 for those that are missed"
         if self.reached.any():
             worst = int(np.flatnonzero(self.reached)[np.argmin(self.score[self.reached])])
-            words += f", lowest {self.score[worst]:.2f} at target {worst}"
+            words += f", lowest {'' if self.success else 'of the others '}{self.score[worst]:.2f} at target {worst}"
         return words
 
 

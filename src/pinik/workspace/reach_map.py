@@ -7,6 +7,7 @@ from typing import Any
 
 from numpy.typing import ArrayLike
 
+from ..errors import InputError
 from ..picture.picture import Picture
 from ..robot import Robot
 from .bases import Bases, find_bases
@@ -29,6 +30,7 @@ class ReachMap(VoxelMap):
         yaws: int = 24,
         step: float | None = None,
         most: int = 10,
+        **options: Any,
     ) -> Bases:
         """Where to put the robot's base for these targets, best first.
 
@@ -43,11 +45,13 @@ class ReachMap(VoxelMap):
             yaws: The number of directions into which the base may look.
             step: The distance between neighbouring bases [m]; the size of the map's cells when None.
             most: How many bases are returned.
+            **options: Those of `pinik.solve_many` with which the best bases are solved for, such as `method`, `locked`,
+                `limits` and `avoid`: give those with which the map was made.
 
         Raises:
             InputError: A target is faulty, or another argument has the wrong type or range.
         """
-        return find_bases(self, targets, heights=heights, yaws=yaws, step=step, most=most)
+        return find_bases(self, targets, heights=heights, yaws=yaws, step=step, most=most, options=options)
 
     def save(self, path: str | os.PathLike[str]) -> None:
         """Write the map to a file: .npz or .parquet, which `ReachMap.load` reads; or .h5 in reuleaux's layout.
@@ -68,10 +72,13 @@ class ReachMap(VoxelMap):
             robot: The robot, if it is to be drawn, or bases are to be solved for.
 
         Raises:
-            InputError: It is not such a file.
+            InputError: It is not such a file, or a map of another robot.
             MissingExtraError: The package that reads it is not installed.
         """
-        return cls(**load_fields(path), machine=robot)
+        fields = load_fields(path)
+        if robot is not None and robot.name != fields["robot"]:
+            raise InputError(f"{os.fspath(path)} is a map of {fields['robot']}, and the robot is {robot.name}")
+        return cls(**fields, machine=robot)
 
     def draw(self, robot: Robot | None = None, **options: Any) -> Picture:
         """Draw the robot in what it can reach, cut open: see `workspace.drawing.draw_map`."""

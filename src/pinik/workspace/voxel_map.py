@@ -19,7 +19,7 @@ from .counts import QUANTA, Counts
 from .grid import Grid
 from .orientations import Orientations
 
-__all__ = ["WORKSPACES", "Places", "Reached", "VoxelMap", "Workspace"]
+__all__ = ["WORKSPACES", "Places", "Reached", "VoxelMap", "Workspace", "as_least_share"]
 
 Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]
@@ -148,9 +148,7 @@ class VoxelMap:
         """
         reached = self.counts.reached
         if not isinstance(workspace, str):
-            least = as_finite_number(workspace, "workspace")
-            if not 0.0 < least <= 1.0:
-                raise InputError(f"must be a name or a share in (0, 1]; got {workspace!r}", argument="workspace")
+            least = as_least_share(workspace)
             return np.asarray(self._dense(reached.mean(axis=1) >= least - 1e-12, False))
         if workspace not in WORKSPACES:
             raise UnknownNameError("workspace", workspace, WORKSPACES)
@@ -303,6 +301,14 @@ class VoxelMap:
         if not isinstance(machine, Robot):
             raise InputError(f"{what} needs the robot, which a map from a file does not hold: give robot=")
         return machine
+
+
+def as_least_share(workspace: float) -> float:
+    """A workspace that is given as the least share of the orientations; InputError unless it is in (0, 1]."""
+    least = as_finite_number(workspace, "workspace")
+    if not 0.0 < least <= 1.0:
+        raise InputError(f"must be a name or a share in (0, 1]; got {workspace!r}", argument="workspace")
+    return least
 
 
 def _one(place: Places) -> tuple[Array | None, Array]:

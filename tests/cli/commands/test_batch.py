@@ -141,9 +141,11 @@ def test_an_interrupt_keeps_what_is_finished_and_resume_goes_on(run, many, envir
     finished = len(list(parts_folder(out).glob("*.part")))
     refused = run(*words, out, "--chunk", "20")
     assert refused.status == 2
+    assert refused.err.startswith("error: "), "nothing advises --resume to a command that is refused"
     assert f"holds {finished} of 50 chunks of a run that was not finished" in refused.err
     other = run(*words, out, "--chunk", "21", "--resume")
     assert other.status == 2
+    assert other.err.startswith("error: ")
     assert "belongs to another run: chunk was 20 and is 21" in other.err
     done = run(*words, out, "--chunk", "20", "--resume")
     assert done.status == 1
@@ -202,6 +204,7 @@ def test_progress_names_rate_share_and_time_left():
     assert report(Tally(10), 10_000, 0.0) == "0 of 10,000 rows"
     tally = Tally(10, finished=1, notes={"rows": 1000, "CONVERGED": 1000})
     assert report(tally, 10_000_000, 1.0).endswith(", 1,000 rows/s, 2 h 46 min left")
+    assert report(Tally(120, finished=40, resumed=20), None, 30.0) == "40 of 120 parts, 2 min 00 s left"
 
 
 def test_progress_in_a_terminal_is_one_line_that_goes_away(many, environment, tmp_path):

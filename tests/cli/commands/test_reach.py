@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 from pathlib import Path
 
 import numpy as np
@@ -49,6 +50,20 @@ def test_a_map_goes_to_a_file_and_is_shown_from_it(run, tmp_path):
     assert b"<title>What tip of two_link can reach</title>" in page.read_bytes()
 
 
+def test_a_map_from_a_file_goes_to_a_file_of_another_format(run, tmp_path):
+    file, other = tmp_path / "ring.npz", tmp_path / "ring.parquet"
+    run(*RING, "--samples", "50000", "--output", file)
+    assert run("reach", "two_link", "--map", file, "--output", other).status == 0
+    assert str(pinik.ReachMap.load(other)) == str(pinik.ReachMap.load(file))
+
+
+def test_a_map_of_another_robot_is_refused(run, tmp_path):
+    run(*RING, "--samples", "500", "--output", tmp_path / "ring.npz")
+    answer = run("reach", "panda", "--map", tmp_path / "ring.npz", "--picture", tmp_path / "a.png")
+    assert (answer.status, answer.out) == (2, "")
+    assert "ring.npz is a map of two_link, and the robot is panda" in answer.err
+
+
 def test_a_list_of_places(run, tmp_path):
     answer = run("reach", "panda", CIRCLE, "--frame", "panda_hand_tcp", "--json")
     assert answer.status == 0
@@ -62,6 +77,10 @@ def test_a_list_of_places(run, tmp_path):
     assert missed.status == 1
     assert [line.split()[4] for line in missed.out.splitlines()[1:3]] == ["yes", "no"]
     assert "1 of 2 targets reached" in missed.out
+    mean, lowest = map(
+        float, re.search(r"mean score ([\d.]+), with 0 .* lowest of the others ([\d.]+)", missed.out).groups()
+    )
+    assert mean == pytest.approx(lowest / 2, abs=0.006)
     told = run("reach", "two_link", places, "--frame", "tip", "--json").json
     assert told["targets"][1]["manipulability"] is None
 
@@ -77,6 +96,11 @@ def test_places_for_the_base(run, tmp_path):
     assert ((away > 0.1) & (away < 0.9)).all()
     text = run(*RING, places, "--samples", "50000", "--bases", "4", "--deg")
     assert "yaw [deg]" in text.out
+    run(*RING, "--samples", "50000", "--output", tmp_path / "ring.npz")
+    again = run("reach", "two_link", places, "--map", tmp_path / "ring.npz", "--bases", "4", "--json")
+    assert again.json["bases"] == answer.json["bases"]
+    straight = run(*RING, places, "--samples", "50000", "--bases", "4", "--lock", "joint2", "--json")
+    assert straight.json["bases"][0]["solved"] < 2, "of what the map promises, a locked elbow misses some"
     far = run(*RING, places, "--samples", "100", "--bases", "1", "--box", 0, 0, 0.5, 0.1, 0.1, 0.6)
     assert far.status == 1
     assert "no base reaches" in far.out
@@ -98,6 +122,9 @@ def test_places_for_the_base(run, tmp_path):
         (["--map", "none.npz"], "no such file"),
         (["--resume"], "--resume"),
         (["--branches"], "--branches"),
+        (["--workspace", "2"], "--workspace must be a name or a share in (0, 1]; got 2.0"),
+        ([CIRCLE, "--output", "map.npz"], "--map and --output are for maps"),
+        ([CIRCLE, "--map", "map.npz"], "--map and --output are for maps"),
     ],
 )
 def test_wrong_options_are_refused_in_words(run, options, words, tmp_path, monkeypatch):

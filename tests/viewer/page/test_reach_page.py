@@ -58,6 +58,7 @@ def test_it_counts_the_cells_of_the_map(tab, found):
 
 
 def test_the_least_share_and_the_tool_down_leave_fewer_cells(tab, found):
+    assert float(tab.get_by_test_id("least").get_attribute("max")) == found.share.max()
     tab.get_by_test_id("least").fill("0.5")
     assert count(tab) == (found.share >= 0.5).sum() < found.workspace().sum()
     tab.get_by_test_id("least").fill("0")

@@ -8,6 +8,7 @@ from typing import Annotated, Any, BinaryIO
 
 import typer
 
+from ...errors import InputError
 from ..inputs import solve_options as given
 from ..inputs.assignments import failures_in_words, numbers_by_joint, origin, solver_with
 from ..inputs.files import check_file
@@ -17,7 +18,7 @@ from ..inputs.options import AllowOutside, AsJson, Degrees, PackageDirs, RobotSo
 from ..inputs.targets import named_by_option
 from ..terminal import output
 from ..terminal.exits import CommandError, ExitStatus
-from ..terminal.progress import RowsProgress
+from ..terminal.progress import JobProgress
 from ..terminal.units import Units
 
 __all__ = ["batch"]
@@ -136,8 +137,10 @@ def batch(
     units = Units(degrees)
     solver = solver_with(method, param)
     machine = load_robot(robot, root=root, package_dirs=package_dir, xacro_args=xacro_arg, allow_outside=allow_outside)
+    sink: str | BinaryIO = sys.stdout.buffer if to_file == "-" else to_file
     options: dict[str, Any] = {"restarts": restarts, "max_iterations": max_iterations, "time_limit": time_limit}
     options |= {
+        "output": sink,
         "tool": tool,
         "relative_to": relative_to,
         "tolerance": given.tolerance_of(tolerance, tolerance_box),
@@ -159,22 +162,21 @@ def batch(
     }
     files: dict[str, Any] = {"form": form, "targets_form": targets_form, "times": times, "degrees": degrees}
     source: str | BinaryIO = sys.stdin.buffer if targets == "-" else targets
-    sink: str | BinaryIO = sys.stdout.buffer if to_file == "-" else to_file
     try:
-        with failures_in_words(solver, method), named_by_option(options), RowsProgress() as progress:
+        with failures_in_words(solver, method), named_by_option(options), JobProgress() as progress:
             summary = scale.run(
                 machine,
                 source,
                 frame,
                 solver,
-                output=sink,
                 on_bad=output.warn,
                 on_progress=progress,
                 **files,
                 **options,
             )
     except BaseException as error:
-        _say_what_is_kept(to_file)
+        if not isinstance(error, (InputError, CommandError)):  # these come before any work
+            _say_what_is_kept(to_file)
         if isinstance(error, OSError):
             return _lost(to_file, error)
         raise

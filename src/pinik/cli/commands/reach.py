@@ -40,7 +40,7 @@ from ..reports.reach_report import (
 )
 from ..terminal import output
 from ..terminal.exits import CommandError, ExitStatus
-from ..terminal.progress import progress_of
+from ..terminal.progress import JobProgress
 from ..terminal.units import Units
 
 __all__ = ["reach"]
@@ -108,7 +108,8 @@ def reach(
     """
     units = Units(degrees)
     _check(frame, by, targets, bases, map_file, (to_file, slices, page, picture))
-    shown = asked.workspace_of(workspace)
+    with named_by_option({"workspace": workspace}):
+        shown = asked.workspace_of(workspace)
     if quantity not in QUANTITIES:
         raise UnknownNameError("quantity", quantity, QUANTITIES)
     solver = solver_with(method, param)
@@ -136,6 +137,8 @@ def reach(
     found, agreement = None, None
     if map_file is not None:
         found = ReachMap.load(map_file, machine)
+        if to_file is not None:
+            found.save(to_file)
     else:
         options = common | {
             "restarts": RESTARTS if restarts is None else restarts,
@@ -161,8 +164,10 @@ def reach(
             else:
                 found = _mapped(machine, frame, solver, by, options | files)
     if bases is not None:
-        places = _places(targets, frame, {}, units, machine)
-        chosen = found.bases([_placed(place) for place in places], most=bases)
+        places = _places(targets, found.frame, {}, units, machine)
+        options = common | {"restarts": restarts, "max_iterations": max_iterations}
+        with failures_in_words(solver, method), named_by_option(options):
+            chosen = found.bases([_placed(place) for place in places], most=bases, method=solver, **options)
         if as_json:
             output.emit_json(bases_fields(found, chosen, time.perf_counter() - began))
         else:
@@ -199,6 +204,8 @@ def _check(
         raise CommandError("give the frame that reaches by --frame F")
     if frame is None and bases is not None and map_file is None:
         raise CommandError("--bases needs --frame F, to map the robot")
+    if targets is not None and bases is None and any(path is not None for path in (map_file, files[0])):
+        raise CommandError("--map and --output are for maps; leave out the list of places, or ask for --bases")
     to_file, slices, page, picture = files
     if targets is not None and any(path is not None for path in (slices, page, picture)):
         raise CommandError("pictures and pages show maps; leave out the list of places")
@@ -231,6 +238,6 @@ def _placed(target: Target) -> Any:
 
 
 def _mapped(robot: Robot, frame: str | None, solver: Solver, by: str, options: Mapping[str, Any]) -> ReachMap:
-    """Make a map, with a progress bar in a terminal."""
-    with progress_of(f"reach by {by}") as tell:
+    """Make a map, and report how far it is."""
+    with JobProgress(f"reach by {by}: ") as tell:
         return reach_all(robot, frame or "", solver, by=by, on_progress=tell, **options)

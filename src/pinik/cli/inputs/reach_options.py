@@ -8,7 +8,7 @@ from typing import Annotated, Any
 import typer
 
 from ...errors import UnknownNameError
-from ...workspace.voxel_map import WORKSPACES
+from ...workspace.voxel_map import WORKSPACES, as_least_share
 
 __all__ = [
     "Approach", "Bases", "Box", "Branches", "By", "Cell", "DirectionCount", "MapFile", "Output", "PageFile",
@@ -96,8 +96,9 @@ Scheduler = Annotated[str | None, _job("Work on the Dask cluster of this schedul
 def workspace_of(text: str) -> str | float:
     """A workspace by its name, or the least share of the orientations."""
     try:
-        return float(text)
+        share = float(text)
     except ValueError:
         if text not in WORKSPACES:
             raise UnknownNameError("workspace", text, WORKSPACES) from None
         return text
+    return as_least_share(share)

@@ -1,4 +1,4 @@
-"""Progress on stderr: a bar in terminals; and the rate of a batch, its share of solved rows, and the time left."""
+"""Progress on stderr: a bar in terminals; and how far a job in chunks is, with the time left."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Self
 
 from .output import is_terminal, say
 
-__all__ = ["RowsProgress", "progress", "progress_of"]
+__all__ = ["JobProgress", "progress"]
 
 if TYPE_CHECKING:
     from ...scale.jobs.job import Tally
@@ -34,28 +34,15 @@ def progress(words: str, total: int) -> Iterator[Callable[[], None]]:
         yield lambda: bar.advance(task)
 
 
-@contextmanager
-def progress_of(words: str) -> Iterator[Callable[[Tally], None]]:
-    """Show a bar with the time left while the block runs; it is told how far the job is by its tally."""
-    if not is_terminal(sys.stderr):
-        yield lambda _: None
-        return
-    from rich.console import Console
-    from rich.progress import BarColumn, Progress, TaskProgressColumn, TextColumn, TimeRemainingColumn
-
-    columns = TextColumn("{task.description}"), BarColumn(), TaskProgressColumn(), TimeRemainingColumn()
-    with Progress(*columns, console=Console(stderr=True), transient=True) as bar:
-        task = bar.add_task(words, total=None)
-        yield lambda tally: bar.update(task, completed=tally.finished, total=tally.chunks)
-
-
-class RowsProgress:
-    """Reports how far a batch is: its rate, the share of solved rows, and the time left.
+class JobProgress:
+    """Reports how far a job in chunks is, and the time left; of a batch also its rate and the share of solved rows.
 
     In a terminal one line is written again and again, and in the end removed; elsewhere there is a line now and then.
     """
 
-    def __init__(self) -> None:
+    def __init__(self, words: str = "") -> None:
+        """Begin; `words` come first in each report."""
+        self._words = words
         self._in_place = is_terminal(sys.stderr)
         self._began = time.monotonic()
         self._next = self._began + _SECONDS[not self._in_place]
@@ -67,8 +54,8 @@ class RowsProgress:
         if self._in_place:
             self._write(_CLEAR)
 
-    def __call__(self, tally: Tally, rows: int) -> None:
-        """Report, unless the last report was a moment ago."""
+    def __call__(self, tally: Tally, rows: int | None = None) -> None:
+        """Report, unless the last report was a moment ago; `rows` is the number of all rows of a batch."""
         now = time.monotonic()
         if tally.finished == tally.resumed:  # the work begins now
             self._began = now
@@ -76,7 +63,7 @@ class RowsProgress:
         if now < self._next or tally.finished == tally.chunks:
             return
         self._next = now + _SECONDS[not self._in_place]
-        words = report(tally, rows, now - self._began)
+        words = self._words + report(tally, rows, now - self._began)
         if self._in_place:
             self._write(_CLEAR + words)
         else:
@@ -89,14 +76,19 @@ class RowsProgress:
             sys.stderr.flush()
 
 
-def report(tally: Tally, rows: int, seconds: float) -> str:
-    """How far a batch is, in words.
+def report(tally: Tally, rows: int | None, seconds: float) -> str:
+    """How far a job is, in words.
 
     Args:
         tally: What is finished.
-        rows: The number of all rows.
+        rows: The number of all rows of a batch; None for a job without rows.
         seconds: How long this run has worked [s].
     """
+    if rows is None:
+        words, parts = f"{tally.finished:,} of {tally.chunks:,} parts", tally.finished - tally.resumed
+        if parts and seconds > 0.0:
+            words += f", {_duration((tally.chunks - tally.finished) * seconds / parts)} left"
+        return words
     done = tally.notes.get("rows", 0)
     words = f"{done:,.0f} of {rows:,} rows"
     if done:

@@ -13,7 +13,7 @@ from typing import Any, BinaryIO
 import numpy as np
 from numpy.typing import NDArray
 
-from .lines import Line, LinesFile, RawLines
+from .lines import Line, LinesFile, RawLines, not_utf8
 from .table import Cells, Column, Contents, Fault, Pieces, Table, not_a_number
 
 __all__ = ["CsvSource", "CsvWriter"]
@@ -29,7 +29,7 @@ class CsvSource(LinesFile):
         try:
             super().__init__(path, rows, has_header=True)
         except UnicodeDecodeError as error:
-            raise ValueError(f"the header is not UTF-8: {error.reason} at byte {error.start} of its line") from None
+            raise ValueError(f"the header: {not_utf8(error)}") from None
         try:
             self.names = _names(self.header)
         except ValueError:
@@ -53,10 +53,25 @@ def _names(header: Line | None) -> tuple[str, ...]:
     if header is None:
         raise ValueError("there is no header")
     number, text = header
+    if "\r" in text:
+        raise ValueError(f"line {number}: lines must end in \\n or \\r\\n, and not in \\r alone")
+    for mark, name in ((";", "semicolons"), ("\t", "tabs")):
+        if mark in text and "," not in text:
+            raise ValueError(
+                f"line {number}: the cells are divided by {name}; there must be commas between them, and points in "
+                "decimal numbers"
+            )
     try:
         return tuple(name.strip() for name in next(csv.reader([text], strict=True)))
     except csv.Error as error:
-        raise ValueError(f"line {number}: not CSV: {error}") from None
+        raise ValueError(f"line {number}: not CSV: {_reason(error)}") from None
+
+
+def _reason(error: csv.Error) -> str:
+    """What the module csv finds wrong with a line."""
+    if "unexpected end" in str(error):
+        return "a quote is not closed on the same line; a cell can hold no line break"
+    return str(error)
 
 
 def _read_one_by_one(raw: RawLines, cells: Cells) -> Table:
@@ -82,11 +97,11 @@ def _split(line: str | UnicodeDecodeError, width: int) -> tuple[Sequence[str], s
     """(the cells of a line, empty ones if it is faulty; what is wrong with it)."""
     nothing = [""] * width
     if isinstance(line, UnicodeDecodeError):
-        return nothing, f"not UTF-8: {line.reason} at byte {line.start} of the line"
+        return nothing, not_utf8(line)
     try:
         row = next(csv.reader([line], strict=True))
     except csv.Error as error:
-        return nothing, f"not CSV: {error}"
+        return nothing, f"not CSV: {_reason(error)}"
     if len(row) != width:
         return nothing, f"there must be {width} cells, as in the header; got {len(row)}"
     return row, ""

@@ -12,7 +12,7 @@ from typing import Any, BinaryIO
 import numpy as np
 from numpy.typing import NDArray
 
-from .lines import LinesFile, RawLines
+from .lines import LinesFile, RawLines, not_utf8
 from .table import Cells, Column, Contents, Fault, Pieces, Table, not_a_name, not_a_number
 
 __all__ = ["JsonSource", "JsonWriter"]
@@ -27,12 +27,18 @@ class JsonSource(LinesFile):
         """Open it, and find its columns, which are the keys of all objects."""
         super().__init__(path, rows, has_header=False)
         names: dict[str, None] = {}
+        fault = ""
         for number in range(self.chunks):
-            for _, line in self.raw(number).lines():
-                row = None if isinstance(line, UnicodeDecodeError) else _read(line)
-                if isinstance(row, Mapping):
+            for place, line in self.raw(number).lines():
+                row = _read(line)
+                if isinstance(row, str):
+                    fault = fault or f"line {place}: {row}"
+                else:
                     names |= dict.fromkeys(row)
         self.names = tuple(names)
+        if fault and not names:
+            self.close()
+            raise ValueError(fault)
 
     @staticmethod
     def decode(raw: RawLines, cells: Cells) -> Table:
@@ -41,10 +47,7 @@ class JsonSource(LinesFile):
         rows: list[Mapping[str, Any]] = []
         faults: list[Fault] = []
         for place, line in raw.lines():
-            if isinstance(line, UnicodeDecodeError):
-                row: Any = f"not UTF-8: {line.reason} at byte {line.start} of the line"
-            else:
-                row = _read(line)
+            row: Any = _read(line)
             if isinstance(row, str):
                 faults.append(Fault(len(rows), None, row))
                 row = {}
@@ -60,8 +63,10 @@ class JsonSource(LinesFile):
         return table
 
 
-def _read(line: str) -> Mapping[str, Any] | str:
+def _read(line: str | UnicodeDecodeError) -> Mapping[str, Any] | str:
     """The object of a line, or what is wrong with it."""
+    if isinstance(line, UnicodeDecodeError):
+        return not_utf8(line)
     try:
         fields = json.loads(line, object_pairs_hook=_without_duplicates)
     except (ValueError, RecursionError) as error:
@@ -94,10 +99,17 @@ def _numbers(values: list[Any], column: str, faults: list[Fault]) -> NDArray[np.
 
 
 def _name(value: Any, row: int, column: str, faults: list[Fault]) -> str | int | None:
-    if value is None or (isinstance(value, (str, int)) and not isinstance(value, bool)):
-        return value or None if isinstance(value, str) else value
+    if isinstance(value, str) and _is_unicode(value):
+        return value or None
+    if value is None or (isinstance(value, int) and not isinstance(value, bool)):
+        return value
     faults.append(Fault(row, column, not_a_name(value)))
     return None
+
+
+def _is_unicode(text: str) -> bool:
+    """Whether a text can be written: JSON can hold halves of characters, such as \\ud800."""
+    return text.isascii() or not any("\ud800" <= letter <= "\udfff" for letter in text)
 
 
 class JsonWriter:

@@ -8,12 +8,17 @@ from pathlib import Path
 
 import numpy as np
 
-__all__ = ["Line", "LinesFile", "RawLines"]
+__all__ = ["Line", "LinesFile", "RawLines", "not_utf8"]
 
 _PIECE = 1 << 22  # [bytes]
 
 Line = tuple[int, str]
 """The number of a line, from 1, and its text without the line break."""
+
+
+def not_utf8(error: UnicodeDecodeError) -> str:
+    """The reason why a line cannot be read."""
+    return f"not UTF-8: {error.reason} at byte {error.start} of the line"
 
 
 @dataclass(frozen=True)

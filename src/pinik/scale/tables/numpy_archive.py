@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import contextlib
 import io
 import math
 import zipfile
+import zlib
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import IO, Any, BinaryIO
@@ -12,7 +14,7 @@ from typing import IO, Any, BinaryIO
 import numpy as np
 from numpy.typing import NDArray
 
-from .table import Cells, Column, Contents, Fault, Pieces, Table, not_a_number
+from .table import Cells, Column, Contents, Fault, Pieces, Table, not_a_name, not_a_number
 
 __all__ = ["NpzSource", "NpzWriter"]
 
@@ -33,7 +35,8 @@ class NpzSource:
             raise ValueError(f"not an NPZ file: {error}") from None
         self._rows = rows
         try:
-            self._count = self._open_arrays()
+            with _damage_in_words():
+                self._count = self._open_arrays()
         except BaseException:
             self.close()
             raise
@@ -60,7 +63,8 @@ class NpzSource:
         """The first row of one chunk, and the entries of all arrays."""
         begin = number * self._rows
         end = min(begin + self._rows, self._count)
-        return begin, {name: array.read(begin, end) for name, array in self._arrays.items()}
+        with _damage_in_words():
+            return begin, {name: array.read(begin, end) for name, array in self._arrays.items()}
 
     @staticmethod
     def decode(raw: tuple[int, dict[str, NDArray[Any]]], cells: Cells) -> Table:
@@ -71,7 +75,10 @@ class NpzSource:
         for name in cells.names:
             array = arrays[name]
             if name in cells.texts:
-                table.texts[name] = array.tolist()
+                table.texts[name] = _names(array, name, table.faults)
+            elif array.dtype.kind == "U":
+                table.numbers[name] = np.full(count, math.nan)
+                table.faults += [Fault(row, name, not_a_number(cell)) for row, cell in enumerate(array.tolist())]
             else:
                 numbers = table.numbers[name] = array.astype(np.float64)
                 for row in np.flatnonzero(~np.isfinite(numbers)):
@@ -82,6 +89,22 @@ class NpzSource:
     def close(self) -> None:
         """Close the file."""
         self._archive.close()
+
+
+@contextlib.contextmanager
+def _damage_in_words() -> Iterator[None]:
+    """Let the archive's errors be a `ValueError` that says what is wrong with the file."""
+    try:
+        yield
+    except (EOFError, zipfile.BadZipFile, zlib.error) as error:
+        raise ValueError(f"the file is damaged: {error}") from None
+
+
+def _names(array: NDArray[Any], column: str, faults: list[Fault]) -> list[str | int | None]:
+    if array.dtype.kind == "f":
+        faults += [Fault(row, column, not_a_name(value)) for row, value in enumerate(array.tolist())]
+        return [None] * len(array)
+    return [value if value != "" else None for value in array.tolist()]
 
 
 class _Entries:
@@ -104,6 +127,8 @@ class _Entries:
         size = self._dtype.itemsize
         self._file.seek(self._start + begin * size)
         content = self._file.read((end - begin) * size)
+        if len(content) < (end - begin) * size:
+            raise EOFError("an array ends early")
         return np.frombuffer(content, dtype=self._dtype)
 
 

@@ -66,7 +66,10 @@ class ParquetSource:
         if self._reading is None or self._reading[0] != group or self._reading[1] > k:
             self._reading = group, 0, self._file.iter_batches(self._rows, [group], use_threads=False)
         _, following, batches = self._reading
-        batch = next(itertools.islice(batches, k - following, None))
+        try:
+            batch = next(itertools.islice(batches, k - following, None))
+        except (load_pyarrow().ArrowException, OSError) as error:
+            raise ValueError(f"the file is damaged: {' '.join(str(error).split())}") from None
         self._reading = group, k + 1, batches
         return self._firsts[group] + k * self._rows, batch
 
@@ -102,7 +105,8 @@ class ParquetSource:
 
 def _names(arrow: Any, column: Any, name: str, faults: list[Fault]) -> list[str | int | None]:
     types = arrow.types
-    usable = types.is_string(column.type) or types.is_large_string(column.type) or types.is_integer(column.type)
+    texts = types.is_string, types.is_large_string, types.is_string_view
+    usable = types.is_integer(column.type) or any(is_text(column.type) for is_text in texts)
     names: list[str | int | None] = [value if value != "" else None for value in column.to_pylist()]
     if usable:
         return names

@@ -93,7 +93,11 @@ class Source(Protocol):
     def chunks(self) -> int: ...  # noqa: D102
 
     def raw(self, number: int) -> Any:
-        """A chunk as it is in the file, which can be pickled. It is quick if chunks are read in ascending order."""
+        """A chunk as it is in the file, which can be pickled. It is quick if chunks are read in ascending order.
+
+        Raises:
+            ValueError: The file is damaged.
+        """
 
     @staticmethod
     def decode(raw: Any, cells: Cells) -> Table:

@@ -62,6 +62,7 @@ class ReachPage {
         }
         byId("bar").style.background = `linear-gradient(90deg, ${map.colors.join(", ")})`;
         byId("down-field").hidden = !map.down;
+        byId("least").max = map.quantities.share.largest;
         const { azimuth } = PRESETS[this.camera.preset];
         this._faced = [Math.cos(azimuth), Math.sin(azimuth), 1].map(Math.sign);
         const places = map.shape.map((count, axis) => {
@@ -134,7 +135,7 @@ class ReachPage {
             color: (row) => mixed(map.rgb, values[row] / largest),
         });
         say(byId("largest"), largest.toPrecision(3));
-        say(byId("least-value"), `${Math.round(100 * least)} %`);
+        say(byId("least-value"), `${Number((100 * least).toPrecision(2))} %`);
         say(byId("count"), `${this._cells.count.toLocaleString("en")} · ${(this._cells.count * map.size ** 3).toPrecision(3)} m³`);
         this.stage.touch();
     }
