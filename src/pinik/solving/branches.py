@@ -17,8 +17,8 @@ from ..problem.targets import Target
 from ..problem.tolerance import TargetError
 from .changes import farthest_coordinate
 from .completeness import estimate_missing, words_of
-from .findings import Findings
 from .data_frame import data_frame
+from .findings import Findings
 from .joint_bars import joint_bars
 from .origin import unwound
 from .question import Question
