@@ -46,7 +46,7 @@ def test_a_command_imports_no_module_of_another_command(environment):
     loaded = modules_after(environment, ["fk", "arm", "--frame", "tip"])
     prefix = "pinik.cli.commands."
     assert {name for name in loaded if name.startswith(prefix)} == {prefix + "fk"}
-    assert loaded.isdisjoint(("rich", "statistics", "csv", "pinik.studies.thesis", "pinik.cli.reports.plots"))
+    assert loaded.isdisjoint(("rich", "statistics", "pinik.studies.thesis", "pinik.cli.reports.plots"))
 
 
 def test_solving_imports_few_modules_of_others_beside_numpy_and_pinocchio(environment):
