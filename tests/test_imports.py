@@ -40,11 +40,12 @@ ONLY_THERE = {
     "cloudpickle": {"scale.jobs.cluster"},
     "dask": set(),
     "h5py": {"workspace.reuleaux"},
+    "rerun": {"export.rerun"},
     "pandas": {f"solving.{name}" for name in ("data_frame", "many", "track", "self_motion", "branches")},
 }
 HEAVY = {
     "yourdfpy", "trimesh", "scipy", "PIL", "meshcat", "matplotlib", "typer", "rich", "tornado", "umsgpack",
-    "pyarrow", "h5py", "pandas", "dask", "distributed", "cloudpickle",
+    "pyarrow", "h5py", "pandas", "rerun", "dask", "distributed", "cloudpickle",
 }  # fmt: skip
 
 
