@@ -98,6 +98,16 @@ def test_a_click_keeps_automatic_framing_and_a_drag_ends_it(open_panel):
     assert not desk.runs("pinik.show.camera.moved")
 
 
+def test_the_camera_comes_back_with_a_ball_that_was_far_away(open_panel):
+    desk = open_panel("arm", ("dls",))
+    radius = "pinik.show.camera.sphere.radius"
+    near = desk.runs(radius)
+    desk.type("target-x", 30)
+    desk.shows(f"{radius} > {5 * near}")
+    desk.type("target-x", 0.3)
+    desk.shows(f"{radius} < {2 * near}")
+
+
 def test_an_arrow_to_a_ball_covers_no_button(open_desk):
     desk = open_desk(methods=("dls",))
     desk.settle()
