@@ -8,7 +8,7 @@ import os
 import stat
 from pathlib import Path
 
-__all__ = ["FileError", "check_writable", "megabytes", "read_within", "write_whole"]
+__all__ = ["FileError", "check_writable", "followed", "is_special", "megabytes", "read_within", "write_whole"]
 
 
 # So that opening a pipe that nobody writes to does not wait; Windows has no such flag, and no such pipes.
@@ -67,12 +67,12 @@ def check_writable(path: Path) -> None:
     Raises:
         OSError: There is no such folder, it cannot be written, or the path is a folder.
     """
-    target = _target(path)
+    target = followed(path)
     if target.is_dir():
         raise IsADirectoryError(errno.EISDIR, "this is a folder", str(path))
     if not target.parent.is_dir():
         raise FileNotFoundError(errno.ENOENT, "no such folder", str(path))
-    place = target if _is_special(target) else target.parent
+    place = target if is_special(target) else target.parent
     if not _may_write(place) or (target.exists() and not _may_write(target)):
         raise PermissionError(errno.EACCES, "no permission to write it", str(path))
 
@@ -89,8 +89,8 @@ def write_whole(path: str | os.PathLike[str], content: bytes) -> None:
     Raises:
         OSError: The file cannot be written.
     """
-    target = _target(Path(path))
-    if _is_special(target):
+    target = followed(Path(path))
+    if is_special(target):
         target.write_bytes(content)
         return
     if target.is_dir():
@@ -118,16 +118,16 @@ def _may_write(path: Path) -> bool:
     return os.access(path, os.W_OK, effective_ids=os.access in os.supports_effective_ids)
 
 
-def _target(path: Path) -> Path:
+def followed(path: Path) -> Path:
     """The file itself, where the path is a link to it."""
     if not path.is_symlink():
         return path
     with contextlib.suppress(FileNotFoundError):  # a link to a file that is still to be made
         path.stat()  # a link to itself is an OSError
     # The link of an open pipe, such as /dev/fd/63 of ">(gzip)", leads to a name that is in no folder.
-    return path if _is_special(path) else path.resolve()
+    return path if is_special(path) else path.resolve()
 
 
-def _is_special(path: Path) -> bool:
+def is_special(path: Path) -> bool:
     """Whether there is something that is neither a file nor a folder, such as a device or a pipe."""
     return path.exists() and not path.is_file() and not path.is_dir()

@@ -9,9 +9,11 @@ import json
 import math
 import os
 import random
+import stat
 import subprocess
 import sys
 import time
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import numpy as np
@@ -386,3 +388,31 @@ def test_without_pyarrow_parquet_is_refused_with_the_install_line(panda, poses, 
     with pytest.raises(MissingExtraError, match=r"Parquet needs pyarrow: pip install 'pinik\[batch\]'"):
         pinik.batch.run(panda, path, TIP, output=tmp_path / "o.parquet")
     pinik.batch.run(panda, path, TIP, output=tmp_path / "o.csv")
+
+
+def test_links_are_followed_and_permissions_kept(panda, poses, tmp_path):
+    real, link = tmp_path / "there" / "real.csv", tmp_path / "answers.csv"
+    real.parent.mkdir()
+    real.write_text("old")
+    real.chmod(0o640)
+    link.symlink_to(real)
+    pinik.batch.run(panda, write(tmp_path / "t.csv", poses), TIP, output=link)
+    assert link.is_symlink()
+    assert real.read_text().startswith("id,success,")
+    assert stat.S_IMODE(real.stat().st_mode) == 0o640
+    assert [entry.name for entry in tmp_path.rglob("*") if ".parts" in entry.name] == []
+
+
+def test_pipes_are_written_and_not_replaced(panda, poses, tmp_path):
+    targets = write(tmp_path / "t.csv", poses)
+    pipe, file = tmp_path / "pipe", tmp_path / "answers.csv"
+    os.mkfifo(pipe)
+    with ThreadPoolExecutor(1) as pool:
+        read = pool.submit(pipe.read_bytes)
+        pinik.batch.run(panda, targets, TIP, output=pipe, form="csv")
+        content = read.result(timeout=20)
+    assert pipe.is_fifo()
+    pinik.batch.run(panda, targets, TIP, output=file)
+    assert content == file.read_bytes()
+    with pytest.raises(InputError, match="resume must be False for a stream"):
+        pinik.batch.run(panda, targets, TIP, output=pipe, form="csv", resume=True)

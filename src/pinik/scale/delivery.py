@@ -6,12 +6,12 @@ import os
 import shutil
 import tempfile
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import BinaryIO
 
 from ..errors import InputError
-from ..files import check_writable
+from ..files import check_writable, is_special
 from .jobs.job import Job, Runner, Tally
 from .jobs.parts import Parts
 from .jobs.run import OnProgress, run, stream
@@ -29,7 +29,7 @@ class Delivery:
     """Where the answers go.
 
     Attributes:
-        output: The file, or the stream.
+        output: The file, or the stream. Devices and pipes are written as streams.
         form: The name of the format.
         resume: Whether to go on with an earlier run.
     """
@@ -52,13 +52,14 @@ class Delivery:
             UnknownNameError: There is no such format.
             OSError: The file cannot be written.
         """
-        if isinstance(output, (str, os.PathLike)):
-            path = Path(output).expanduser()
+        path = Path(output).expanduser() if isinstance(output, (str, os.PathLike)) else None
+        if path is not None:
             form = format_of(path, form)
             check_writable(path)
-            return cls(path, form, resume)
-        if resume:
+        if resume and (path is None or is_special(path)):
             raise InputError("must be False for a stream, of which nothing is kept", argument="resume")
+        if path is not None:
+            return cls(path, form, resume)
         return cls(output, format_of(Path(), form or "csv"), resume)
 
     def check_not(self, targets: Path) -> None:
@@ -68,6 +69,9 @@ class Delivery:
 
     def run(self, job: Job, columns: Sequence[Column], runner: Runner, on_progress: OnProgress | None) -> Tally:
         """Work on a job, and deliver what it comes to."""
+        if isinstance(self.output, Path) and is_special(self.output):
+            with self.output.open("wb") as opened:
+                return replace(self, output=opened).run(job, columns, runner, on_progress)
         writer = FORMATS[self.form].writer
 
         def assemble(parts: Parts, file: BinaryIO) -> None:

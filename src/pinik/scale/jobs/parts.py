@@ -11,13 +11,14 @@ import contextlib
 import json
 import os
 import re
+import stat
 import zlib
 from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import IO, Any, Self
 
 from ...errors import InputError
-from ...files import FileError, read_within, write_whole
+from ...files import FileError, followed, read_within, write_whole
 from .fingerprint import as_json, differences
 from .job import Job, Result
 
@@ -30,8 +31,9 @@ _MOST_BYTES = 10_000_000
 
 
 def parts_folder(output: Path) -> Path:
-    """The folder in which the chunks of an output are kept until it is whole."""
-    return output.with_name(f"{output.name}.parts")
+    """The folder in which the chunks of an output are kept until it is whole: beside the file, not beside a link."""
+    file = followed(output)
+    return file.with_name(f"{file.name}.parts")
 
 
 class Parts:
@@ -142,10 +144,15 @@ class Parts:
     def publish(self, output: Path, record: Mapping[str, Any]) -> None:
         """Let the output appear, which `unpublished` holds, and note what it came to.
 
+        A link is followed. A file that exists is replaced and keeps its permissions.
+
         Raises:
             OSError: It cannot be put there; all finished chunks are still there.
         """
-        os.replace(self.unpublished, output)
+        file = followed(output)
+        if file.exists():
+            self.unpublished.chmod(stat.S_IMODE(file.stat().st_mode))
+        os.replace(self.unpublished, file)
         write_whole(self.folder / _DONE, json.dumps(record).encode())
 
     @property
