@@ -12,7 +12,7 @@ ROOMS := solvers problem
 # A sourced ROS workspace would put another Pinocchio, built for another Python, before ours.
 unexport PYTHONPATH
 
-.PHONY: help run test lint coverage mutants versions sanitize bench notebooks docs clean
+.PHONY: help run test lint coverage mutants versions wheels sanitize bench notebooks docs clean
 
 help:
 	@echo "make run       install what is missing into $(VENV), run a tour and open the live view"
@@ -21,6 +21,7 @@ help:
 	@echo "make coverage  run the tests and tell which branches of src/pinik they miss"
 	@echo "make mutants   tell which changes of ROOMS=\"solvers problem\" no test notices"
 	@echo "make versions  build, install and try pinik under every other Python that it supports and that is found here"
+	@echo "make wheels    build the sdist and the wheels into dist/, and try them in a fresh environment"
 	@echo "make sanitize  run the engine's tests under AddressSanitizer and UndefinedBehaviorSanitizer"
 	@echo "make bench     measure how fast the solvers are"
 	@echo "make notebooks run the notebooks and save them with their pictures"
@@ -57,6 +58,9 @@ mutants: $(VENV)/installed-dev
 
 versions: $(python)
 	@$(python) tools/try_versions.py
+
+wheels: $(VENV)/installed-dev
+	@$(python) tools/make_wheels.py
 
 # Python itself is built without sanitizers, so their library must be loaded first and Python's own leaks be ignored.
 # pytest must not capture the reports, which are written just before the process ends.

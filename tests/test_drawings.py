@@ -20,7 +20,7 @@ def test_rooms_and_imports_are_read_as_they_are():
     words, room_of = draw_rooms.rooms()
     assert next(iter(words)) == draw_rooms.GROUND
     assert room_of["errors"] == draw_rooms.GROUND
-    assert room_of["solving.run"] == "solving/run"
+    assert room_of["solving.run"] == room_of["solving.native.codec"] == "solving"
     assert room_of["viewer.web.server"] == "viewer/web"
     assert room_of["viewer.live"] == "viewer/live"
     found = set(draw_rooms.imports(set(room_of)))

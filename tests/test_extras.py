@@ -12,7 +12,7 @@ from packaging.requirements import Requirement
 from packaging.utils import canonicalize_name
 
 PROJECT = tomllib.loads((Path(__file__).parents[1] / "pyproject.toml").read_text("utf-8"))["project"]
-IMPORTED_AS = {"pillow": "PIL", "u-msgpack-python": "umsgpack", "pycollada": "collada"}
+IMPORTED_AS = {"pillow": "PIL", "u-msgpack-python": "umsgpack", "pycollada": "collada", "rerun-sdk": "rerun"}
 
 REFUSE = """
 import sys
@@ -80,6 +80,8 @@ def test_pinik_alone_loads_a_robot_and_solves():
         ("trimesh", "pictures", "pinik.draw(pinik.load('arm'))"),
         ("PIL", "pictures", "pinik.draw(pinik.load('arm'), size=(16, 16)).png()"),
         ("PIL", "pictures", "pinik.draw(pinik.load('arm'), size=(16, 16)).save('no.png')"),
+        ("pandas", "frames", "pinik.solve_many(pinik.load('arm'), []).to_frame()"),
+        ("rerun", "rerun", "from pinik.export.rerun import save_rrd; save_rrd(pinik.load('arm'), '/nowhere/no.rrd')"),
     ],
 )
 def test_a_part_whose_package_is_missing_names_the_line_that_installs_it(package, name, statement):

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import ast
 import re
+from collections import Counter
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
@@ -22,7 +23,7 @@ GROUND = "ground floor"
 COLORS = {
     **dict.fromkeys(("description", "model", "shapes"), BLUE),
     **dict.fromkeys(("problem", "closed_form", "solvers", "solving"), GREEN),
-    **dict.fromkeys(("picture", "motion", "studies", "batch", "viewer"), ORANGE),
+    **dict.fromkeys(("picture", "motion", "studies", "scale", "workspace", "viewer"), ORANGE),
     "cli": PINK,
 }
 ROW, CELL, LEFT, NAMES, TOP = 30, 26, 24, 590, 92
@@ -55,11 +56,13 @@ def listed() -> list[Listed]:
 def rooms() -> tuple[dict[str, str], dict[str, str]]:
     """Each room's words, from the ground up, and the room of each module.
 
-    A room is a folder. Where a folder holds folders, those are the rooms, and a module beside them is one by itself.
+    A room is a folder with all that is in it. A folder that holds more folders than modules is divided: those are the
+    rooms, and a module beside them is one by itself.
     The modules before the first folder are the ground floor; the package's own front stands below the command line.
     """
     lines = listed()
-    divided = {line.path[:-1] for line in lines if line.is_folder}
+    inside = Counter((line.path[:-1], line.is_folder) for line in lines)
+    divided = {line.path for line in lines if inside[line.path, True] > inside[line.path, False]}
     words = {"/".join(line.path): line.words for line in lines}
     found: dict[str, str] = {GROUND: ""}
     room_of: dict[str, str] = {}
@@ -71,7 +74,7 @@ def rooms() -> tuple[dict[str, str], dict[str, str]]:
         if len(found) == 1 and len(line.path) == 1:
             room = GROUND
         else:
-            room = "/".join(line.path if line.path[:-1] in divided else line.path[:-1])
+            room = "/".join(line.path[: 2 if line.path[:1] in divided else 1])
             found.setdefault(room, words[room])
         room_of[".".join(line.path)] = room
     ground = [name for name, room in room_of.items() if room == GROUND]

@@ -9,7 +9,7 @@ from .errors import PinikError
 
 __all__ = ["MissingExtraError", "needed_by"]
 
-_INSTALLED_AS = {"PIL": "pillow", "umsgpack": "u-msgpack-python", "collada": "pycollada"}
+_INSTALLED_AS = {"PIL": "pillow", "umsgpack": "u-msgpack-python", "collada": "pycollada", "rerun": "rerun-sdk"}
 
 
 class MissingExtraError(PinikError, ImportError):

@@ -39,7 +39,7 @@ def test_importing_pinik_imports_no_extra_and_no_slow_module_that_few_runs_need(
     done = subprocess.run(
         [sys.executable, "-c", script], env=environment, capture_output=True, text=True, timeout=60, check=True
     )
-    assert {*done.stdout.split()}.isdisjoint((*ON_DEMAND, *EXTRAS))
+    assert {*done.stdout.split()}.isdisjoint({*ON_DEMAND, *EXTRAS})
 
 
 def test_a_command_imports_no_module_of_another_command(environment):

@@ -6,7 +6,7 @@ import math
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,13 +17,18 @@ from ..problem.targets import Target
 from ..problem.tolerance import TargetError
 from .changes import farthest_coordinate
 from .completeness import estimate_missing, words_of
+from .data_frame import data_frame
 from .findings import Findings
+from .joint_bars import joint_bars
 from .origin import unwound
 from .question import Question
 from .self_motion import SelfMotion, self_motion
 from .state import Status
 from .verdict import measure_errors
 from .windings import winding_ranges, wound
+
+if TYPE_CHECKING:
+    from pandas import DataFrame
 
 __all__ = ["Branches"]
 
@@ -265,6 +270,32 @@ class Branches:
 
     def __str__(self) -> str:
         return self.message
+
+    def _repr_html_(self) -> str:
+        """The joints as bars between their limits, with a mark for each branch, as notebooks show them."""
+        return joint_bars(self.robot, self.message, self.success, self._rows)
+
+    def to_frame(self) -> DataFrame:
+        """A data frame of pandas with one row for each branch: the joints' `angles`, then what is known of it.
+
+        Raises:
+            MissingExtraError: pandas is not installed.
+        """
+        others = {
+            "distance": self.distance,
+            "position_error_m": self.position_error,
+            "orientation_error_rad": self.orientation_error,
+            "found_at": self.found_at,
+            "hits": self.hits,
+            "dimension": self.dimension,
+        }
+        return data_frame(self.robot.joint_names, self._rows, others)
+
+    @property
+    def _rows(self) -> Array:
+        """The angles (n, n_joints) in the order of `robot.joint_names`."""
+        names = self.robot.joint_names
+        return np.array([[angles[name] for name in names] for angles in self.angles]).reshape(len(self), len(names))
 
     def to_dict(self, families: bool = False) -> dict[str, Any]:
         """A dictionary for JSON, as `pinik solve-all --json` prints it.

@@ -5,7 +5,7 @@ from __future__ import annotations
 import time
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import pinocchio
@@ -21,6 +21,8 @@ from ..shapes.avoid import Avoided
 from ..solvers.registry import Method
 from .at_once import attempt_at_once, lands_at_once
 from .attempts import Outcome, Outcomes
+from .data_frame import data_frame
+from .joint_bars import joint_bars
 from .native.codec import targets_of
 from .native.outcomes import attempt_many
 from .options import OPTION_NAMES, Options
@@ -32,6 +34,9 @@ from .solution import Solution
 from .state import Status
 from .verdict import measure_errors
 from .words import check_words
+
+if TYPE_CHECKING:
+    from pandas import DataFrame
 
 __all__ = ["Solutions", "attempt_all", "solve_many"]
 
@@ -192,6 +197,30 @@ class Solutions(Outcomes):
 
     def __str__(self) -> str:
         return f"{int(self.success.sum())} of {len(self)} solved in {self.total_time:.3g} s"
+
+    def _repr_html_(self) -> str:
+        """The joints as bars between their limits, each with the band of all answers, as notebooks show them."""
+        if self.prepared is None:
+            return str(self)
+        return joint_bars(self.prepared.robot, str(self), bool(self.success.all()), self.angles)
+
+    def to_frame(self) -> DataFrame:
+        """A data frame of pandas with one row for each problem: the joints' `angles`, then what came of it.
+
+        Raises:
+            MissingExtraError: pandas is not installed.
+        """
+        names = () if self.prepared is None else self.prepared.robot.joint_names
+        others = {
+            "success": self.success,
+            "status": [status.name for status in self.status],
+            "position_error_m": self.position_error,
+            "orientation_error_rad": self.orientation_error,
+            "iterations": self.iterations,
+            "restarts": self.restarts,
+            "time_s": self.time,
+        }
+        return data_frame(names, self.angles, others)
 
     def __iter__(self) -> Iterator[Solution]:
         return (self[index] for index in range(len(self)))

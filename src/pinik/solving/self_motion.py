@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import pinocchio
@@ -17,6 +17,7 @@ from ..problem.target_values import Position
 from ..problem.targets import Target
 from ..problem.tolerance import Tolerance, largest_of
 from .configuration import Given, as_configuration
+from .data_frame import data_frame
 from .freedom.arcs import Arc, arcs_of
 from .freedom.beginning import beginning
 from .freedom.dimension import Lone, regular_place
@@ -24,11 +25,15 @@ from .freedom.family import Family
 from .freedom.settling import settle
 from .freedom.solution_set import SolutionSet
 from .freedom.spreading import Tree
+from .joint_bars import joint_bars
 from .options import Options
 from .origin import unwound_path
 from .question import Question
 from .verdict import measure_errors
 from .words import UNWEIGHTED, asked_targets
+
+if TYPE_CHECKING:
+    from pandas import DataFrame
 
 __all__ = ["SelfMotion", "self_motion"]
 
@@ -190,6 +195,19 @@ class SelfMotion:
         asked = as_configuration(self.robot, q)
         within = as_positive_number(within, "within", "radians")
         return self.known.reaches(asked, within)
+
+    def _repr_html_(self) -> str:
+        """The joints as bars between their limits, each with the band that `q` covers, as notebooks show them."""
+        return joint_bars(self.robot, str(self), len(self) > 0, self.angles.reshape(len(self), len(self.joint_names)))
+
+    def to_frame(self) -> DataFrame:
+        """A data frame of pandas with one row for each of `q`: the joints' `angles`, then the errors.
+
+        Raises:
+            MissingExtraError: pandas is not installed.
+        """
+        others = {"position_error_m": self.position_error, "orientation_error_rad": self.orientation_error}
+        return data_frame(self.joint_names, self.angles.reshape(len(self), len(self.joint_names)), others)
 
     def to_dict(self) -> dict[str, Any]:
         """A dictionary for JSON, as in the `families` of `pinik solve-all --json --families`."""

@@ -18,6 +18,7 @@ from ..problem.tolerance import TargetError, largest_of
 from ..shapes.collisions import Collision
 from .alone import found_alone
 from .attempts import Outcome
+from .joint_bars import joint_bars
 from .message import explain
 from .native.module import why_not
 from .native.outcomes import NativeOutcome
@@ -190,6 +191,12 @@ class Solution:
 
     def __str__(self) -> str:
         return self.message
+
+    def _repr_html_(self) -> str:
+        """The message, and the joints as bars between their limits, as notebooks show them."""
+        angles = self.angles
+        row = np.array([[angles[name] for name in self.robot.joint_names]])
+        return joint_bars(self.robot, self.message, self.success, row)
 
     @cached_property
     def why_not_native(self) -> str | None:

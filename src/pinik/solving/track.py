@@ -5,7 +5,7 @@ from __future__ import annotations
 import time
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import pinocchio
@@ -19,6 +19,8 @@ from ..problem.tolerance import Tolerance
 from ..shapes.avoid import Avoided
 from ..solvers.registry import Method
 from .attempts import Outcomes
+from .data_frame import data_frame
+from .joint_bars import joint_bars
 from .jumps import Excess, Jump, find_excesses, find_jumps
 from .kept import kept_of
 from .native.outcomes import follow
@@ -29,6 +31,9 @@ from .places import read_questions
 from .prepared import Prepared
 from .state import Status
 from .words import check_words
+
+if TYPE_CHECKING:
+    from pandas import DataFrame
 
 __all__ = ["Track", "track"]
 
@@ -212,6 +217,30 @@ class Track(Outcomes):
         if self.too_fast:
             words.append(str(max(self.too_fast, key=lambda excess: excess.factor)))
         return "; ".join(words)
+
+    def _repr_html_(self) -> str:
+        """The joints as bars between their limits, each with the band that the path covers, as notebooks show them."""
+        return joint_bars(self.prepared.robot, str(self), self.success, self.angles)
+
+    def to_frame(self) -> DataFrame:
+        """A data frame of pandas with one row for each point: the joints' `angles`, then what came of it.
+
+        Its index is `times`, if they were given.
+
+        Raises:
+            MissingExtraError: pandas is not installed.
+        """
+        others = {
+            "reached": self.reached,
+            "status": [status.name for status in self.status],
+            "position_error_m": self.position_error,
+            "orientation_error_rad": self.orientation_error,
+            "iterations": self.iterations,
+            "restarts": self.restarts,
+        }
+        return data_frame(
+            self.joint_names, self.angles, others, None if self.times is None else self.times[: len(self)]
+        )
 
     def to_dict(self) -> dict[str, Any]:
         """The JSON form, made of plain numbers, strings, lists and dicts; docs/json.md explains the fields."""

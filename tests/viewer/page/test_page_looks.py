@@ -184,8 +184,8 @@ def test_no_figure_of_the_statistics_is_cut_short(open_desk):
     desk = open_desk("two_link", ("two_bone", "ccd", "jt", "dls"), viewport=WIDE)
     desk.expect("status-0").to_be_visible()
     widest = [None, "0.85 mm short", "87.1 µs", None, "98.3 %", "0.099 mm", "44.4°"]
-    for width in (1920, 1280, 1110, 900, 762, 390):
-        desk.page.set_viewport_size({"width": width, "height": 800})
+    for width, height in ((2560, 1440), (1920, 1080), (1280, 800), (1110, 800), (900, 800), (762, 800), (390, 800)):
+        desk.page.set_viewport_size({"width": width, "height": height})
         cut = desk.page.evaluate(
             """texts => {
                 const cells = [...document.querySelector("#table tbody tr").cells];
@@ -202,3 +202,4 @@ def test_no_figure_of_the_statistics_is_cut_short(open_desk):
         )
         assert cut == [], f"{width} px"
         assert desk.runs("document.documentElement.scrollWidth") <= width
+        assert width < 1280 or desk.part("engine-1").is_visible()

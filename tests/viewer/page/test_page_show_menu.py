@@ -92,10 +92,36 @@ def test_a_click_keeps_automatic_framing_and_a_drag_ends_it(open_panel):
     desk.type("target-x", 9)
     desk.expect("pointer").to_have_count(1)
     ball, arrow = desk.ball_on_screen(), desk.part("pointer").bounding_box()
-    assert (ball[0] > box["x"] + box["width"] / 2) == (arrow["x"] > box["x"] + box["width"] / 2)
+    assert (ball[0] > box["x"] + box["width"] / 2) == (arrow["x"] + arrow["width"] / 2 > box["x"] + box["width"] / 2)
     desk.click("pointer")
     desk.expect("pointer").to_have_count(0)
     assert not desk.runs("pinik.show.camera.moved")
+
+
+def test_the_camera_comes_back_with_a_ball_that_was_far_away(open_panel):
+    desk = open_panel("arm", ("dls",))
+    radius = "pinik.show.camera.sphere.radius"
+    near = desk.runs(radius)
+    desk.type("target-x", 30)
+    desk.shows(f"{radius} > {5 * near}")
+    desk.type("target-x", 0.3)
+    desk.shows(f"{radius} < {2 * near}")
+
+
+def test_an_arrow_to_a_ball_covers_no_button(open_desk):
+    desk = open_desk(methods=("dls",))
+    desk.settle()
+    box = desk.page.locator("#canvas").bounding_box()
+    desk.page.mouse.move(box["x"] + 20, box["y"] + box["height"] - 20)
+    desk.page.mouse.down()
+    desk.page.mouse.move(box["x"] + 40, box["y"] + box["height"] - 20, steps=4)
+    desk.page.mouse.up()
+    desk.shows("pinik.show.camera.moved")
+    desk.type("target-z", 20)
+    desk.expect("pointer").to_have_count(1)
+    desk.settle()
+    buttons = desk.page.locator(".views").bounding_box()
+    assert desk.part("pointer").bounding_box()["y"] >= buttons["y"] + buttons["height"]
 
 
 def test_the_presentation_shows_the_stage_alone_and_is_in_the_link(open_panel):

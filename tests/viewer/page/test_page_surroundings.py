@@ -65,3 +65,11 @@ def test_a_robot_without_collision_shapes_says_so(open_panel):
     desk.page.locator("#around-block > summary").click()
     desk.click("collisions")
     desk.expect("collisions-words").to_contain_text("no collision shapes")
+
+
+def test_a_search_that_fails_is_not_said_to_go_on(desk):
+    desk.choose("ball-mode-0", "off")
+    desk.until(lambda s: s["balls"][0]["mode"] == "off")
+    desk.click("find-answers")
+    desk.expect("toasts").to_contain_text("no ball asks for anything")
+    desk.expect("answers-words").to_have_text("")

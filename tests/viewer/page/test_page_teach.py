@@ -106,6 +106,27 @@ def test_a_race_names_who_arrived_first_and_its_card_is_copied(open_panel):
     desk.until(lambda s: s["instances"][1]["status"] == "CONVERGED")
 
 
+def test_a_race_is_watched_only_by_those_who_ran_it(open_panel):
+    desk = open_panel(methods=("ccd", "dls"))
+    desk.click("teach")
+    desk.click("tab-race")
+    desk.click("race-here")
+    desk.expect("race-card").to_contain_text("pinik race: arm, tip")
+    desk.expect("race-watch").to_be_enabled()
+    desk.choose("method-0", "jt")
+    desk.expect("race-watch").to_be_disabled()
+    desk.choose("method-0", "ccd")
+    desk.expect("race-watch").to_be_enabled()
+    desk.choose("robot", "panda")
+    desk.expect("race-watch").to_be_disabled()
+    desk.choose("ball-mode-0", "off")
+    desk.until(lambda s: s["robot"] == "panda" and s["balls"][0]["mode"] == "off")
+    desk.click("race-here")
+    desk.expect("toasts").to_contain_text("a race needs a ball that is on")
+    desk.expect("race-words").to_contain_text("Every method solves from the same pose")
+    desk.expect("race-here").to_be_enabled()
+
+
 def test_lessons_are_links_that_open_their_scenes(open_panel):
     desk = open_panel(methods=("dls",))
     desk.click("teach")

@@ -24,6 +24,7 @@ LINES = "\n".join(f"{name}: {value}" for name, value in WANTED.items())
         "(" + ";\n".join(NUMBERS) + ")",
         json.dumps(WANTED),
         json.dumps({"schema": 1, "angles": WANTED | {"panda_finger_joint2": 0.02}, "q": [1, 2]}),
+        json.dumps({"time": 3, "positions": list(WANTED.values())}),
         LINES,
         "---\n# a pose\nangles:\n  " + LINES.replace("\n", "  # rad\n  ") + "\n...",
         LINES.replace("panda_joint1", "'panda_joint1'").replace("panda_joint2", '"panda_joint2"'),
@@ -34,7 +35,19 @@ LINES = "\n".join(f"{name}: {value}" for name, value in WANTED.items())
         + "\nvelocity: []\n",
         f"name: [{', '.join(WANTED)}]\nposition: [{', '.join(NUMBERS)}]",
     ],
-    ids=["words", "list", "tuple", "json", "solution", "yaml", "nested", "quoted", "joint state", "flow lists"],
+    ids=[
+        "words",
+        "list",
+        "tuple",
+        "json",
+        "solution",
+        "list in json",
+        "yaml",
+        "nested",
+        "quoted",
+        "joint state",
+        "flow lists",
+    ],
 )
 def test_every_form_gives_the_same_angles(text):
     assert read_angles(PANDA, text) == WANTED
@@ -51,6 +64,7 @@ def test_the_json_of_a_solution_can_be_pasted():
     [
         ("", "nothing was pasted"),
         ("1 2 3", r"panda has 8 joints that can be set \(panda_joint1, .*got 3 numbers"),
+        ('{"angles": [0.1, 0.2]}', "panda has 8 joints that can be set .*got 2 numbers"),
         ('{"panda_joint1": 0.1', "begins like JSON, but is not"),
         ("panda_joint1 = 0.1", "line 1 of the pasted text must be joint: value; got 'panda_joint1 = 0.1'"),
         ("panda_joint1: 0.1\n\npanda_joint2: fast", "line 3: joint 'panda_joint2' must have a number; got 'fast'"),

@@ -534,6 +534,7 @@ def test_solvers_get_seven_tenths_of_a_step_between_them(arm):
         name = "own"
 
     shown = session(arm, [Own] * 4, Clock(each=0.001))
+    shown.running = True
     shown.move_ball(0, [0.5, 0.4, 0.4])
     shown.step()
     assert [one.status for one in shown.seen] == ["TIME_LIMIT"] * 4

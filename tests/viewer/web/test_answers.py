@@ -123,3 +123,14 @@ def test_what_was_asked_before_another_robot_came_is_told_to_nobody(scene):
 def test_instances_are_counted(scene, instance):
     with pytest.raises(pinik.InputError, match="numbered from 0 to 1"):
         scene.answers.follow(scene.session, 1, instance)
+
+
+@pytest.mark.parametrize("look", [Answers.find, lambda *args: Answers.follow(*args, 0)], ids=["answers", "self-motion"])
+def test_answers_for_a_place_where_a_ball_no_longer_is_are_not_shown(scene, look):
+    look(scene.answers, scene.session, 3)
+    scene.session.move_ball(0, [0.3, 0.2, 0.5])
+    scene.later.do_all()
+    (told,) = scene.sent
+    assert told == {"type": "error", "message": "a ball has changed during the search; search again"}
+    with pytest.raises(pinik.InputError, match="0 were found"):
+        scene.answers.choose(scene.session, 0, 0)

@@ -35,11 +35,18 @@ export class Answers {
     _ask(type, fields = {}) {
         this.clear();
         say(this._words, "Searching …");
+        this._searches = true;
         this._connection.send({ type, ...fields });
+    }
+
+    /** An error may have ended the search. */
+    fail() {
+        if (this._searches) this.clear();
     }
 
     /** Forget everything, because the robot or a ball has changed. */
     clear() {
+        this._searches = false;
         this._ghosts.clear();
         this._list.replaceChildren();
         this._slider.hidden = true;

@@ -59,6 +59,7 @@ export class Lectern {
     setState(state) {
         this._running = state.running;
         this._explain.setState(state);
+        this._race.setState(state);
         this._thesis.setState(state);
     }
 

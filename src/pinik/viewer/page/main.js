@@ -134,6 +134,7 @@ class Page {
         error: ({ message }) => {
             this.notices.error(message);
             this.lectern.fail();
+            this.answers.fail();
         },
     };
 

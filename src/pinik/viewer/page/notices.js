@@ -20,12 +20,13 @@ export class Notices {
 
     /** @param robot the name of the robot on show, for the command that starts the server again */
     connected(on, robot = "") {
-        byId("banner").hidden = on;
-        const command = `pinik live ${robot} --port ${location.port}`.replace("  ", " ");
-        say(
-            byId("banner"),
-            `Connection lost. Trying again … If the server has ended, start it again in a terminal: ${command}`,
-        );
+        const banner = byId("banner");
+        if (!on && banner.hidden)
+            banner.replaceChildren(
+                "Connection lost. Trying again … If the server has ended, start it again in a terminal: ",
+                make("code", {}, `pinik live ${robot} --port ${location.port}`.replace("  ", " ")),
+            );
+        banner.hidden = on;
         document.documentElement.classList.toggle("offline", !on);
     }
 

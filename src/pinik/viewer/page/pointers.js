@@ -14,7 +14,8 @@ export class Pointers {
         labels.after(this._element);
     }
 
-    place() {
+    /** @param above the height of what stands at the upper edge, which no arrow may cover [px] */
+    place(above) {
         const { stage, state } = this._show;
         const room = { width: stage.width, height: stage.height };
         const outside = this._show
@@ -25,7 +26,7 @@ export class Pointers {
         while (this._arrows.length > outside.length) this._arrows.pop().remove();
         outside.forEach(({ k, instance, at }, i) => {
             const arrow = this._arrows[i];
-            const { x, y, turn } = onEdge(at, room);
+            const { x, y, turn } = onEdge(at, room, above);
             arrow.style.setProperty("--own", `var(--instance-${instance})`);
             arrow.style.transform = `translate(${x.toFixed(0)}px, ${y.toFixed(0)}px) rotate(${turn.toFixed(2)}rad)`;
             arrow.ariaLabel = arrow.title = `The ball of ${state.balls[k].frame} is outside the picture. Show everything`;
@@ -44,11 +45,12 @@ function isOutside({ x, y }, radius, { width, height }) {
     return x < -radius || y < -radius || x > width + radius || y > height + radius;
 }
 
-/** Where the line from the middle of the picture to a point crosses the edge, and the line's angle [rad]. */
-function onEdge({ x, y, behind }, { width, height }) {
+/** Where the line from the middle of the free picture to a point crosses its edge, and the line's angle [rad]. */
+function onEdge({ x, y, behind }, { width, height }, above) {
     const sign = behind ? -1 : 1; // a point behind the camera is seen on the opposite side
-    const [dx, dy] = [sign * (x - width / 2), sign * (y - height / 2)];
-    const [right, down] = [width / 2 - INSET, height / 2 - INSET];
+    const middle = { x: width / 2, y: (above + height) / 2 };
+    const [dx, dy] = [sign * (x - middle.x), sign * (y - middle.y)];
+    const [right, down] = [width / 2 - INSET, (height - above) / 2 - INSET];
     const part = Math.min(right / Math.max(Math.abs(dx), 1e-6), down / Math.max(Math.abs(dy), 1e-6));
-    return { x: width / 2 + part * dx, y: height / 2 + part * dy, turn: Math.atan2(dy, dx) };
+    return { x: middle.x + part * dx, y: middle.y + part * dy, turn: Math.atan2(dy, dx) };
 }

@@ -1,8 +1,13 @@
 /** The tab with the race: all begin in the same pose, at the same moment, at the same target. */
 
+import { contest } from "pinik/contest.js";
 import { make, say } from "pinik/elements.js";
 import { Copy } from "pinik/copy.js";
 import { length, microseconds } from "pinik/words.js";
+
+const RULES =
+    "Every method solves from the same pose, for the same targets, with the same tolerance and limits. " +
+    "Each time is the median of five solves, measured apart and in turn.";
 
 export class RaceTab {
     /** @param acts race(places, seed), lineUp(position), iterate() */
@@ -11,15 +16,14 @@ export class RaceTab {
         const start = (testid, words, places) => {
             const button = make("button", { type: "button", className: places ? "primary" : "", dataset: { testid } }, words);
             button.addEventListener("click", () => {
+                this._asked = this._contest;
                 this._wait(true);
                 race(places, Math.floor(Math.random() * 1e6));
             });
             return button;
         };
         this._starts = [start("race-ten", "Ten random targets", 10), start("race-here", "The balls as they are", 0)];
-        this._words = make("p", { className: "hint", role: "status", dataset: { testid: "race-words" } },
-            "Every method solves from the same pose, for the same targets, with the same tolerance and limits. ",
-            "Each time is the median of five solves, measured apart and in turn.");
+        this._words = make("p", { className: "hint", role: "status", dataset: { testid: "race-words" } }, RULES);
         this._table = make("table", { className: "race-table", dataset: { testid: "race-table" } });
         this._card = make("pre", { className: "card-text", dataset: { testid: "race-card" } });
         this._copy = new Copy(() => this._card.textContent, "race-copy");
@@ -39,11 +43,27 @@ export class RaceTab {
 
     /** An error may have ended the race. */
     fail() {
+        if (this._starts[0].disabled) say(this._words, RULES);
         this._wait(false);
+    }
+
+    /** The robots can run a race again only as long as they are those that ran it. */
+    setState(state) {
+        this._contest = contest(state);
+        this._offerToWatch();
+    }
+
+    _offerToWatch() {
+        const over = this._contest !== this._entered;
+        this._watch.disabled = over;
+        this._watch.title = over ? "The robot, a method or a rule has changed since this race" : "";
+        if (over) this.stop();
     }
 
     setResult(race) {
         this._wait(false);
+        this._entered = this._asked;
+        this._offerToWatch();
         this._race = race;
         this._result.hidden = false;
         say(this._words, this._sentence(race));

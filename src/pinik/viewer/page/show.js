@@ -231,7 +231,8 @@ export class Show {
 
     _afterDrawing() {
         if (this.instances.length && this._frame && !this.drawn) this.drawn = this._parts ? "shapes" : "skeleton";
-        for (const part of [this._captions, this._pointers, this.look]) part.place();
+        for (const part of [this._captions, this.look]) part.place();
+        this._pointers.place(this._captions.below);
     }
 
     _paint() {

@@ -1,9 +1,10 @@
-/** Keeps everything that matters in the picture. */
+/** Keeps everything that matters in the picture, and the picture no larger than that needs by far. */
 
 import { Extent } from "pinik/extent.js";
 import { THREE } from "pinik/three.js";
 
 const LOOK = 300; // [ms] between two checks for something that left the picture
+const LOOSE = 0.25; // the part of the framed size below which everything is looked at again, larger
 const HALO = 1.7; // the ring around a selected ball, in radii of the ball
 
 export class Sight {
@@ -13,6 +14,7 @@ export class Sight {
         this._extent = new Extent();
         this._curves = new Extent();
         this._looked = 0;
+        this._framed = 0;
         this._pending = false;
     }
 
@@ -46,12 +48,17 @@ export class Sight {
         const { camera, stage, instances, ground, robot } = this._show;
         this._pending = false;
         [camera.captionHeight, camera.buttons] = this._show.takenHeights;
-        camera.frame(this._points(), instances.length, preset, smoothly);
+        const points = this._points();
+        this._framed = sizeOf(points);
+        camera.frame(points, instances.length, preset, smoothly);
         const { center, radius } = camera.sphere;
         stage.ground.lay(ground, center.x, center.y, radius, robot.size);
     }
 
-    /** Look at everything again if something left the picture, unless the user turned the camera or drags a ball. */
+    /**
+     * Look at everything again if something left the picture, or came back from far away, unless the user turned the
+     * camera or drags a ball.
+     */
     follow(now) {
         const { camera, busy } = this._show;
         if (busy) return;
@@ -61,12 +68,12 @@ export class Sight {
         }
         if (now - this._looked < LOOK || camera.moved || camera.gliding) return;
         this._looked = now;
-        if (this._someLeft()) this.all(true, camera.preset);
+        const points = this._points();
+        if (this._someLeft(points) || sizeOf(points) < LOOSE * this._framed) this.all(true, camera.preset);
     }
 
-    _someLeft() {
+    _someLeft(points) {
         const { stage, instances, camera } = this._show;
-        const points = this._points();
         if (instances.length > 1 && camera.isCrowded(points)) return true;
         return instances.some((_, i) =>
             points.some((point) => camera.isOutside(stage.project(point.clone().add(this._show.offset(i))))),
@@ -90,6 +97,11 @@ export class Sight {
         for (const obstacle of state.obstacles ?? []) points.push(...cornersOf(obstacle));
         return points;
     }
+}
+
+/** The radius of a sphere around points [m]. */
+function sizeOf(points) {
+    return new THREE.Sphere().setFromPoints(points).radius;
 }
 
 /** The corners of the box around an obstacle, as Vector3s. */

@@ -1,5 +1,6 @@
 /** The tab with the thesis's Table 4.1, filled while one walks through its four comparisons. */
 
+import { contest } from "pinik/contest.js";
 import { make, say } from "pinik/elements.js";
 import { count, microseconds } from "pinik/words.js";
 
@@ -100,7 +101,7 @@ export class ThesisTable {
 }
 
 /** What must stay as it is while a comparison is measured. */
-function settings({ robot, root, view, motion, curve, speed, limits, polish, iterations, tolerance, instances }) {
-    const methods = instances.map(({ method, parameters }) => [method, parameters.map(({ value }) => value)]);
-    return JSON.stringify([robot, root, view, motion, curve, speed, limits, polish, iterations, tolerance, methods]);
+function settings(state) {
+    const { view, motion, curve, speed, polish, iterations } = state;
+    return JSON.stringify([contest(state), view, motion, curve, speed, polish, iterations]);
 }

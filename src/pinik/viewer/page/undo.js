@@ -4,7 +4,7 @@ import { byId } from "pinik/elements.js";
 
 const MOST = 100;
 const PAUSE = 1000; // [ms] after which the same control begins another change
-const NOT_CHANGES = new Set(["drawn", "run", "step"]);
+const NOT_CHANGES = new Set(["drawn", "run", "step", "begin_anew", "explain", "race", "bones"]);
 
 export class Undo {
     constructor(connection) {
@@ -85,8 +85,14 @@ export class Undo {
     }
 
     _go(from, to) {
-        if (!from.length || !this._state) return;
-        to.push(this._now());
+        if (!this._state) return;
+        const now = this._now();
+        while (from.at(-1) === now) from.pop(); // what was sent there has changed nothing
+        if (!from.length) {
+            this._show();
+            return;
+        }
+        to.push(now);
         const setup = from.pop().replace(/(^|&)run=\w+/, `$1run=${this._state.running ? "on" : "off"}`);
         this._last.key = "";
         this._silent = true;

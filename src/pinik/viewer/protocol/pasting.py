@@ -45,9 +45,9 @@ def read_angles(robot: Robot, text: str) -> dict[str, Any]:
     """Read angles [rad, or m for sliding joints] from text.
 
     The forms are: numbers, one for each joint that can be set, in the robot's order, with or without brackets and
-    commas; a JSON object of joint: number, or one that contains it as "angles", as `pinik solve --json` prints it; and
-    YAML lines "joint: number", indented or not, or the two lists `name` and `position` of a ROS joint state. Followers
-    are left out, because they follow.
+    commas; a JSON object of joint: number, or one that contains it, or such numbers, as "angles", as `pinik solve
+    --json` prints it; and YAML lines "joint: number", indented or not, or the two lists `name` and `position` of a ROS
+    joint state. Followers are left out, because they follow.
 
     Returns:
         Joint name → number, as `set_angles` takes them.
@@ -61,7 +61,7 @@ def read_angles(robot: Robot, text: str) -> dict[str, Any]:
     if not plain:
         raise InputError(f"nothing was pasted; paste {_FORMS}")
     if plain[0] == "{":
-        given = _from_json(plain)
+        given = _from_json(robot, plain)
     elif words := _only_numbers(plain):
         given = _in_order(robot, [float(word) for word in words])
     else:
@@ -76,7 +76,7 @@ def _only_numbers(text: str) -> list[str]:
     return words if words and all(_NUMBER.fullmatch(word) for word in words) else []
 
 
-def _in_order(robot: Robot, numbers: list[float]) -> dict[str, Any]:
+def _in_order(robot: Robot, numbers: list[Any]) -> dict[str, Any]:
     names = robot.joint_names
     if len(numbers) != len(names):
         shown = shortened(", ".join(names), 120)
@@ -84,12 +84,14 @@ def _in_order(robot: Robot, numbers: list[float]) -> dict[str, Any]:
     return dict(zip(names, numbers, strict=True))
 
 
-def _from_json(text: str) -> dict[str, Any]:
+def _from_json(robot: Robot, text: str) -> dict[str, Any]:
     try:
         value = read_json(text)
     except ValueError as error:
         raise InputError(f"the pasted text begins like JSON, but is not: {error}") from None
-    inner = next((value[name] for name in _WRAPPERS if isinstance(value.get(name), dict)), value)
+    inner = next((value[name] for name in _WRAPPERS if isinstance(value.get(name), dict | list)), value)
+    if isinstance(inner, list):
+        return _in_order(robot, inner)
     return angles_by_joint("the pasted JSON", inner)
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -17,6 +17,7 @@ from ...solving.self_motion import SelfMotion, self_motion
 from ...solving.solve_all import solve_all
 from ..protocol.messages import checked, whole_number
 from ..protocol.packing import JointPlacements
+from ..simulation.instance import same_objects
 from ..simulation.session import Session
 from .later import Later
 
@@ -93,7 +94,7 @@ class Answers:
             words = {"message": found.message + more, "distance": found.distance[:_MOST].tolist()}
             self._say("answers", generation, robot, self._found, words)
 
-        self._begin(work, take)
+        self._begin(session, targets, work, take)
 
     def follow(self, session: Session, generation: int, instance: int) -> None:
         """Find how an instance can move while the balls' frames stay where they are.
@@ -112,7 +113,7 @@ class Answers:
             words = {"message": str(found), "instance": instance, "closed": found.closed}
             self._say("self_motion", generation, robot, self._along, words)
 
-        self._begin(work, take)
+        self._begin(session, targets, work, take)
 
     def choose(self, session: Session, index: int, instance: int) -> None:
         """Put an instance into one of the answers that were found.
@@ -139,7 +140,9 @@ class Answers:
         session.set_motion("hand")
         return session.robot, targets, session.instances[instance].q
 
-    def _begin(self, work: Callable[[], Any], take: Callable[[Any], None]) -> None:
+    def _begin(
+        self, session: Session, targets: Sequence[Target], work: Callable[[], Any], take: Callable[[Any], None]
+    ) -> None:
         request = self._request = object()
 
         def given(result: Any) -> None:
@@ -147,6 +150,9 @@ class Answers:
                 return
             if isinstance(result, BaseException):
                 words = str(result) if isinstance(result, PinikError) else f"{type(result).__name__}: {result}"
+                self._tell(json.dumps({"type": "error", "message": words}))
+            elif not same_objects(session.balls.targets, targets):
+                words = "a ball has changed during the search; search again"
                 self._tell(json.dumps({"type": "error", "message": words}))
             else:
                 take(result)
