@@ -55,3 +55,17 @@ def test_positions_heights_and_maps_without_a_robot(found, tmp_path):
     assert "2 of 2" in str(raised)
     with pytest.raises(pinik.InputError, match="yaws"):
         loose.bases(points, yaws=0)
+
+
+def test_targets_too_far_apart_are_refused_instead_of_tried_for_hours(found):
+    with pytest.raises(pinik.InputError, match="they are too far apart, or the step is too small"):
+        found.bases([[0.0, 0.0, 0.4], [1e6, 0.0, 0.4]])
+    with pytest.raises(pinik.InputError, match="the step is too small"):
+        found.bases([[0.0, 0.0, 0.4]], step=1e-6)
+
+
+def test_bases_are_solved_for_with_the_options_of_the_map(found, targets):
+    stiff = {"locked": ("wrist_1_joint", "wrist_2_joint")}
+    bases = found.bases(targets, yaws=6, step=0.25, most=2, **stiff)
+    local = np.linalg.inv(bases.placements[0]) @ targets
+    assert pinik.solve_many(found.machine, "tool0", local, **stiff).success.sum() == bases.solved[0] < 6

@@ -87,3 +87,14 @@ def test_what_is_no_map_is_refused(name, tmp_path):
         pinik.ReachMap.load(tmp_path / "none.npz")
     with pytest.raises(pinik.InputError, match="npz"):
         pinik.ReachMap.load(tmp_path / "none.h5")
+
+
+def test_maps_in_which_nothing_is_reached_are_written_and_read(two_link, tmp_path):
+    empty = pinik.reach(two_link, "tip", box=((5, 5, 5), (6, 6, 6)), cell=0.5, samples=100)
+    for name in ("map.npz", "map.parquet"):
+        empty.save(tmp_path / name)
+        assert str(pinik.ReachMap.load(tmp_path / name)) == str(empty)
+    with pytest.raises(pinik.InputError, match="no cell of the map is reached, so there is nothing to show"):
+        empty.save_page(tmp_path / "page.html")
+    with pytest.raises(pinik.InputError, match="places"):
+        empty.at("here")

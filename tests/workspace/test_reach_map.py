@@ -106,6 +106,7 @@ def test_down_needs_directions(ring):
         ({"resume": True}, "output"),
         ({"output": "map.txt"}, "npz"),
         ({"colour": "red"}, "colour"),
+        ({"cell": 1e300}, "cell must be at most 1e\\+09 m"),
     ],
 )
 def test_wrong_arguments_are_refused_in_words(two_link, options, words):

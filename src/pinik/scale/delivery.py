@@ -52,15 +52,16 @@ class Delivery:
             UnknownNameError: There is no such format.
             OSError: The file cannot be written.
         """
-        path = Path(output).expanduser() if isinstance(output, (str, os.PathLike)) else None
-        if path is not None:
+        if isinstance(output, (str, os.PathLike)):
+            path = Path(output).expanduser()
             form = format_of(path, form)
             check_writable(path)
-        if resume and (path is None or is_special(path)):
+            own, is_stream = cls(path, form, resume), is_special(path)
+        else:
+            own, is_stream = cls(output, format_of(Path(), form or "csv"), resume), True
+        if resume and is_stream:
             raise InputError("must be False for a stream, of which nothing is kept", argument="resume")
-        if path is not None:
-            return cls(path, form, resume)
-        return cls(output, format_of(Path(), form or "csv"), resume)
+        return own
 
     def check_not(self, targets: Path) -> None:
         """Check that the answers do not take the place of the targets; InputError if they would."""

@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..checks import as_array, as_count, as_positive_number
+from ..errors import InputError
 from ..solving.many import solve_many
 from ..solving.origin import Origin
 from ..solving.places import read_placements
@@ -22,6 +23,7 @@ Array = NDArray[np.float64]
 Counts = NDArray[np.int64]
 
 _AT_ONCE = 2**20  # targets seen from bases
+_MOST_SPOTS = 2**20
 
 
 @dataclass(frozen=True, eq=False)
@@ -102,6 +104,12 @@ def _floor(reach: VoxelMap, points: Array, step: float) -> Array:
     )
     farthest = max(float(np.linalg.norm(corner[:2])) for corner in corners)
     lower, upper = points[:, :2].min(axis=0) - farthest, points[:, :2].max(axis=0) + farthest
+    count = math.prod(math.ceil(span) + 2 for span in ((upper - lower) / step).tolist())
+    if count > _MOST_SPOTS:
+        raise InputError(
+            f"the targets need {count:.3g} bases to be tried, and at most {_MOST_SPOTS} are possible: they are too far "
+            "apart, or the step is too small"
+        )
     x, y = (step * np.arange(math.floor(a / step), math.ceil(b / step) + 1) for a, b in zip(lower, upper, strict=True))
     return np.stack(np.meshgrid(x, y, indexing="ij"), axis=-1).reshape(-1, 2)
 

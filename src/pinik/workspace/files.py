@@ -137,4 +137,5 @@ def _read_parquet(content: bytes) -> tuple[dict[str, Any], dict[str, NDArray[np.
     head = json.loads((table.schema.metadata or {})[_KEY])
     arrays = {name: table[name].to_numpy() for name in table.column_names if name != "reached"}
     rows = b"".join(table["reached"].to_pylist())
-    return head, arrays | {"reached": np.frombuffer(rows, dtype=np.uint8).reshape(len(table), -1)}
+    width = table.schema.field("reached").type.byte_width
+    return head, arrays | {"reached": np.frombuffer(rows, dtype=np.uint8).reshape(len(table), width)}

@@ -11,7 +11,7 @@ import numpy as np
 import pinocchio
 from numpy.typing import ArrayLike
 
-from ..checks import as_count, as_positive_number
+from ..checks import FARTHEST, as_count, as_positive_number
 from ..errors import InputError, UnknownNameError
 from ..files import check_writable
 from ..problem.reach import reach_bounds
@@ -222,6 +222,8 @@ def _check_branches(samples: int, axes: int, orientations: Orientations) -> None
 def _grid(sampler: Sampler, cell: float | None, box: ArrayLike | None) -> Grid:
     """The cells: those of the box, or of all that may be within reach."""
     size = None if cell is None else as_positive_number(cell, "cell", "metres")
+    if size is not None and size > FARTHEST:
+        raise InputError(f"must be at most {FARTHEST:g} m; got {size:g}", argument="cell")
     bounds = reach_bounds(sampler.problem.terms[0], sampler.limits)
     points = sampler.placements(sampler.configurations(0, _PROBES))[:, :3, 3]
     lower, upper = points.min(axis=0), points.max(axis=0)

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from ..errors import InputError
 from ..extras import needed_by
 from ..files import write_whole
 from ..picture.arguments import view_direction
@@ -36,6 +37,8 @@ def save_page(reach: VoxelMap, path: str | os.PathLike[str], robot: Robot | None
     from html import escape  # with its list of entities
 
     machine = reach.require_robot(robot, "the page of a map")
+    if not reach.workspace().any():
+        raise InputError("no cell of the map is reached, so there is nothing to show")
     with needed_by("the page of a map", "live"):
         from ..viewer.web.saved_page import json_in_html, saved_page
 

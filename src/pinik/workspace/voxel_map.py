@@ -313,6 +313,4 @@ def as_least_share(workspace: float) -> float:
 
 def _one(place: Places) -> tuple[Array | None, Array]:
     """(the rotation (1, 3, 3) or None, the point (1, 3)) of one place."""
-    if isinstance(place, pinocchio.SE3):
-        return read_placements([place])
-    return read_placements([np.asarray(place, dtype=np.float64)])
+    return read_placements([place])
