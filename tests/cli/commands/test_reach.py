@@ -119,7 +119,6 @@ def test_places_for_the_base(run, tmp_path):
         (["--bases", "3"], "list of places"),
         (["--quantity", "colour", "--picture", "a.png", "--samples", "10"], "share"),
         (["--workspace", "everything", "--picture", "a.png", "--samples", "10"], "dexterous"),
-        (["--map", "none.npz"], "no such file"),
         (["--resume"], "--resume"),
         (["--branches"], "--branches"),
         (["--workspace", "2"], "--workspace must be a name or a share in (0, 1]; got 2.0"),
@@ -133,6 +132,23 @@ def test_wrong_options_are_refused_in_words(run, options, words, tmp_path, monke
     assert (answer.status, answer.out) == (2, "")
     assert words in answer.err
     assert answer.err.count("\n") == 1
+
+
+@pytest.mark.parametrize(
+    "option", [("--workers", 2), ("--by", "solving"), ("--resume",), ("--cell", 0.05), ("--branches",)]
+)
+def test_what_makes_maps_is_refused_where_none_is_made(run, option):
+    listed = run("reach", "panda", CIRCLE, "--frame", "panda_hand_tcp", *option)
+    words = f"error: {option[0]} is for maps; leave out the list of places, or ask for --bases\n"
+    assert (listed.status, listed.err) == (2, words)
+    kept = run("reach", "two_link", "--map", "map.npz", *option)
+    assert (kept.status, kept.err) == (2, f"error: {option[0]} is for making a map; --map reads one that was made\n")
+
+
+def test_a_map_that_is_not_there_is_named(run, tmp_path):
+    answer = run("reach", "two_link", "--map", tmp_path / "none.npz")
+    assert (answer.status, answer.out) == (2, "")
+    assert "no such file" in answer.err
 
 
 def test_the_frame_must_be_given(run):

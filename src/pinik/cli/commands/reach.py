@@ -108,6 +108,12 @@ def reach(
     """
     units = Units(degrees)
     _check(frame, by, targets, bases, map_file, (to_file, slices, page, picture))
+    making = {
+        "--by": by if by != "sampling" else None, "--cell": cell, "--box": box, "--samples": samples,
+        "--directions": directions, "--rolls": rolls, "--approach": approach if approach != "z" else None,
+        "--branches": branches or None, "--resume": resume or None, "--workers": workers, "--scheduler": scheduler,
+    }  # fmt: skip
+    _check_making([name for name, value in making.items() if value is not None], targets, bases, map_file)
     with named_by_option({"workspace": workspace}):
         shown = asked.workspace_of(workspace)
     if quantity not in QUANTITIES:
@@ -216,6 +222,16 @@ def _check(
         check_suffix(to_file)
     if slices is not None:
         check_plot(slices, "--slices")
+
+
+def _check_making(options: list[str], targets: str | None, bases: int | None, map_file: Path | None) -> None:
+    """Check that nothing is said of how to make a map where none is made."""
+    if not options:
+        return
+    if map_file is not None:
+        raise CommandError(f"{options[0]} is for making a map; --map reads one that was made")
+    if targets is not None and bases is None:
+        raise CommandError(f"{options[0]} is for maps; leave out the list of places, or ask for --bases")
 
 
 def _places(
