@@ -80,7 +80,7 @@ SIGNALS = {signal.SIGINT: (130, b"interrupted\n"), signal.SIGTERM: (143, b"termi
 
 
 @pytest.mark.parametrize("number", SIGNALS)
-@pytest.mark.parametrize("before", ["signal", "pinik.interrupts", "pinik.errors", "typer", "pinik.cli.commands.track"])
+@pytest.mark.parametrize("before", ["signal", "pinik.interrupts", "pinik.errors", "typer", "pinik.cli.commands.robots"])
 def test_a_signal_while_modules_load_is_one_word_and_its_status(started, number, before):
     process = started("robots", before=before, wait=True)
     process.send_signal(number)

@@ -451,7 +451,7 @@ def test_a_folder_that_is_not_there_is_the_system_s_to_tell(two_link, tmp_path):
 @pytest.mark.parametrize(
     ("options", "fault"),
     [
-        ({"robot": "arm"}, "robot must be one that pinik.load returned; got 'arm'"),
+        ({"robot": "arm"}, "robot must be one that pinik.load returned, or an answer with its own; got … 'str'"),
         ({"q": [1.0, 2.0, 3.0]}, "q … 2 finite numbers"),
         ({"q": [[0.0, 0.0], [1.0]]}, "q[1] … 2 finite numbers"),
         ({"q": [[0.0, 0.0], 1.0]}, "q … 2 finite numbers"),

@@ -99,8 +99,10 @@ def test_only_places_in_doubt_are_checked_in_python(panda, monkeypatch):
     rng, seen = np.random.default_rng(0), []
     places = np.array([panda.placement(TIP, panda.random(rng)).homogeneous for _ in range(600)])
     exact = pinik.solve_many(panda, TIP, places)
-    read = reading._read_places
-    monkeypatch.setattr(reading, "_read_places", lambda places, *more: seen.append(len(places)) or read(places, *more))
+    read = reading.read_placements
+    monkeypatch.setattr(
+        reading, "read_placements", lambda places, *more: seen.append(len(places)) or read(places, *more)
+    )
     np.testing.assert_array_equal(pinik.solve_many(panda, TIP, places).q, exact.q)
     assert seen == []
     rounded = places.copy()

@@ -10,6 +10,7 @@ from pathlib import Path
 
 import pinik
 from pinik.description.advice import ADVICE
+from pinik.scale.jobs import cluster
 
 SOURCE = Path(pinik.__file__).parent
 
@@ -25,6 +26,7 @@ WHAT_TO_DO = {
     "[Missed targets](howto/answers.md#why-was-my-target-missed) has the usual causes.",
     "EngineError": 'Leave out `engine="native"`, or install pinik where a C++ compiler is, as the message says.',
     "MissingExtraError": "Run the install line that the message ends with.",
+    "ClusterError": "Start the scheduler or its workers, or install the same versions on all machines.",
     "InputWarning": "The answer is for the rounded argument. Give more digits, or take a quaternion.",
     "UrdfWarning": "The robot works, and something in its file is not as it should be. `pinik check FILE` says more. "
     "With `pinik.load(..., strict=True)` it is an error.",
@@ -96,7 +98,7 @@ def error_page() -> str:
 
 
 def _meaning(name: str) -> str:
-    named = getattr(pinik, name, None)
+    named = getattr(pinik, name, getattr(cluster, name, None))
     if named is None:
         return f"Python's own `{name}`."
     builtins = [base.__name__ for base in named.__bases__ if base.__module__ == "builtins" and base is not Exception]

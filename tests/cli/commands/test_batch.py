@@ -17,6 +17,7 @@ import pytest
 from pinik.cli.terminal.progress import report
 from pinik.scale.jobs.job import Tally
 from pinik.scale.jobs.parts import parts_folder
+from start_up import unmeasured
 
 GOOD = "id,x,y,z\na,0.2,0.2,0.9\nb,0.1,0.3,0.8\n"
 
@@ -165,7 +166,7 @@ def test_a_full_disk_is_status_2_in_words_and_resume_goes_on_when_there_is_room(
     command = [sys.executable, "-m", "pinik", "batch", "arm", str(many), "--frame", "tip", "--output", str(out)]
     command += ["--restarts", "5", "--chunk", "100"]
     limited = ["/bin/sh", "-c", f'ulimit -f {blocks}; exec "$@"', "sh", *command]
-    env = environment | {"PYTHONDONTWRITEBYTECODE": "1"}
+    env = unmeasured(environment) | {"PYTHONDONTWRITEBYTECODE": "1"}
     done = subprocess.run(limited, env=env, capture_output=True, text=True, check=False)
     assert done.returncode == 2
     hint = f"finished chunks are kept in {parts_folder(out)}; the same command with --resume goes on with them\n"

@@ -137,7 +137,9 @@ def test_the_figures_cover_the_last_thousand_steps_or_all(arm):
 
 
 def test_steps_that_the_clock_ends_are_counted_apart(arm):
-    shown = Session(arm, [Own, "ccd"], clock=Clock(each=0.002))
+    shown = Session(
+        arm, [Own, "ccd"], clock=Clock(each=0.04)
+    )  # two turns are longer than what a single step of one robot may take
     shown.set_motion("random")
     ended = [0, 0]
     for _ in range(20):
