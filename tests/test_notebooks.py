@@ -67,7 +67,7 @@ def shown(output, told):
 
 
 def test_there_are_notebooks_and_their_numbers_are_in_order():
-    assert [path.stem.split("_")[0] for path in NOTEBOOKS] == ["01", "02", "03", "04", "05", "06", "07", "08"]
+    assert [path.stem.split("_")[0] for path in NOTEBOOKS] == ["01", "02", "03", "04", "05", "06", "07", "08", "09"]
 
 
 @each_notebook
