@@ -28,10 +28,9 @@ from .asked import Reading
 from .columns import Columns
 from .delivery import AnswersGiven, Delivery
 from .identity import identity_of_options, identity_of_robot
-from .jobs.cluster import Cluster
 from .jobs.fingerprint import Fingerprint, versions
-from .jobs.job import Job, Runner, Tally
-from .jobs.threads import Threads
+from .jobs.job import Job, Tally
+from .jobs.runners import runner_of
 from .solving import Solving
 from .summary import Summary
 from .survey import Survey, digest_of, survey
@@ -139,7 +138,7 @@ def run(
         max_iterations=max_iterations, tolerance=tolerance, time_limit=time_limit, engine=engine,
         polish=polish, choose=choose, choose_weights=choose_weights, avoid=avoid,
     )  # fmt: skip
-    runner = _runner(threads, workers, scheduler)
+    runner = runner_of(workers, scheduler, threads)
     delivery = Delivery.of(output, form, resume)
     rows = as_count(chunk, "chunk")
     with opened(targets, targets_form, rows) as table:
@@ -160,14 +159,6 @@ def run(
 
 def _unsaid(words: str) -> None:
     """Faulty rows that nobody wants to hear of."""
-
-
-def _runner(threads: int | None, workers: int | None, scheduler: str | None) -> Runner:
-    if workers is None and scheduler is None:
-        return Threads() if threads is None else Threads(as_count(threads, "threads"))
-    if threads is not None:
-        raise InputError("is for this process; it does not go with workers or a scheduler", argument="threads")
-    return Cluster(scheduler, workers)
 
 
 def _reading(

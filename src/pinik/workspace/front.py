@@ -18,10 +18,8 @@ from ..problem.reach import reach_bounds
 from ..problem.targets import Target
 from ..problem.tolerance import Tolerance
 from ..robot import Robot
-from ..scale.jobs.cluster import Cluster
-from ..scale.jobs.job import Runner
 from ..scale.jobs.run import OnProgress
-from ..scale.jobs.threads import Threads
+from ..scale.jobs.runners import runner_of
 from ..shapes.avoid import Avoided
 from ..solvers.registry import Method
 from ..solving.options import OPTION_NAMES, Options
@@ -255,8 +253,3 @@ def map_of(plan: Plan, robot: Robot, counts: Counts) -> ReachMap:
         counts=counts,
         machine=robot,
     )
-
-
-def runner_of(workers: int | None, scheduler: str | None) -> Runner:
-    """Where to work: threads of this process, a cluster on this machine, or one that runs."""
-    return Threads() if workers is None and scheduler is None else Cluster(scheduler=scheduler, workers=workers)
