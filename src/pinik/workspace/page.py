@@ -40,11 +40,11 @@ def save_page(reach: VoxelMap, path: str | os.PathLike[str], robot: Robot | None
     if not reach.workspace().any():
         raise InputError("no cell of the map is reached, so there is nothing to show")
     with needed_by("the page of a map", "live"):
-        from ..viewer.web.saved_page import json_in_html, saved_page
+        from ..viewer.web.document import document, json_in_html
 
     title = f"What {reach.frame} of {reach.robot} can reach"
     pieces = {"title": escape(title).encode(), "map": json_in_html(_document(reach, machine, title))}
-    write_whole(path, saved_page("reach.html", pieces))
+    write_whole(path, document("reach.html", pieces))
 
 
 def _document(reach: VoxelMap, robot: Robot, title: str) -> dict[str, Any]:
@@ -116,6 +116,6 @@ def _robot(bodies: list[Body]) -> dict[str, Any]:
 def _packed(data: bytes) -> str:
     with needed_by("the page of a map", "live"):
         from ..viewer.protocol.packed_frames import deflated
-        from ..viewer.web.saved_page import as_base64
+        from ..viewer.web.document import as_base64
 
     return as_base64(deflated(data))

@@ -42,13 +42,14 @@ class Page {
         watchHands(() => this.state && this._showSettings(this.state));
         this.theme = new Theme();
         this.notices = new Notices();
-        this.show = new Show({ canvas: byId("canvas"), labels: byId("labels") }, this.theme);
+        // First, so that the server answers while the page is being built.
         this.connection = new Connection({
             onText: (message) => this._on[message.type]?.(message),
             onBinary: (buffer) => this._take(buffer),
             onOpen: () => this.notices.connected(true),
             onClose: () => this.notices.connected(false, this.state?.robot),
         });
+        this.show = new Show({ canvas: byId("canvas"), labels: byId("labels") }, this.theme);
         this.controls = new Controls(this.connection, this.notices);
         this.cards = new Cards(byId("cards"), this.connection);
         this.targets = new Targets(this.connection, (k) => this.show.select(k));

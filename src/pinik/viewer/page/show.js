@@ -9,6 +9,7 @@ import { Instance } from "pinik/instance.js";
 import { Look } from "pinik/look.js";
 import { ballsOnScreen } from "pinik/on_screen.js";
 import { Pointers } from "pinik/pointers.js";
+import { rehearse } from "pinik/rehearsal.js";
 import { lighten, Shapes } from "pinik/shapes.js";
 import { Sight } from "pinik/sight.js";
 import { Stage } from "pinik/stage.js";
@@ -39,6 +40,7 @@ export class Show {
         this.stage.onTick((now) => this._tick(now));
         this.stage.onResize = () => !this.camera.moved && this.frameAll(false);
         this.stage.onRefine = (fine) => this.instances.forEach(({ robot }) => robot.refine(fine));
+        rehearse(this.stage);
         this.stage.onDrawn = () => this._afterDrawing();
     }
 

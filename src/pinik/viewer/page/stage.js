@@ -18,25 +18,25 @@ export class Stage {
         this._last = 0;
         this._idle = 0;
         this._settled = false;
-        this.fine = true;
-        const software = isSoftware();
+        const { renderer, software } = makeRenderer();
         this._quality = new Quality(software);
-        this._setUpViewer(software);
+        this._setUpViewer(renderer);
         this.ground = new Ground();
         this.lights = new Lights(software);
         this.viewer.scene.add(this.ground.group, this.lights.group);
         this.viewer.scene.updateMatrixWorld();
+        this.refine(this._quality.now.fine);
         this._paint();
         theme.addEventListener("change", () => this._paint());
         new ResizeObserver(() => this._resize()).observe(element);
         requestAnimationFrame((now) => this._tick(now));
     }
 
-    _setUpViewer(software) {
-        const renderer = new THREE.WebGLRenderer({ antialias: !software, alpha: true });
+    _setUpViewer(renderer) {
         renderer.outputEncoding = THREE.sRGBEncoding;
         renderer.shadowMap.enabled = true;
         renderer.shadowMap.autoUpdate = false;
+        renderer.debug.checkShaderErrors = false; // asking waits for the compiler, shader by shader
         this.element.append(renderer.domElement);
         const viewer = new Viewer(this.element, false, renderer);
         viewer.gui.domElement.remove();
@@ -142,6 +142,11 @@ export class Stage {
         this.onDrawn?.();
     }
 
+    /** Draw at once, without being asked by an animation frame. */
+    draw() {
+        this._render(this._quality.now, true);
+    }
+
     /** Draw in detail, or quickly. */
     refine(fine) {
         if (this.fine === fine) return;
@@ -159,11 +164,17 @@ export class Stage {
     }
 }
 
-/** Whether WebGL runs on the processor. */
-function isSoftware() {
-    const gl = document.createElement("canvas").getContext("webgl");
-    const about = gl?.getExtension("WEBGL_debug_renderer_info");
+/** A renderer, and whether it runs on the processor, where antialiasing costs too much. */
+function makeRenderer() {
+    const renderer = new THREE.WebGLRenderer({ alpha: true });
+    if (isSoftware(renderer.getContext())) return { renderer, software: true };
+    renderer.forceContextLoss();
+    renderer.dispose();
+    return { renderer: new THREE.WebGLRenderer({ antialias: true, alpha: true }), software: false };
+}
+
+function isSoftware(gl) {
+    const about = gl.getExtension("WEBGL_debug_renderer_info");
     const name = about ? gl.getParameter(about.UNMASKED_RENDERER_WEBGL) : "";
-    gl?.getExtension("WEBGL_lose_context")?.loseContext();
     return /swiftshader|llvmpipe|softpipe|software|basic render/i.test(name);
 }

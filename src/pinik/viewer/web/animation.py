@@ -10,7 +10,7 @@ from typing import Any
 
 from ..protocol.packed_frames import deflated, packed_frames
 from ..protocol.recording import FRAMES_PER_SECOND, Recording
-from .saved_page import PAGE, as_base64, json_in_html, saved_page
+from .document import PAGE, as_base64, document, json_in_html
 from .scene import Shapes
 
 __all__ = ["animation_page"]
@@ -35,7 +35,7 @@ def animation_page(
     Raises:
         ValueError: A message contains a number that is not finite.
     """
-    document = {
+    played = {
         "hello": hello,
         "robot": robot,
         "shapes": shapes.message(robot["generation"]),
@@ -46,9 +46,9 @@ def animation_page(
     }
     pieces = {
         "title": html.escape(f"{robot['name']} – pinik").encode(),
-        "recording": b"%s, %s" % (json_in_html(document)[:-1], _commands(shapes)),
+        "recording": b"%s, %s" % (json_in_html(played)[:-1], _commands(shapes)),
     }
-    return saved_page("player.html", pieces, page)
+    return document("player.html", pieces, page)
 
 
 @lru_cache(maxsize=1)

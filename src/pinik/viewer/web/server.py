@@ -5,7 +5,6 @@ from __future__ import annotations
 import asyncio
 import json
 import secrets
-from pathlib import Path
 from typing import Any
 
 import tornado.httpserver
@@ -14,6 +13,7 @@ import tornado.web
 from ...errors import PinikError
 from ..protocol.copying import texts_to_copy
 from .budget import Turns
+from .document import document
 from .guests import Guests
 from .heartbeat import Heartbeat
 from .hosts import frame_ancestors, is_own_host
@@ -24,7 +24,6 @@ from .tab import LARGEST_MESSAGE, WebSocket
 
 __all__ = ["make_server"]
 
-PAGE = Path(__file__).parents[1] / "page"
 _LARGEST_HEAD = 16_384  # bytes; a browser's has about one thousand
 _LARGEST_BODY = 1024  # bytes; no request needs one
 _PATIENCE = 30.0  # [s] for a whole request, and between two requests of a connection
@@ -51,7 +50,6 @@ def make_server(
     application = tornado.web.Application(
         [
             (r"/", _Index, common),
-            (r"/page/([\w-]+\.(?:js|css|svg))", _File, {**guard, "path": str(PAGE)}),
             (r"/meshcat/(main\.min\.js)", _File, {**guard, "path": str(meshcat_script().parent)}),
             (r"/ws", _Socket, {**common, "turns": Turns()}),
             (rf"/api/alive/{mark}\.svg", _Alive, common),
@@ -131,7 +129,7 @@ class _Index(_Handler):
         here = self.request.host
         policy = {
             "default-src": "'self'",
-            "script-src": f"'self' 'nonce-{nonce}'",
+            "script-src": f"'nonce-{nonce}'",
             "style-src": "'self' 'unsafe-inline'",
             "img-src": "'self' data: blob:",
             "connect-src": f"'self' ws://{here} wss://{here}",
@@ -141,7 +139,7 @@ class _Index(_Handler):
         }
         self.set_header("Content-Security-Policy", "; ".join(f"{name} {value}" for name, value in policy.items()))
         self.set_header("Content-Type", "text/html; charset=utf-8")
-        self.finish((PAGE / "index.html").read_text("utf-8").replace("{{nonce}}", nonce))
+        self.finish(document("index.html", {"nonce": nonce.encode()}))
 
 
 class _File(_Guarded, tornado.web.StaticFileHandler):
