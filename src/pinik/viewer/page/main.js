@@ -83,6 +83,7 @@ class Page {
         this._makeHands();
         this._makeButtons();
         new Keys(shortcuts(this));
+        this.show.onRobots = () => byId("app").classList.remove("starting");
         this.show.stage.onTick((now) => this._tick(now));
         document.addEventListener("visibilitychange", () => this._answer());
     }

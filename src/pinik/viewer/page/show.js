@@ -9,7 +9,6 @@ import { Instance } from "pinik/instance.js";
 import { Look } from "pinik/look.js";
 import { ballsOnScreen } from "pinik/on_screen.js";
 import { Pointers } from "pinik/pointers.js";
-import { rehearse } from "pinik/rehearsal.js";
 import { lighten, Shapes } from "pinik/shapes.js";
 import { Sight } from "pinik/sight.js";
 import { Stage } from "pinik/stage.js";
@@ -40,7 +39,6 @@ export class Show {
         this.stage.onTick((now) => this._tick(now));
         this.stage.onResize = () => !this.camera.moved && this.frameAll(false);
         this.stage.onRefine = (fine) => this.instances.forEach(({ robot }) => robot.refine(fine));
-        rehearse(this.stage);
         this.stage.onDrawn = () => this._afterDrawing();
     }
 
@@ -232,7 +230,10 @@ export class Show {
     }
 
     _afterDrawing() {
-        if (this.instances.length && this._frame && !this.drawn) this.drawn = this._parts ? "shapes" : "skeleton";
+        if (this.instances.length && this._frame && !this.drawn) {
+            this.drawn = this._parts ? "shapes" : "skeleton";
+            if (!this.awaiting) this.onRobots?.();
+        }
         for (const part of [this._captions, this.look]) part.place();
         this._pointers.place(this._captions.below);
     }

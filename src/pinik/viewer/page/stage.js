@@ -142,11 +142,6 @@ export class Stage {
         this.onDrawn?.();
     }
 
-    /** Draw at once, without being asked by an animation frame. */
-    draw() {
-        this._render(this._quality.now, true);
-    }
-
     /** Draw in detail, or quickly. */
     refine(fine) {
         if (this.fine === fine) return;
