@@ -12,7 +12,13 @@ from packaging.requirements import Requirement
 from packaging.utils import canonicalize_name
 
 PROJECT = tomllib.loads((Path(__file__).parents[1] / "pyproject.toml").read_text("utf-8"))["project"]
-IMPORTED_AS = {"pillow": "PIL", "u-msgpack-python": "umsgpack", "pycollada": "collada", "rerun-sdk": "rerun"}
+IMPORTED_AS = {
+    "pillow": "PIL",
+    "u-msgpack-python": "umsgpack",
+    "pycollada": "collada",
+    "rerun-sdk": "rerun",
+    "fast-simplification": "fast_simplification",
+}
 
 REFUSE = """
 import sys

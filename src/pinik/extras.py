@@ -9,7 +9,13 @@ from .errors import PinikError
 
 __all__ = ["MissingExtraError", "needed_by"]
 
-_INSTALLED_AS = {"PIL": "pillow", "umsgpack": "u-msgpack-python", "collada": "pycollada", "rerun": "rerun-sdk"}
+_INSTALLED_AS = {
+    "PIL": "pillow",
+    "umsgpack": "u-msgpack-python",
+    "collada": "pycollada",
+    "rerun": "rerun-sdk",
+    "fast_simplification": "fast-simplification",
+}
 
 
 class MissingExtraError(PinikError, ImportError):

@@ -21,7 +21,7 @@ from ..files import FileError, read_within
 from .mesh_checks import MOST_BYTES, NOT_FINITE, MeshError, checked
 from .neighbours import Neighbours
 
-__all__ = ["Part", "box", "capsule", "cylinder", "read_file", "scaled", "sphere"]
+__all__ = ["Part", "box", "capsule", "creased", "cylinder", "read_file", "scaled", "sphere"]
 
 Part = tuple[trimesh.Trimesh, Color | None]
 """A mesh, and its own colour if it has one."""
@@ -61,9 +61,19 @@ def scaled(mesh: trimesh.Trimesh, scale: NDArray[np.float64]) -> trimesh.Trimesh
     return copy
 
 
+def creased(mesh: trimesh.Trimesh) -> trimesh.Trimesh:
+    """The mesh with vertices split along sharp edges, so that these stay sharp under smooth shading."""
+    smooth = mesh.face_adjacency[mesh.face_adjacency_angles < CREASE]
+    patch = trimesh.graph.connected_component_labels(smooth, len(mesh.faces))  # type: ignore[no-untyped-call]
+    patches = int(patch.max()) + 1
+    corners = mesh.faces.ravel() * patches + np.repeat(patch, 3)
+    kept, faces = np.unique(corners, return_inverse=True)
+    return trimesh.Trimesh(mesh.vertices[kept // patches], faces.reshape(-1, 3), process=False)
+
+
 @functools.cache
 def _unit_box() -> trimesh.Trimesh:
-    return _creased(trimesh.creation.box(np.ones(3)))
+    return creased(trimesh.creation.box(np.ones(3)))
 
 
 @functools.cache
@@ -74,13 +84,13 @@ def _unit_sphere() -> trimesh.Trimesh:
 
 @functools.cache
 def _unit_cylinder() -> trimesh.Trimesh:
-    return _creased(trimesh.creation.cylinder(1.0, 1.0))
+    return creased(trimesh.creation.cylinder(1.0, 1.0))
 
 
 @functools.cache
 def _unit_capsule() -> trimesh.Trimesh:
     """A capsule of radius 1 and length 2."""
-    return _creased(trimesh.creation.capsule(2.0, 1.0, count=(16, 32)))
+    return creased(trimesh.creation.capsule(2.0, 1.0, count=(16, 32)))
 
 
 def _stretched(unit: trimesh.Trimesh, along: NDArray[np.float64]) -> trimesh.Trimesh:
@@ -187,7 +197,7 @@ def _joined(meshes: Iterable[trimesh.Trimesh], *, keep_normals: bool) -> trimesh
     joined = trimesh.Trimesh(np.vstack(vertices), np.vstack(faces), vertex_normals=np.vstack(normals), process=False)
     if keep_normals and not _is_faceted(joined):
         return joined
-    return _creased(trimesh.Trimesh(joined.vertices, joined.faces))
+    return creased(trimesh.Trimesh(joined.vertices, joined.faces))
 
 
 def _is_faceted(mesh: trimesh.Trimesh) -> bool:
@@ -195,13 +205,3 @@ def _is_faceted(mesh: trimesh.Trimesh) -> bool:
     along = np.einsum("fkc,fc->fk", mesh.vertex_normals[mesh.faces], mesh.face_normals).min(axis=1)
     has_area = mesh.face_normals.any(axis=1)
     return bool((along[has_area] > 1.0 - 1e-3).all())
-
-
-def _creased(mesh: trimesh.Trimesh) -> trimesh.Trimesh:
-    """The mesh with vertices split along sharp edges, so that these stay sharp under smooth shading."""
-    smooth = mesh.face_adjacency[mesh.face_adjacency_angles < CREASE]
-    patch = trimesh.graph.connected_component_labels(smooth, len(mesh.faces))  # type: ignore[no-untyped-call]
-    patches = int(patch.max()) + 1
-    corners = mesh.faces.ravel() * patches + np.repeat(patch, 3)
-    kept, faces = np.unique(corners, return_inverse=True)
-    return trimesh.Trimesh(mesh.vertices[kept // patches], faces.reshape(-1, 3), process=False)

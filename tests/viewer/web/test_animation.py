@@ -17,7 +17,7 @@ from page_fixtures import new_context
 from pinik.viewer.protocol.recording import Recording
 from pinik.viewer.protocol.robot_message import robot_message
 from pinik.viewer.simulation.session import Session
-from pinik.viewer.web import saved_page
+from pinik.viewer.web import document
 from pinik.viewer.web.animation import animation_page
 from pinik.viewer.web.scene import Shapes, make_shapes
 from pinik.viewer.web.show import Show
@@ -25,7 +25,7 @@ from stand_ins import Clock, recorded, small_frame
 
 # A stand-in for the page: like the real one, with a module that writes what it found into the title.
 PLAYER_HTML = """<!DOCTYPE html>
-<html><head><meta charset="utf-8"><title>{{title}}</title><style>{{style}}</style>
+<html><head><meta charset="utf-8"><title>{{title}}</title><style>{{stage.css}}{{style.css}}</style>
 <script type="importmap">{{importmap}}</script>
 <script>{{meshcat}}</script>
 <script type="application/json" id="recording">{{recording}}</script>
@@ -58,7 +58,7 @@ WORDS_JS = """
 // {{title}} and {{recording}} stand in other files' places only; so does </script><!-- <script>.
 export const told = JSON.stringify;
 """
-AWKWARD = "</script><!-- <script>{{style}} & \u2028 ü"
+AWKWARD = "</script><!-- <script>{{style.css}} & \u2028 ü"
 
 
 @pytest.fixture
@@ -153,13 +153,12 @@ def test_the_page_holds_all_that_is_played(two_link, page):
         "frames_per_second": 30,
     }
     assert content(html, "title") == f"{AWKWARD} – pinik"
-    sheets = sorted(page.glob("*.css"))
-    assert content(html, "style") == "".join(sheet.read_text() for sheet in sheets)
+    assert content(html, "style") == "".join((page / name).read_text() for name in ("stage.css", "style.css"))
     modules = json.loads(content(html, "script", type="importmap"))["imports"]
     kind = "data:text/javascript;base64,"
     assert {name: base64.b64decode(url.removeprefix(kind)).decode() for name, url in modules.items()} == {
-        "pinik/player.js": PLAYER_JS,
-        "pinik/words.js": WORDS_JS,
+        "pinik/player.js": f"{PLAYER_JS}\n//# sourceURL=pinik/player.js\n",
+        "pinik/words.js": f"{WORDS_JS}\n//# sourceURL=pinik/words.js\n",
     }
 
 
@@ -172,7 +171,7 @@ def test_nothing_is_left_to_be_fetched(two_link, page):
 def test_meshcats_script_cannot_end_its_element(two_link, page, tmp_path, monkeypatch):
     script = tmp_path / "main.min.js"
     script.write_text('const a = "</SCRIPT><p>", b = "<!--<script>", c = a < b, d = "</div>";', "utf-8")
-    monkeypatch.setattr(saved_page, "meshcat_script", lambda: script)
+    monkeypatch.setattr(document, "meshcat_script", lambda: script)
     hello, robot, state = messages(two_link)
     html = animation_page(hello, robot, Shapes((), (), ()), state, Recording(), page).decode()
     (text,) = [each[2] for each in Scripts(html).found if each[0] == "script" and not each[1]]

@@ -239,7 +239,7 @@ def test_strangers_get_nothing(view):
 
 @pytest.mark.parametrize(
     ("path", "status"),
-    [("/", 200), ("/api/state", 403), ("/api/animation.html", 403), ("/page/main.js", 403), ("/ws", 403)],
+    [("/", 200), ("/api/state", 403), ("/api/animation.html", 403), ("/meshcat/main.min.js", 403), ("/ws", 403)],
 )
 def test_pages_of_other_sites_load_nothing_but_the_page(view, path, status):
     """A browser says which site a request comes from; the page's own policy says which pages may show it in a frame."""

@@ -20,7 +20,15 @@ from urdf_texts import joint, link, robot
 
 
 def decoded(command):
-    """A command as three.js would hold it: message, vertices (n, 3), normals (n, 3), faces (m, 3)."""
+    """A command as three.js would hold it: message, vertices (n, 3), normals (n, 3), faces (m, 3), all in detail."""
+    message, vertices, normals, faces = everything(command)
+    begins = message["object"]["geometries"][0]["userData"]
+    fine, first = begins["fine"] // 3 or len(faces), begins["first"] or len(vertices)
+    return message, vertices[:first], normals[:first], faces[:fine]
+
+
+def everything(command):
+    """The same, with the mesh of few triangles that may follow."""
     message = umsgpack.unpackb(command)
     (geometry,) = message["object"]["geometries"]
     assert geometry["type"] == "BufferGeometry"
@@ -59,6 +67,39 @@ def test_every_triangle_arrives_in_its_links_frame_and_colour(name):
         np.testing.assert_allclose(vertices[faces], corners, atol=1e-6)
         np.testing.assert_allclose(normals[faces], wanted_normals, atol=1e-6)
     assert wanted == {}
+
+
+@pytest.mark.parametrize("name", ["panda", "ur5"])
+def test_a_robot_of_many_triangles_brings_the_same_surface_with_few_of_them(name):
+    fine_count = coarse_count = 0
+    for command in make_shapes(load_quietly(name)).commands:
+        message, vertices, normals, faces = everything(command)
+        begins = message["object"]["geometries"][0]["userData"]
+        assert faces.max() < len(vertices)
+        fine_count += begins["fine"] // 3 or len(faces)
+        coarse = faces[begins["fine"] // 3 :]
+        coarse_count += len(coarse)
+        if not begins["fine"]:
+            continue
+        assert coarse.min() >= begins["first"] > faces[: begins["fine"] // 3].max()
+        np.testing.assert_allclose(np.linalg.norm(normals[begins["first"] :], axis=1), 1.0, atol=1e-5)
+        before = vertices[: begins["first"]]
+        after = vertices[np.unique(coarse)]
+        _, away, _ = trimesh.proximity.closest_point_naive(
+            trimesh.Trimesh(before, faces[: begins["fine"] // 3]), after[::7]
+        )
+        assert away.max() < 0.006  # [m]; both robots are larger than a metre
+        least = 0.05 * np.linalg.norm(np.ptp(before, axis=0))
+        np.testing.assert_allclose(after.min(axis=0), before.min(axis=0), atol=least)
+        np.testing.assert_allclose(after.max(axis=0), before.max(axis=0), atol=least)
+    assert fine_count > 80_000
+    assert coarse_count < 25_000
+
+
+def test_a_robot_of_few_triangles_brings_no_others():
+    for command in make_shapes(load_quietly("arm")).commands:
+        message, *_ = everything(command)
+        assert message["object"]["geometries"][0]["userData"] == {"fine": 0, "first": 0}
 
 
 def boxes(*visuals):

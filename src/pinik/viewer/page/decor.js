@@ -101,9 +101,9 @@ export class Decor {
     }
 
     _hulls(parts) {
-        return parts.map(({ link, geometry }) => {
+        return parts.map(({ link, fine }) => {
             const { joint, placement } = this._message.links[link];
-            const mesh = new THREE.Mesh(geometry, HULL);
+            const mesh = new THREE.Mesh(fine, HULL);
             mesh.position.fromArray(placement);
             mesh.quaternion.fromArray(placement, 3);
             return this._onJoint(joint, mesh);

@@ -33,22 +33,22 @@ export class Extent {
 
 const kept = new WeakMap();
 
-/** The outermost vertices of a geometry: Vector3s, found once and then kept. */
-export function outermost(geometry) {
-    if (!kept.has(geometry)) {
-        const { position } = geometry.attributes;
+/** The outermost vertices of a geometry, from one of them on: Vector3s, found once and then kept. */
+export function outermost(geometry, from = 0) {
+    const { position } = geometry.attributes;
+    if (!kept.has(position)) {
         const points = DIRECTIONS.map(([x, y, z]) => {
-            let [best, most] = [0, -Infinity];
-            for (let k = 0; k < position.count; k++) {
+            let [best, most] = [from, -Infinity];
+            for (let k = from; k < position.count; k++) {
                 const along = x * position.getX(k) + y * position.getY(k) + z * position.getZ(k);
                 if (along > most) [best, most] = [k, along];
             }
             return best;
         });
         kept.set(
-            geometry,
+            position,
             [...new Set(points)].map((k) => new THREE.Vector3().fromBufferAttribute(position, k)),
         );
     }
-    return kept.get(geometry);
+    return kept.get(position);
 }

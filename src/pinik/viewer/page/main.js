@@ -36,6 +36,7 @@ import { Undo } from "pinik/undo.js";
 import { length, microseconds } from "pinik/words.js";
 
 const CHARTS = 100; // [ms] between two drawings of the charts
+const PATIENCE = 1000; // [ms] until the page is shown without robots; as in stage.css
 
 class Page {
     constructor() {
@@ -82,8 +83,8 @@ class Page {
         this._makeCharts();
         this._makeHands();
         this._makeButtons();
+        this._waitForRobots();
         new Keys(shortcuts(this));
-        this.show.onRobots = () => byId("app").classList.remove("starting");
         this.show.stage.onTick((now) => this._tick(now));
         document.addEventListener("visibilitychange", () => this._answer());
     }
@@ -139,6 +140,18 @@ class Page {
             this.answers.fail();
         },
     };
+
+    /** Draw nothing before the robots are there: a processor that draws the page then draws one picture, not twenty. */
+    _waitForRobots() {
+        const { stage } = this.show;
+        stage.held = true;
+        const open = () => {
+            stage.held = false;
+            byId("app").classList.remove("starting");
+        };
+        this.show.onComplete = open;
+        setTimeout(open, PATIENCE);
+    }
 
     _showSettings(state) {
         const parts = [this.controls, this.cards, this.targets, this.joints, this.surroundings, this.lookMenu];

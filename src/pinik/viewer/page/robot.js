@@ -31,11 +31,11 @@ export class Robot {
         for (const part of parts ?? []) {
             const fine = part.material.clone();
             const coarse = quickMaterial(fine);
-            const mesh = new THREE.Mesh(part.geometry, fine);
+            const mesh = new THREE.Mesh(part.fine, fine);
             mesh.castShadow = true;
             this._links[part.link].add(mesh);
             const own = { color: fine.color.clone(), opacity: fine.opacity };
-            this._parts.push({ mesh, fine, coarse, own, link: robot.links[part.link].name });
+            this._parts.push({ mesh, part, fine, coarse, own, link: robot.links[part.link].name });
         }
         this._marks = new LimitMarks(robot);
         this.group.add(...this.joints, this._marks.group);
@@ -64,7 +64,8 @@ export class Robot {
 
     /** Draw in detail, with shadows on itself, or quickly. */
     refine(isFine) {
-        for (const { mesh, fine, coarse } of this._parts) {
+        for (const { mesh, part, fine, coarse } of this._parts) {
+            mesh.geometry = isFine ? part.fine : part.coarse;
             mesh.material = isFine ? fine : coarse;
             mesh.receiveShadow = isFine;
         }
@@ -102,11 +103,9 @@ export class Robot {
         inverse.copy(this.group.matrixWorld).invert();
         const points = this.joints.slice(1).map((joint) => joint.position.clone());
         if (this._skeleton) points.push(...points.map(({ x, y, z }) => new THREE.Vector3(x, y, z - this._skeleton.depth)));
-        for (const link of this._links) {
-            for (const mesh of link.children) {
-                const toRobot = inverse.clone().multiply(mesh.matrixWorld);
-                for (const point of outermost(mesh.geometry)) points.push(point.clone().applyMatrix4(toRobot));
-            }
+        for (const { mesh, part } of this._parts) {
+            const toRobot = inverse.clone().multiply(mesh.matrixWorld);
+            for (const point of outermost(part.coarse, part.first)) points.push(point.clone().applyMatrix4(toRobot));
         }
         return points.length ? points : [new THREE.Vector3()]; // a robot without joints and shapes
     }

@@ -25,16 +25,31 @@ export class Shapes {
         this._viewer.set_property([ROOT], "visible", false);
     }
 
-    /** The parts of a `shapes` or `collisions` message: [{link, geometry, material}]. Every instance copies the material. */
+    /**
+     * The parts of a `shapes` or `collisions` message: [{link, fine, coarse, first, material}] with two geometries and
+     * the first vertex of the coarse one. Every instance copies the material.
+     */
     parts(message) {
         return message.parts.flatMap(({ link, path }) => {
             const found = [];
             this._viewer.scene_tree.find(path.split("/").filter(Boolean)).object.traverse((object) => {
-                if (object.isMesh) found.push({ link, geometry: object.geometry, material: suited(object.material) });
+                if (object.isMesh) found.push({ link, ...levels(object.geometry), material: suited(object.material) });
             });
             return found;
         });
     }
+}
+
+/** A geometry in detail, and with few triangles, whose vertices and indices come last. */
+function levels(geometry) {
+    const { fine, first } = geometry.userData;
+    if (!fine) return { fine: geometry, coarse: geometry, first: 0 };
+    const coarse = new THREE.BufferGeometry();
+    coarse.attributes = geometry.attributes;
+    coarse.setIndex(geometry.index);
+    coarse.setDrawRange(fine, geometry.index.count - fine);
+    geometry.setDrawRange(0, fine);
+    return { fine: geometry, coarse, first };
 }
 
 /**

@@ -162,6 +162,7 @@ export class Show {
             this.frameAll();
         }
         this.stage.touch();
+        if (!this.awaiting) this.onComplete?.();
     }
 
     /** Put the ground at the lowest point of the robot's first pose. */
@@ -230,10 +231,7 @@ export class Show {
     }
 
     _afterDrawing() {
-        if (this.instances.length && this._frame && !this.drawn) {
-            this.drawn = this._parts ? "shapes" : "skeleton";
-            if (!this.awaiting) this.onRobots?.();
-        }
+        if (this.instances.length && this._frame && !this.drawn) this.drawn = this._parts ? "shapes" : "skeleton";
         for (const part of [this._captions, this.look]) part.place();
         this._pointers.place(this._captions.below);
     }

@@ -18,6 +18,8 @@ export class Stage {
         this._last = 0;
         this._idle = 0;
         this._settled = false;
+        /** Whether nothing is to be drawn yet. */
+        this.held = false;
         const { renderer, software } = makeRenderer();
         this._quality = new Quality(software);
         this._setUpViewer(renderer);
@@ -106,6 +108,7 @@ export class Stage {
     _tick(now) {
         requestAnimationFrame((next) => this._tick(next));
         for (const ticker of this._tickers) ticker(now);
+        if (this.held) return;
         if (this.viewer.needs_render) {
             if (!this._settled) this._quality.note(now - this._last);
             this._settled = false;

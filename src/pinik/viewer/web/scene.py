@@ -22,6 +22,7 @@ if TYPE_CHECKING:
 
 __all__ = ["Shapes", "collision_shapes", "make_shapes", "meshcat_script"]
 
+_COARSE = 20_000  # triangles of a whole robot, as a processor without a graphics card draws it
 # dtype → three.js's name, and the msgpack extension type that msgpack-lite gives this typed array.
 _TYPED_ARRAYS = {"<f4": ("Float32Array", 0x17), "<u4": ("Uint32Array", 0x16)}
 
@@ -91,12 +92,13 @@ def _converted(robot: Robot, shapes: Sequence[Shape], warnings: Sequence[str], r
     by_link: dict[str, dict[Color, list[Shape]]] = {}
     for shape in shapes:
         by_link.setdefault(shape.link, {}).setdefault(shape.color, []).append(shape)
+    share = _COARSE / max(1, sum(len(shape.mesh.faces) for shape in shapes))
     parts, commands = [], []
     for index, link in enumerate(robot.description.links):
         for part, (color, same) in enumerate(by_link.get(link, {}).items()):
             path = f"{root}/{index}/{part}"
             parts.append((index, path))
-            commands.append(_set_object(path, *_merged(same), color))
+            commands.append(_set_object(path, *_with_coarse(*_merged(same), share), color))
     return Shapes(tuple(parts), tuple(commands), tuple(warnings))
 
 
@@ -118,7 +120,30 @@ def _merged(shapes: Sequence[Shape]) -> tuple[NDArray[np.float32], NDArray[np.ui
     return rows[first], inverse[np.vstack(faces)].astype("<u4")
 
 
-def _set_object(path: str, vertices: NDArray[np.float32], faces: NDArray[np.uint32], color: Color) -> bytes:
+def _with_coarse(
+    vertices: NDArray[np.float32], faces: NDArray[np.uint32], share: float
+) -> tuple[NDArray[np.float32], NDArray[np.uint32], dict[str, int]]:
+    """Append to a mesh one with about this share of the triangles, for pages that a processor draws.
+
+    Returns:
+        The vertices, the faces, and where the appended ones begin: how many indices are `fine`, and the `first` vertex
+        of the others. If there are few triangles, nothing is appended, and both are 0.
+    """
+    with needed_by("the robot's shape", "live"):
+        from ...shapes.simplified import simplified
+
+    coarse = simplified(vertices[:, :3], faces, share)
+    if coarse is None:
+        return vertices, faces, {"fine": 0, "first": 0}
+    corners = np.hstack([coarse.vertices, coarse.vertex_normals]).astype("<f4")
+    appended = (coarse.faces + len(vertices)).astype("<u4")
+    begins = {"fine": faces.size, "first": len(vertices)}
+    return np.vstack([vertices, corners]), np.vstack([faces, appended]), begins
+
+
+def _set_object(
+    path: str, vertices: NDArray[np.float32], faces: NDArray[np.uint32], begins: dict[str, int], color: Color
+) -> bytes:
     """Return meshcat's command that puts a mesh at `path`, in three.js's object format 4.5."""
     red, green, blue, opacity = (min(max(channel, 0.0), 1.0) for channel in color)
     attributes = {"position": _typed(vertices[:, :3]), "normal": _typed(vertices[:, 3:])}
@@ -126,6 +151,7 @@ def _set_object(path: str, vertices: NDArray[np.float32], faces: NDArray[np.uint
         "uuid": f"{path}/geometry",
         "type": "BufferGeometry",
         "data": {"attributes": attributes, "index": _typed(faces)},
+        "userData": begins,
     }
     material = {
         "uuid": f"{path}/material",
