@@ -9,7 +9,7 @@ export function shortcuts(page) {
     const next = (list, now) => list[(list.indexOf(now) + 1) % list.length];
     const names = (list) => list.map(({ name }) => name);
     const send = (type, fields) => page.connection.send({ type, ...fields });
-    const nudge = (event) => page.nudge.press(event.key, targets.selected, event.shiftKey);
+    const nudge = (event) => page.handles.nudge.press(event.key, targets.selected, event.shiftKey);
     return [
         { keys: [" "], shown: ["Space"], title: "start or stop", act: () => controls.toggleRun() },
         {
