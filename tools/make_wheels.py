@@ -96,13 +96,15 @@ def compare_with_checkout(sdist: Path) -> None:
     """The sdist holds the checkout's files as they are, but for what builds it on a forge, and nothing else."""
     listed = subprocess.run(["git", "ls-files", "-z"], cwd=ROOT, capture_output=True, text=True, check=True).stdout
     tracked = {name for name in listed.split("\0") if name and not name.startswith(".ci/")}
+    held = {}
     with tarfile.open(sdist) as archive:
-        held = {m.name.partition("/")[2]: m for m in archive.getmembers() if m.isfile()}
-        assert set(held) - {"PKG-INFO"} == tracked, sorted(set(held) ^ tracked)
-        for name in tracked:
-            file = archive.extractfile(held[name])
-            assert file is not None
-            assert file.read() == (ROOT / name).read_bytes(), name
+        for member in archive:  # in the archive's order, as every step back would unpack it anew
+            if file := archive.extractfile(member):
+                held[member.name.partition("/")[2]] = file.read()
+    del held["PKG-INFO"]
+    assert set(held) == tracked, sorted(set(held) ^ tracked)
+    differ = [name for name in tracked if held[name] != (ROOT / name).read_bytes()]
+    assert not differ, differ
 
 
 def compare(compiled: Path, pure: Path) -> None:
