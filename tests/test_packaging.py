@@ -66,6 +66,7 @@ def run(*command: object, cwd: Path, **environment: str) -> str:
 @pytest.fixture(scope="module")
 def installed(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A folder into which pinik's wheel was installed, far from the checkout."""
+    need_to_build("the wheel", "scikit-build-core", "hatch-fancy-pypi-readme")
     folder = tmp_path_factory.mktemp("installed")
     pip = (sys.executable, "-m", "pip", "--quiet", "--disable-pip-version-check")
     # The engine would take minutes to compile again; a pure wheel is what a machine without a compiler makes.
@@ -173,7 +174,7 @@ def test_the_wheels_engine_finds_pinocchios_libraries_beside_it_by_its_own_rpath
 
 
 def test_building_writes_nothing_into_a_checkout_that_cannot_be_written(tmp_path):
-    need_to_build("the wheel", "scikit-build-core", "cmake", "ninja")
+    need_to_build("the wheel", "scikit-build-core", "hatch-fancy-pypi-readme", "cmake", "ninja")
     checkout = tmp_path / "checkout"
     for path in tracked_files():
         if path.name in ("pyproject.toml", "README.md", "LICENSE") or "src" in path.relative_to(ROOT).parts:
@@ -229,12 +230,30 @@ def test_an_installed_pinik_is_imported_within_a_few_times_of_what_it_imports(in
     assert whole < 2.5 * needed  # about 1.7
 
 
-def test_the_installed_package_holds_every_file_of_urdf_and_of_the_source(installed):
+def test_the_installed_package_holds_the_files_of_urdf_and_of_the_source_and_no_others(installed):
     pairs = [(ROOT / "urdf", installed / "pinik" / "urdf"), (ROOT / "src" / "pinik", installed / "pinik")]
-    for here, there in pairs:
-        kept = (p for p in here.rglob("*") if p.is_file() and "__pycache__" not in p.parts and p.suffix != ".so")
-        files = {p.relative_to(here) for p in kept}
-        assert [str(file) for file in sorted(files) if not (there / file).is_file()] == []
+    expected = {
+        there / path.relative_to(here)
+        for here, there in pairs
+        for path in here.rglob("*")
+        if path.is_file() and "__pycache__" not in path.parts and path.suffix != ".so"
+    }
+    found = {path for path in (installed / "pinik").rglob("*") if path.is_file() and path.suffix != ".pyc"}
+    assert sorted(map(str, found ^ expected)) == []
+    assert {installed / "pinik" / name for name in ("py.typed", "viewer/page/index.html", "urdf/arm.urdf")} <= found
+    (information,) = installed.glob("pinik-*.dist-info")
+    assert {path.name for path in installed.iterdir()} == {"bin", "pinik", information.name}
+    assert (information / "licenses" / "LICENSE").read_bytes() == (ROOT / "LICENSE").read_bytes()
+
+
+def test_the_packages_page_on_an_index_has_no_link_or_command_that_needs_the_checkout(installed):
+    (information,) = installed.glob("pinik-*.dist-info")
+    page = importlib.metadata.PathDistribution(information).metadata.get_payload()
+    assert page.startswith("# pinik\n")
+    assert "pip install 'pinik[all]'" in page
+    assert "import pinik\n" in page
+    assert re.findall(r"\]\((?!https://)[^)]*\)", page) == []
+    assert re.findall(r"\bmake \w+|pip install '?\.", page) == []
 
 
 def test_the_installed_command_answers(installed, tmp_path):

@@ -21,7 +21,7 @@ ABI = "00d16a990ebe3c40"
 def load() -> Any:
     """Return the compiled module, or a string that says why it cannot be used."""
     if importlib.util.find_spec("pinik._native") is None:
-        return "it was not built when pinik was installed, because no C++ compiler worked"
+        return "it was not built when pinik was installed: no C++ compiler worked, or the wheel was the pure one"
     try:
         from . import _native
     except ImportError as error:

@@ -11,6 +11,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import pinik
+from engines import needs_native
 from hinges import two_hinges
 from pinik import Status, Target, TwoBone
 from robots import load_quietly
@@ -366,6 +367,7 @@ class TestAsAMethod:
             with pytest.raises(pinik.InputError, match=words):
                 ask(two_link, targets, "two_bone")
 
+    @needs_native
     def test_the_compiled_engine_says_that_it_does_not_know_it(self, two_link):
         with pytest.raises(pinik.EngineError, match="'two_bone' is written in Python"):
             two_link.solve("tip", [0.5, 0.1, 0.0], method="two_bone", engine="native")
