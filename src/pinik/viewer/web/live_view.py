@@ -20,6 +20,7 @@ import tornado.ioloop
 from numpy.typing import ArrayLike, NDArray
 
 from ... import errors
+from ...export.live_recording import LiveRecording
 from ...files import write_whole
 from ...picture.camera import Camera
 from ...picture.picture import Picture
@@ -206,6 +207,10 @@ class LiveView:
             OSError: The file cannot be written.
         """
         write_whole(path, self._do(self._show.animation))
+
+    def recording(self) -> LiveRecording:
+        """Return the last 20 seconds as data, which `save_glb` and `save_rrd` of `pinik.export` write as a file."""
+        return self._do(self._show.recorded)
 
     def _do(self, work: Callable[[], T]) -> T:
         """Call `work` in the server's thread, between two steps, and return its result."""
