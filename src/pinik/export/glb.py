@@ -56,11 +56,14 @@ def save_glb(
     Warns:
         UrdfWarning: Some shapes could not be read.
     """
-    write_whole(check_suffix(path, ".glb"), glb_of(scene_of(shown, q, times)))
+    file = check_suffix(path, ".glb")
+    scene = scene_of(shown, q, times)
+    scene.warn()
+    write_whole(file, glb_of(scene))
 
 
 def glb_of(scene: Scene) -> bytes:
-    """The content of a .glb file."""
+    """The content of a .glb file. It may be made in any thread."""
     return _Writer(scene).content()
 
 

@@ -81,14 +81,14 @@ class Document:
         for path, rows, kind in (("translation", positions, "VEC3"), ("rotation", turns, "VEC4")):
             self._parts["nodes"][node][path] = rows[0].tolist()
             if (np.ptp(rows, axis=0) > _STILL).any():
-                sampler = {"input": self._input(times), "output": self._accessor(np.float32(rows), kind)}
+                sampler = {"input": self._input(times), "output": self._accessor(_floats(rows), kind)}
                 self._samplers.append(sampler)
                 target = {"node": node, "path": path}
                 self._channels.append({"sampler": len(self._samplers) - 1, "target": target})
 
     def _input(self, times: Array) -> int:
         """The accessor of these times, which all that moves shares."""
-        when = np.asarray(times, dtype=np.float32)
+        when = _floats(times)
         if when.tobytes() not in self._inputs:
             self._inputs[when.tobytes()] = self._accessor(when, "SCALAR", bounds=True)
         return self._inputs[when.tobytes()]
@@ -104,12 +104,12 @@ class Document:
         primitives = []
         for solid, material in surfaces:
             attributes = {
-                "POSITION": self._accessor(np.float32(solid.vertices), "VEC3", _VERTICES, bounds=True),
-                "NORMAL": self._accessor(np.float32(solid.normals), "VEC3", _VERTICES),
+                "POSITION": self._accessor(_floats(solid.vertices), "VEC3", _VERTICES, bounds=True),
+                "NORMAL": self._accessor(_floats(solid.normals), "VEC3", _VERTICES),
             }
             if corners is not None:
-                attributes["TEXCOORD_0"] = self._accessor(np.float32(corners), "VEC2", _VERTICES)
-            indices = self._accessor(np.uint32(solid.faces).ravel(), "SCALAR", _INDICES)
+                attributes["TEXCOORD_0"] = self._accessor(_floats(corners), "VEC2", _VERTICES)
+            indices = self._accessor(solid.faces.astype(np.uint32).ravel(), "SCALAR", _INDICES)
             primitives.append({"attributes": attributes, "indices": indices, "material": material})
         self._parts["meshes"].append({"name": name, "primitives": primitives})
         return len(self._parts["meshes"]) - 1
@@ -161,3 +161,7 @@ class Document:
         self._parts["bufferViews"].append(view if use is None else view | {"target": use})
         self._buffer += data + bytes(-len(data) % 4)
         return len(self._parts["bufferViews"]) - 1
+
+
+def _floats(values: ArrayLike) -> NDArray[np.float32]:
+    return np.asarray(values, dtype=np.float32)

@@ -38,4 +38,5 @@ def places_of(robot: Robot, frame: str, q: Array, relative_to: str | None = None
 def turned_the_short_way(turns: Array) -> Array:
     """Quaternions (n, 4), each with the sign that makes it the nearer one to that before: q and −q are equal."""
     signs = np.where(np.sum(turns[1:] * turns[:-1], axis=1) < 0.0, -1.0, 1.0)
-    return turns * np.concatenate([[1.0], np.cumprod(signs)])[:, None]
+    turned: Array = turns * np.concatenate([[1.0], np.cumprod(signs)])[:, None]
+    return turned

@@ -48,6 +48,7 @@ def save_rrd(
     """
     file = check_suffix(path, ".rrd")
     scene = scene_of(shown, q, times)
+    scene.warn()
     with tempfile.TemporaryDirectory() as folder:
         draft = Path(folder) / "draft.rrd"
         _record(scene, draft)

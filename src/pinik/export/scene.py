@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import warnings
+import weakref
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
@@ -13,6 +14,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..checks import as_vector
+from ..description.flaw import Flaw
 from ..errors import InputError, UrdfWarning
 from ..extras import needed_by
 from ..model.home import robot_size
@@ -76,26 +78,27 @@ class Scene:
     actors: tuple[Actor, ...]
     balls: tuple[RecordedBall, ...] = ()
 
-    @cached_property
+    @property
     def shapes(self) -> list[Shape]:
         """The robot's visual shapes.
 
         Raises:
             InputError: There are none.
             MissingExtraError: trimesh is not installed.
-
-        Warns:
-            UrdfWarning: Some could not be read.
         """
-        with needed_by("the shapes of a robot", "pictures"):
-            from ..shapes.meshes import load_shapes  # over a second to import
-
-        shapes, faults = load_shapes(self.robot)
-        for fault in faults:
-            warnings.warn(f"{self.robot.name}: {fault}", UrdfWarning, stacklevel=5)
+        shapes, _ = _shapes_of(self.robot)
         if not shapes:
             raise InputError(f"{self.robot.name} has no visual shapes that can be read", argument="shown")
         return shapes
+
+    def warn(self) -> None:
+        """Warn of the shapes that could not be read, in the name of the function that calls its caller.
+
+        Warns:
+            UrdfWarning: For each of them.
+        """
+        for fault in _shapes_of(self.robot)[1]:
+            warnings.warn(f"{self.robot.name}: {fault}", UrdfWarning, stacklevel=3)
 
     @cached_property
     def offsets(self) -> Array:
@@ -138,6 +141,19 @@ class Scene:
             where = self.robot.placements(shape.link, q)
             corners.append((where[:, :3, :3] @ own + where[:, :3, 3:]).swapaxes(1, 2).reshape(-1, 3))
         return np.vstack(corners)
+
+
+_SHAPES: weakref.WeakKeyDictionary[Robot, tuple[list[Shape], list[Flaw]]] = weakref.WeakKeyDictionary()
+
+
+def _shapes_of(robot: Robot) -> tuple[list[Shape], list[Flaw]]:
+    """A robot's shapes, read once, and what could not be read."""
+    if robot not in _SHAPES:
+        with needed_by("the shapes of a robot", "pictures"):
+            from ..shapes.meshes import load_shapes  # over a second to import
+
+        _SHAPES[robot] = load_shapes(robot)
+    return _SHAPES[robot]
 
 
 def scene_of(shown: Shown, q: ArrayLike | None, times: ArrayLike | None) -> Scene:
