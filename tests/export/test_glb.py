@@ -15,6 +15,8 @@ import pinik
 from glb_player import FROM_GLTF, Player, matrix
 from pinik.export.glb import save_glb
 from pinik.export.live_recording import LiveRecording, RecordedBall
+from pinik.export.surfaces import cleaned
+from pinik.picture.solids import Solid
 from pinik.shapes.meshes import load_shapes
 from robots import load_quietly
 from urdf_texts import chain
@@ -116,12 +118,34 @@ def test_colours_are_those_of_the_file_once_light_is_sRGB_again(tmp_path):
     document = Player(tmp_path / "panda.glb").document
     by_name = {mesh.name: document.materials[mesh.primitives[0].material] for mesh in document.meshes}
     for shape in load_shapes(panda)[0]:
-        material = by_name[shape.name]
+        material = by_name[shape.name.replace("/", " ")]
         linear = np.array(material.pbrMetallicRoughness.baseColorFactor)
         srgb = np.where(linear <= 0.0031308, 12.92 * linear, 1.055 * np.maximum(linear, 1e-9) ** (1 / 2.4) - 0.055)
         np.testing.assert_allclose(srgb[:3], shape.color[:3], atol=1e-6)
         assert linear[3] == pytest.approx(shape.color[3])
         assert material.name == "#" + bytes(round(255 * part) for part in shape.color[:3]).hex()
+
+
+def test_every_corner_is_used_and_has_a_unit_normal_as_the_specification_demands(arm, tmp_path):
+    """Though the arm's own meshes have triangles without area."""
+    assert any((np.linalg.norm(shape.mesh.vertex_normals, axis=1) < 0.5).any() for shape in load_shapes(arm)[0])
+    save_glb(arm, tmp_path / "arm.glb")
+    read = Player(tmp_path / "arm.glb")
+    for mesh in read.document.meshes:
+        for primitive in mesh.primitives:
+            normals = read.numbers(primitive.attributes.NORMAL)
+            np.testing.assert_allclose(np.linalg.norm(normals, axis=1), 1.0, atol=1e-5)
+            faces = read.numbers(primitive.indices).ravel()
+            assert set(faces) == set(range(len(normals)))
+
+
+def test_a_corner_without_a_normal_gets_that_of_its_face():
+    corners = np.array([[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 2.0, 0.0], [9.0, 9.0, 9.0], [2.0, 0.0, 0.0]])
+    normals = np.array([[0.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 3.0], [1.0, 0.0, 0.0], [1.0, 0.0, 0.0]])
+    clean = cleaned(Solid(corners, normals, np.array([[0, 1, 2], [0, 1, 4]])))
+    np.testing.assert_array_equal(clean.vertices, corners[:3])
+    np.testing.assert_array_equal(clean.normals, [[0.0, 0.0, 1.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]])
+    np.testing.assert_array_equal(clean.faces, [[0, 1, 2]])
 
 
 # Recordings of a live view
@@ -153,7 +177,7 @@ def test_every_robot_of_a_recording_moves_below_the_name_of_its_method(arm, reco
     for name, q in zip(recorded.names, recorded.q, strict=True):
         for time, now in zip(recorded.times, q, strict=True):
             for link in arm.description.links:
-                found = stage.place(f"{name}/{link}", time, above=name)
+                found = stage.place(f"{name} {link}", time, above=name)
                 np.testing.assert_allclose(found, plain(arm, now, link), atol=1e-6)
     assert stage.duration == pytest.approx(0.4)
 
@@ -175,12 +199,12 @@ def test_each_robot_has_its_balls_that_move(recorded, stage):
     for name in recorded.names:
         for ball in recorded.balls:
             for time, position, turn in zip(recorded.times, ball.positions, ball.quat_xyzw, strict=True):
-                found = stage.place(f"{name}/ball {ball.frame}", time, above=name)
+                found = stage.place(f"{name} ball {ball.frame}", time, above=name)
                 np.testing.assert_allclose(found[:3, 3], position, atol=1e-6)
                 np.testing.assert_allclose(found[:3, :3], matrix(*turn), atol=1e-6)
     meshes = {node.name: stage.document.meshes[node.mesh] for node in stage.document.nodes if node.mesh is not None}
     colors = {
-        name: [stage.document.materials[one.material].name for one in meshes[f"dls/ball {name}"].primitives]
+        name: [stage.document.materials[one.material].name for one in meshes[f"dls ball {name}"].primitives]
         for name in ("tip", "elbow")
     }
     assert colors == {"tip": ["#d81f2f", "#e5484d", "#3d9a50", "#3b7ddd"], "elbow": ["#3c4654"]}
@@ -190,7 +214,7 @@ def test_a_plate_in_front_of_each_robot_says_its_method(arm, recorded, stage):
     document = stage.document
     lowest = min(corners(arm, q[0])[:, 2].min() for q in recorded.q)
     for k, name in enumerate(recorded.names):
-        (node,) = [node for node in document.nodes if node.name == f"{name}/name"]
+        (node,) = [node for node in document.nodes if node.name == f"{name} name"]
         mesh = document.meshes[node.mesh]
         assert mesh.name == recorded.solvers[k].title
         vertices = stage.numbers(mesh.primitives[0].attributes.POSITION)

@@ -17,6 +17,7 @@ from .keys import filled_in, places_of, turned_the_short_way
 from .live_recording import RecordedBall
 from .plate import CORNERS, plate, printed_name
 from .scene import Actor, Scene, Shown, check_suffix, scene_of
+from .surfaces import cleaned
 
 __all__ = ["glb_of", "save_glb"]
 
@@ -40,7 +41,7 @@ def save_glb(
     with others between them where a joint turns farther than 60°; between keys, joints move evenly.
 
     The robots of a live view stand side by side, each below a node with the name of its method, which begins all names
-    below it ("dls/tip"), together with a plate on which the method is written and the balls ("dls/ball tip").
+    below it ("dls tip"), together with a plate on which the method is written and the balls ("dls ball tip").
 
     Args:
         shown: A solution, a track, a self-motion or the `recording()` of a live view; or a robot with `q`.
@@ -73,9 +74,11 @@ class _Writer:
         self._document = Document(scene.robot.name, _AS_IN_GLTF)
         self._shapes: dict[str, list[tuple[str, int, Array]]] = {}
         for shape in scene.shapes:
-            surface = (Solid.of(shape.mesh), self._document.paint(shape.color))
-            mesh = self._document.mesh(shape.name, [surface])
-            self._shapes.setdefault(shape.link, []).append((shape.name, mesh, shape.placement))
+            name = shape.name.replace("/", " ")  # three.js leaves strokes out
+            solid = cleaned(Solid.of(shape.mesh))
+            if len(solid.faces):
+                mesh = self._document.mesh(name, [(solid, self._document.paint(shape.color))])
+                self._shapes.setdefault(shape.link, []).append((name, mesh, shape.placement))
         self._balls = [self._ball(one) for one in scene.balls]
         for actor, offset in zip(scene.actors, scene.offsets, strict=True):
             self._add(actor, offset)
@@ -92,13 +95,13 @@ class _Writer:
         parents = {joint.child: joint.parent for joint in scene.robot.description.joints}
         for link in _from_the_root(parents, scene.robot.description.links):
             parent = parents.get(link)
-            nodes[link] = document.node(actor.own(link), world if parent is None else nodes[parent])
+            nodes[link] = document.node(actor.part(link), world if parent is None else nodes[parent])
             document.move(nodes[link], times - times[0], *places_of(scene.robot, link, q, parent))
             for name, mesh, placement in self._shapes.get(link, ()):
                 at = {} if np.array_equal(placement, np.eye(4)) else {"matrix": placement.T.ravel().tolist()}
-                document.node(actor.own(name), nodes[link], mesh=mesh, **at)
+                document.node(actor.part(name), nodes[link], mesh=mesh, **at)
         for one, mesh in zip(scene.balls, self._balls, strict=True):
-            node = document.node(actor.own(f"ball {one.frame}"), world, mesh=mesh)
+            node = document.node(actor.part(f"ball {one.frame}"), world, mesh=mesh)
             turns = turned_the_short_way(one.quat_xyzw)
             document.move(node, scene.times - scene.times[0], one.positions, turns)
         if actor.title:
@@ -111,7 +114,7 @@ class _Writer:
         height = min(_HIGH * robot_size(self._scene.robot), widest / shape)
         material = self._document.printed(actor.title, picture)
         mesh = self._document.mesh(actor.title, [(plate(shape * height, height), material)], CORNERS)
-        self._document.node(actor.own("name"), world, mesh=mesh, translation=self._scene.plate.tolist())
+        self._document.node(actor.part("name"), world, mesh=mesh, translation=self._scene.plate.tolist())
 
     def _ball(self, one: RecordedBall) -> int:
         """The mesh of a ball, with three arms if it asks for an orientation."""

@@ -57,9 +57,9 @@ class Actor:
     color: str
     q: Array
 
-    def own(self, name: str) -> str:
+    def part(self, name: str) -> str:
         """The name of one of its parts."""
-        return f"{self.name}/{name}" if self.name else name
+        return f"{self.name} {name}" if self.name else name
 
 
 @dataclass(frozen=True, eq=False)

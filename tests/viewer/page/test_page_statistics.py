@@ -233,7 +233,7 @@ def test_the_last_seconds_can_be_saved_as_gltf(open_panel, tmp_path):
     download.value.save_as(tmp_path / "saved.glb")
     played = Player(tmp_path / "saved.glb")
     assert played.duration > 1.0
-    assert {"dls/tip", "ccd/tip", "dls/ball tip"} <= set(played.names)
+    assert {"dls tip", "ccd tip", "dls ball tip"} <= set(played.names)
 
 
 def test_a_page_saved_before_the_first_step_opens_as_well(open_panel, tmp_path):

@@ -367,8 +367,8 @@ def test_a_recording_holds_where_everything_was(arm, tmp_path):
         for name, q in zip(recording.names, seen[step], strict=True):
             pinocchio.framesForwardKinematics(arm.model, data, q)
             there = data.oMf[arm.model.getFrameId("tip")].homogeneous
-            np.testing.assert_allclose(played.place(f"{name}/tip", step / 60, above=name), there, atol=1e-6)
-            at = played.place(f"{name}/ball tip", step / 60, above=name)[:3, 3]
+            np.testing.assert_allclose(played.place(f"{name} tip", step / 60, above=name), there, atol=1e-6)
+            at = played.place(f"{name} ball tip", step / 60, above=name)[:3, 3]
             np.testing.assert_allclose(at, balls[step], atol=1e-6)
 
 

@@ -601,7 +601,7 @@ def test_the_animation_is_a_glb_file_too(view, tmp_path):
     played = Player(tmp_path / "view.glb")
     assert played.duration > 0.3
     for name in (instance["method"] for instance in view.state["instances"][: view.state["view"]]):
-        assert {f"{name}/tip", f"{name}/ball tip", f"{name}/name"} <= set(played.names)
+        assert {f"{name} tip", f"{name} ball tip", f"{name} name"} <= set(played.names)
 
 
 def test_a_robot_without_shapes_has_no_glb_file():
