@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import tempfile
 from pathlib import Path
 from typing import Any
 
 from api_names import check_public_names
 from formulas import with_formulas
 from links import with_links_of_the_site
+from live_pictures import PLAYED, filmed, with_animations
 from lists import with_wide_lists
 from mkdocs.config.defaults import MkDocsConfig
 from mkdocs.structure.files import File, Files
@@ -44,6 +46,10 @@ def on_files(files: Files, config: MkDocsConfig) -> Files:
         "contributing.md": (ROOT / "CONTRIBUTING.md").read_text("utf-8"),
         "notebooks/index.md": notebooks_page(NOTEBOOKS),
     }
+    with tempfile.TemporaryDirectory() as folder:
+        for name, play in PLAYED.items():
+            filmed(play, Path(folder) / name)
+            made[f"live/{name}.html"] = (Path(folder) / name).read_bytes()
     for path in NOTEBOOKS:
         made[f"notebooks/{path.stem}.md"], pictures = notebook_page(path)
         made.update({f"notebooks/{name}": content for name, content in pictures.items()})
@@ -58,4 +64,4 @@ def on_page_markdown(markdown: str, page: Page, config: MkDocsConfig, files: Fil
 
 
 def on_page_content(html: str, **_: Any) -> str:
-    return with_formulas(html)
+    return with_animations(with_formulas(html))

@@ -5,6 +5,7 @@ from __future__ import annotations
 import gc
 import json
 import os
+import re
 import socket
 import subprocess
 import sys
@@ -343,6 +344,16 @@ def test_the_animation_is_written_to_a_file(view, tmp_path):
     view.save_animation(file)
     view.save_animation(str(file))
     assert '<script type="application/json" id="recording"' in file.read_text("utf-8")
+
+
+def test_an_animation_saved_at_once_has_the_robots_shapes(arm, tmp_path):
+    with pinik.live(arm, ["dls"], port=0, running=False) as view:
+        view.save_animation(tmp_path / "arm.html")
+    page = (tmp_path / "arm.html").read_text("utf-8")
+    (recording,) = re.findall(r'<script type="application/json" id="recording">(.*?)</script>', page, re.DOTALL)
+    with_shapes = {link.name for link in arm.description.link_tags if link.visuals}
+    document = json.loads(recording)
+    assert {document["robot"]["links"][part["link"]]["name"] for part in document["shapes"]["parts"]} == with_shapes
 
 
 def test_a_recording_holds_where_everything_was(arm, tmp_path):

@@ -92,7 +92,7 @@ class Show:
     @property
     def _awaits_shapes(self) -> bool:
         """Whether the robot's shapes are still being read, and nobody has asked for anything meanwhile."""
-        return self._waits_for_shapes and self._exhibit.shapes is None
+        return self._waits_for_shapes and self.reads_shapes
 
     # Tabs
 
@@ -300,6 +300,11 @@ class Show:
             "watched": None if self._watched is None else self._watched.state,
             "setup": write_setup(self.session),
         }
+
+    @property
+    def reads_shapes(self) -> bool:
+        """Whether the robot's shapes are still being read."""
+        return self._exhibit.shapes is None
 
     def animation(self) -> bytes:
         """Return the last seconds as one HTML file (UTF-8) that plays without a server."""
