@@ -6,8 +6,8 @@ import io
 import tempfile
 from pathlib import Path
 
-from PIL import Image
 from pages.live_pictures import PLAYED, filmed
+from PIL import Image
 from playwright.sync_api import sync_playwright
 from render import CHROMIUM, FLAGS
 

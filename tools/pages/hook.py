@@ -9,8 +9,8 @@ from typing import Any
 from api_names import check_public_names
 from formulas import with_formulas
 from links import with_links_of_the_site
-from live_pictures import PLAYED, filmed, with_animations
 from lists import with_wide_lists
+from live_pictures import PLAYED, filmed, with_animations
 from mkdocs.config.defaults import MkDocsConfig
 from mkdocs.structure.files import File, Files
 from mkdocs.structure.pages import Page

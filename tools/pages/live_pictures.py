@@ -1,6 +1,6 @@
 """Pictures that move: saved animations of the live view, which play in a page without a server.
 
-In Markdown one is a still picture, and in the site a link around it, which docs/assets/plays.js replaces by the animation.
+In Markdown each is a still picture, and in the site a link around it, in which docs/assets/plays.js plays it.
 `python tools/draw_stills.py` takes the stills.
 """
 
@@ -26,7 +26,7 @@ FAR = (1.1, 0.5, 0.9)  # [m]
 def way_of_the_ball(home: NDArray[np.float64]) -> Iterator[NDArray[np.float64]]:
     """Two laps of a figure eight, then a visit to a place out of reach."""
     for angle in np.linspace(0.0, 4.0 * np.pi, 2 * LAP, endpoint=False):
-        yield home + [0.0, -0.3 * np.sin(angle), 0.15 * np.sin(2.0 * angle)]
+        yield home + np.array([0.0, -0.3 * np.sin(angle), 0.15 * np.sin(2.0 * angle)])
     shares = np.concatenate([np.arange(WAY) / WAY, np.ones(AWAY), 1.0 - np.arange(WAY + 1) / WAY])
     for share in shares:
         yield home + share**2 * (3.0 - 2.0 * share) * (np.array(FAR) - home)
