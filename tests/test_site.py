@@ -295,9 +295,9 @@ def test_who_wants_no_motion_gets_the_still_which_leads_to_the_animation(address
         browser.close()
 
 
-def test_the_methods_behave_as_the_page_says(tmp_path):
+def test_the_methods_behave_as_the_page_says():
     """Seen by plain Pinocchio in what the animation shows."""
-    recording = filmed(PLAYED["methods"], tmp_path / "methods.html")
+    recording = filmed(PLAYED["methods"]).recorded()
     model = recording.robot.model
     data, tip = model.createData(), model.getFrameId("tip")
     (ball,) = recording.balls

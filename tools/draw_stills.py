@@ -22,7 +22,7 @@ def main() -> None:
         page = browser.new_page(viewport=SIZE, color_scheme="light", device_scale_factor=1.5)
         for name, play in PLAYED.items():
             file = Path(folder) / f"{name}.html"
-            filmed(play, file)
+            file.write_bytes(filmed(play).animation())
             page.goto(file.as_uri())
             page.wait_for_function("window.pinik?.player && document.querySelector('#time').value > 1", timeout=120_000)
             page.locator("#play").click()

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import tempfile
 from pathlib import Path
 from typing import Any
 
@@ -46,10 +45,7 @@ def on_files(files: Files, config: MkDocsConfig) -> Files:
         "contributing.md": (ROOT / "CONTRIBUTING.md").read_text("utf-8"),
         "notebooks/index.md": notebooks_page(NOTEBOOKS),
     }
-    with tempfile.TemporaryDirectory() as folder:
-        for name, play in PLAYED.items():
-            filmed(play, Path(folder) / name)
-            made[f"live/{name}.html"] = (Path(folder) / name).read_bytes()
+    made.update({f"live/{name}.html": filmed(play).animation() for name, play in PLAYED.items()})
     for path in NOTEBOOKS:
         made[f"notebooks/{path.stem}.md"], pictures = notebook_page(path)
         made.update({f"notebooks/{name}": content for name, content in pictures.items()})

@@ -8,14 +8,13 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Iterator
-from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
 
 import pinik
-from pinik.export.live_recording import LiveRecording
-from pinik.viewer.web.live_view import LiveView
+from pinik.viewer.simulation.session import Session
+from pinik.viewer.web.show import Show
 
 LAP = 240  # steps of a 60th of a second in which the ball goes round its curve
 WAY = 60  # steps in which it goes out of reach, and back
@@ -32,23 +31,23 @@ def way_of_the_ball(home: NDArray[np.float64]) -> Iterator[NDArray[np.float64]]:
         yield home + share**2 * (3.0 - 2.0 * share) * (np.array(FAR) - home)
 
 
-def play_methods(view: LiveView) -> None:
+def play_methods(show: Show) -> None:
     """Let four arms chase a ball, with one iteration in each step."""
-    view.send("iterations", until_reached=False, at_most=1)
-    for place in way_of_the_ball(np.array(view.state["balls"][0]["position"])):
-        view.move_ball(place)
-        view.send("step")
+    show.do({"type": "iterations", "until_reached": False, "at_most": 1})
+    for place in way_of_the_ball(show.session.balls[0].position):
+        show.do({"type": "ball", "index": 0, "position": place.tolist()})
+        show.do({"type": "step"})
 
 
-def filmed(play: Callable[[LiveView], None], path: Path) -> LiveRecording:
-    """Save what the live view shows meanwhile as a page, and return it."""
-    with pinik.live("arm", ["ccd", "jt", "pinv", "dls"], port=0, running=False, motion="hand") as view:
-        play(view)
-        view.save_animation(path)
-        return view.recording()
+def filmed(play: Callable[[Show], None]) -> Show:
+    """A live view without a server, in which this has happened."""
+    session = Session(pinik.load("arm"), ["ccd", "jt", "pinv", "dls"])
+    show = Show(session, lambda work, then: then(work()), pinik.__version__)
+    play(show)
+    return show
 
 
-PLAYED: dict[str, Callable[[LiveView], None]] = {"methods": play_methods}
+PLAYED: dict[str, Callable[[Show], None]] = {"methods": play_methods}
 """Name → what happens. The still is docs/images/live/NAME.png, and the animation live/NAME.html in the site."""
 
 STILL = re.compile(r'<img alt="(?P<alt>[^"]*)" src="(?P<up>(?:\.\./)*)images/live/(?P<name>\w+)\.png"\s*/?>')
