@@ -212,10 +212,10 @@ def small_frame(
 
 
 def recorded(frames: Iterable[bytes]) -> Recording:
-    """A recording of frames that came at 60 per second."""
+    """A recording of frames without configurations."""
     recording = Recording()
-    for number, frame in enumerate(frames):
-        recording.add(frame, number / 60)
+    for frame in frames:
+        recording.add(frame, [])
     return recording
 
 

@@ -28,7 +28,7 @@ ONLY_THERE = {
     "xacro": {"description.xacro_process"},
     "xacrodoc": {"description.xacro_process"},
     "scipy": set(),
-    "PIL": {"picture.picture"},
+    "PIL": {"picture.picture", "export.plate"},
     "meshcat": set(),  # of meshcat the page takes the JavaScript; the Python package brings IPython and ZeroMQ
     "zmq": set(),
     "tornado": {

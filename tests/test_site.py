@@ -15,10 +15,13 @@ from html.parser import HTMLParser
 from pathlib import Path
 
 import nbformat
+import numpy as np
+import pinocchio
 import pytest
 import write_reference
 from pages.api_names import faults_of_public_names
 from pages.formulas import with_formulas
+from pages.live_pictures import PLAYED, filmed
 from pymdownx.slugs import slugify
 
 import pinik
@@ -148,6 +151,8 @@ def test_at_least_forty_questions_are_answered_and_the_index_has_them_all():
 def test_no_markdown_is_left_in_a_page(site):
     """Lists and formulas that GitHub reads and Python-Markdown does not would show their signs."""
     for page in site.rglob("*.html"):
+        if page.parent.name == "live":  # an animation, which is no Markdown
+            continue
         text = re.sub(r"<(pre|code|script|math)\b.*?</\1>", "", page.read_text("utf-8"), flags=re.DOTALL)
         found = re.search(r"\$|^\s*\* |\*\*|\|---|```", re.sub(r"<[^>]+>", "", text), re.MULTILINE)
         assert found is None, f"{page.name}: {text[found.start() - 60 : found.end() + 60]}"
@@ -240,3 +245,77 @@ def test_a_reader_searches_and_follows_without_another_host(address, scheme):
         assert page.locator("math").count() > 5
         browser.close()
     assert faults.left == []
+
+
+# Animations in the site
+
+
+def test_an_animation_stands_where_its_still_stands_and_is_small(site):
+    page = (site / "methods.html").read_text("utf-8")
+    (still,) = re.findall(r'<a class="plays" href="live/methods\.html"><img alt="[^"]+" src="([^"]+)"', page)
+    assert (site / still).stat().st_size + (site / "live" / "methods.html").stat().st_size < 3_000_000
+
+
+@pytest.mark.parametrize(
+    ("scheme", "width"), [("light", 1280), ("dark", 1280), ("dark", 390)], ids=["light", "dark", "narrow"]
+)
+def test_an_animation_plays_once_it_is_seen_in_the_colours_of_the_site(address, scheme, width):
+    with need_browser().sync_playwright() as playwright:
+        browser = playwright.chromium.launch(executable_path=CHROMIUM, args=FLAGS)
+        other = {"light": "dark", "dark": "light"}[scheme]
+        context = browser.new_context(color_scheme=other, viewport={"width": width, "height": 800})
+        faults = Faults(context)
+        faults.allow(address)
+        page = context.new_page()
+        page.goto(f"http://{address}/methods.html")
+        page.locator("a.plays").scroll_into_view_if_needed()
+        page.locator("a.plays.playing").wait_for()
+        frame = page.frame_locator("a.plays iframe")
+        expect = need_browser().expect
+        expect(frame.locator("#clock")).to_have_text(re.compile(r"[1-9]\.\d s of 13\.0 s"))
+        expect(frame.locator("html")).to_have_attribute("data-theme", other)
+        page.locator("form[data-md-component=palette] label:visible").click()
+        expect(frame.locator("html")).to_have_attribute("data-theme", scheme)
+        assert frame.locator(".chip").count() == 4
+        browser.close()
+    assert faults.left == []
+
+
+def test_who_wants_no_motion_gets_the_still_which_leads_to_the_animation(address):
+    with need_browser().sync_playwright() as playwright:
+        browser = playwright.chromium.launch(executable_path=CHROMIUM, args=FLAGS)
+        page = browser.new_context(reduced_motion="reduce").new_page()
+        page.goto(f"http://{address}/methods.html")
+        page.locator("a.plays").scroll_into_view_if_needed()
+        page.wait_for_timeout(500)
+        assert page.locator("iframe").count() == 0
+        page.locator("a.plays").click()
+        page.wait_for_function("window.pinik?.player")
+        assert page.url.endswith("/live/methods.html")
+        browser.close()
+
+
+def test_the_methods_behave_as_the_page_says():
+    """Seen by plain Pinocchio in what the animation shows."""
+    recording = filmed(PLAYED["methods"]).recorded()
+    model = recording.robot.model
+    data, tip = model.createData(), model.getFrameId("tip")
+    (ball,) = recording.balls
+    errors, speeds = {}, {}
+    for name, q in zip(recording.names, recording.q, strict=True):
+        places = []
+        for one in q:
+            pinocchio.framesForwardKinematics(model, data, one)
+            places.append(data.oMf[tip].translation.copy())
+        errors[name] = np.linalg.norm(np.array(places) - ball.positions, axis=1)
+        speeds[name] = np.abs(np.diff(q, axis=0)).max(axis=1) / np.diff(recording.times)
+    times = recording.times
+    laps, away = (times > 0.5) & (times < 8.0), (times > 10.0) & (times < 12.0)
+    assert times[-1] == pytest.approx(13.0, abs=0.1)
+    assert all(errors[name][laps].max() < 0.0002 for name in ("dls", "pinv"))
+    assert all(0.010 < errors[name][laps].max() < 0.0155 for name in ("ccd", "jt"))
+    for name in ("ccd", "jt", "dls"):
+        np.testing.assert_allclose(errors[name][away], 0.243, atol=0.0015)
+        assert speeds[name][away[1:]].max() < 0.1
+    assert errors["pinv"][away].max() > 0.4
+    assert speeds["pinv"][away[1:]].max() > 5.0

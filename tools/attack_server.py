@@ -595,6 +595,7 @@ ATTACKS: dict[str, tuple[Attack, int]] = {
     "storm": (storm, 3_000),
     "knocks": (knocks, 30_000),
     "animation": (requests("/api/animation.html"), 200),
+    "glb": (requests("/api/animation.glb"), 200),
     "state": (requests("/api/state"), 5_000),
     "files": (requests("/meshcat/main.min.js"), 1_000),
     "stalled": (stalled, 200),

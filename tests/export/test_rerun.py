@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 import pinik
+from pinik.export.live_recording import LiveRecording, RecordedBall
 from pinik.export.rerun import save_rrd
 
 
@@ -17,15 +18,20 @@ def arm():
 @pytest.fixture(scope="module")
 def recorded(arm, tmp_path_factory):
     """(configurations, entity → its record batches)."""
-    from rerun.chunk import RrdReader
-
     q = np.array([arm.random(k) for k in range(4)])
     path = tmp_path_factory.mktemp("rerun") / "arm.rrd"
     save_rrd(arm, path, q, times=[0.0, 0.5, 0.75, 2.0])
+    return q, read(path)
+
+
+def read(path):
+    """Entity → its record batches."""
+    from rerun.chunk import RrdReader
+
     batches: dict[str, list] = {}
     for chunk in RrdReader(str(path)).stream():
         batches.setdefault(str(chunk.entity_path), []).append(chunk.to_record_batch())
-    return q, batches
+    return batches
 
 
 def column(batches, name):
@@ -60,6 +66,30 @@ def test_every_shape_is_a_mesh_with_all_its_triangles(arm, recorded):
     for number, shape in enumerate(load_shapes(arm)[0]):
         (faces,) = column(batches[f"/robot/{shape.link}/{number}"], "Mesh3D:triangle_indices").to_pylist()
         assert len(faces) == len(shape.mesh.faces)
+
+
+def test_a_recording_of_a_live_view_has_every_robot_with_its_ball_and_its_name(arm, tmp_path):
+    q = np.array([[arm.random(10 * i + k) for k in range(3)] for i in range(2)])
+    positions = np.array([[0.5, 0.1 * k, 0.6] for k in range(3)])
+    ball = RecordedBall("tip", positions, np.tile([0.0, 0.0, 0.0, 1.0], (3, 1)), False, True)
+    recording = LiveRecording(arm, (pinik.CCD(), pinik.DampedLeastSquares()), np.array([0.0, 0.1, 0.3]), q, (ball,))
+    save_rrd(recording, tmp_path / "live.rrd")
+    batches = read(tmp_path / "live.rrd")
+    apart = []
+    for name, title, own in zip(("ccd", "dls"), ("Cyclic coordinate descent", "Damped least squares"), q, strict=True):
+        places = [row[0] for row in column(batches[f"/robot/{name}/bone2"], "Transform3D:translation").to_pylist()]
+        np.testing.assert_allclose(places, [arm.placement("bone2", one).translation.copy() for one in own], atol=1e-6)
+        at = batches[f"/robot/{name}/ball\\ tip"]
+        np.testing.assert_allclose(
+            [row[0] for row in column(at, "Transform3D:translation").to_pylist()], positions, atol=1e-6
+        )
+        assert [row.total_seconds() for row in column(at, "time").to_pylist()] == [0.0, 0.1, 0.3]
+        assert column(batches[f"/robot/{name}/name"], "Points3D:labels").to_pylist() == [[title]]
+        angle = [row[0] for row in column(batches[f"/angles/{name}/bone1_x"], "Scalars:scalars").to_pylist()]
+        assert angle == pytest.approx([arm.angles(one)["bone1_x"] for one in own])
+        apart.append(column(batches[f"/robot/{name}"], "Transform3D:translation").to_pylist()[0][0][1])
+    assert apart[0] == pytest.approx(-apart[1])
+    assert apart[0] < -0.1
 
 
 def test_another_ending_is_refused(arm, tmp_path):

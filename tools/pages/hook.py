@@ -9,6 +9,7 @@ from api_names import check_public_names
 from formulas import with_formulas
 from links import with_links_of_the_site
 from lists import with_wide_lists
+from live_pictures import PLAYED, filmed, with_animations
 from mkdocs.config.defaults import MkDocsConfig
 from mkdocs.structure.files import File, Files
 from mkdocs.structure.pages import Page
@@ -44,6 +45,7 @@ def on_files(files: Files, config: MkDocsConfig) -> Files:
         "contributing.md": (ROOT / "CONTRIBUTING.md").read_text("utf-8"),
         "notebooks/index.md": notebooks_page(NOTEBOOKS),
     }
+    made.update({f"live/{name}.html": filmed(play).animation() for name, play in PLAYED.items()})
     for path in NOTEBOOKS:
         made[f"notebooks/{path.stem}.md"], pictures = notebook_page(path)
         made.update({f"notebooks/{name}": content for name, content in pictures.items()})
@@ -58,4 +60,4 @@ def on_page_markdown(markdown: str, page: Page, config: MkDocsConfig, files: Fil
 
 
 def on_page_content(html: str, **_: Any) -> str:
-    return with_formulas(html)
+    return with_animations(with_formulas(html))

@@ -2,23 +2,33 @@
 
 from __future__ import annotations
 
-import json
 import os
-import struct
-from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..files import write_whole
-from ..version import __version__
-from .moving import Moving, Shown, check_suffix, moving
+from ..model.home import robot_size
+from ..picture.arguments import as_color
+from ..picture.draw import BALL, PINNED
+from ..picture.solids import Solid, ball, rod
+from .gltf import Document
+from .keys import filled_in, places_of, turned_the_short_way
+from .live_recording import RecordedBall
+from .plate import CORNERS, plate, printed_name
+from .scene import Actor, Scene, Shown, check_suffix, scene_of
+from .surfaces import cleaned
 
-__all__ = ["save_glb"]
+__all__ = ["glb_of", "save_glb"]
 
-_FLOAT, _UINT = 5126, 5125  # glTF's names of types, and of what a buffer is for
-_VERTICES, _INDICES = 34962, 34963
-_UPRIGHT = [-(0.5**0.5), 0.0, 0.0, 0.5**0.5]  # glTF's y points up, and URDF's z
+Array = NDArray[np.float64]
+
+# In URDF x points forward, y to the left and z up; in glTF z points forward, x to the left and y up.
+_AS_IN_GLTF = (-0.5, -0.5, -0.5, 0.5)
+_AXES = {"x": "#e5484d", "y": "#3d9a50", "z": "#3b7ddd"}  # those of a ball that asks for an orientation
+_ARM, _THIN = 3.4, 0.13  # of a ball's radius: how long and thick they are
+_HIGH = 0.09  # a plate, of the robot's size
+_WIDEST = 0.94  # a plate, of the distance of neighbours
 
 
 def save_glb(
@@ -26,125 +36,105 @@ def save_glb(
 ) -> None:
     """Write a robot with its visual shapes, at one configuration or moving through several, as a .glb file.
 
-    Each link with shapes is a node of that name below the node "robot", and its placement [m] is relative to the
-    robot's base. With several configurations they are the keys of one animation, linear in between.
+    Its root is a node with the robot's name, which faces the viewer. Below it each link is a node of its own name,
+    placed in its parent link [m]. With several configurations they are the keys of one animation that begins at 0 s,
+    with others between them where a joint turns farther than 60°; between keys, joints move evenly.
+
+    The robots of a live view stand side by side, each below a node with the name of its method, which begins all names
+    below it ("dls tip"), together with a plate on which the method is written and the balls ("dls ball tip").
 
     Args:
-        shown: A solution, a track or a self-motion; or a robot with `q`.
+        shown: A solution, a track, a self-motion or the `recording()` of a live view; or a robot with `q`.
         path: The file; its name ends with ".glb".
         q: A configuration (nq,) or several (n, nq) of a robot; neutral when None.
-        times: When it is at each (n,) [s], increasing; those of a track, or 30 a second, when None.
+        times: When it is at each (n,) [s], increasing; those of a track or a recording, or 30 a second, when None.
 
     Raises:
         InputError: An argument has another kind, shape or range, or the robot has no shapes.
-        MissingExtraError: trimesh is not installed.
+        MissingExtraError: trimesh or Pillow is not installed.
         OSError: The file cannot be written.
 
     Warns:
         UrdfWarning: Some shapes could not be read.
     """
-    write_whole(check_suffix(path, ".glb"), _Document(moving(shown, q, times)).content())
+    file = check_suffix(path, ".glb")
+    scene = scene_of(shown, q, times)
+    scene.warn()
+    write_whole(file, glb_of(scene))
 
 
-class _Document:
-    """A glTF document that is being written: its JSON, and the one buffer with all numbers."""
+def glb_of(scene: Scene) -> bytes:
+    """The content of a .glb file. It may be made in any thread."""
+    return _Writer(scene).content()
 
-    def __init__(self, scene: Moving) -> None:
-        self._buffer = bytearray()
-        self._accessors: list[dict[str, Any]] = []
-        self._views: list[dict[str, Any]] = []
-        self._materials: dict[tuple[float, ...], int] = {}
-        self._meshes: list[dict[str, Any]] = []
-        self._nodes: list[dict[str, Any]] = [{"name": "robot", "rotation": _UPRIGHT, "children": []}]
-        self._animation: dict[str, Any] = {"name": "motion", "channels": [], "samplers": []}
-        links = self._shapes(scene)
-        self._move(scene, links)
+
+class _Writer:
+    def __init__(self, scene: Scene) -> None:
+        self._scene = scene
+        self._document = Document(scene.robot.name, _AS_IN_GLTF)
+        self._shapes: dict[str, list[tuple[str, int, Array]]] = {}
+        for shape in scene.shapes:
+            name = shape.name.replace("/", " ")  # three.js leaves strokes out
+            solid = cleaned(Solid.of(shape.mesh))
+            if len(solid.faces):
+                mesh = self._document.mesh(name, [(solid, self._document.paint(shape.color))])
+                self._shapes.setdefault(shape.link, []).append((name, mesh, shape.placement))
+        self._balls = [self._ball(one) for one in scene.balls]
+        for actor, offset in zip(scene.actors, scene.offsets, strict=True):
+            self._add(actor, offset)
 
     def content(self) -> bytes:
-        """The whole file."""
-        document = {
-            "asset": {"version": "2.0", "generator": f"pinik {__version__}"},
-            "scene": 0,
-            "scenes": [{"nodes": [0]}],
-            "nodes": self._nodes,
-            "meshes": self._meshes,
-            "materials": [_material(color) for color in self._materials],
-            "accessors": self._accessors,
-            "bufferViews": self._views,
-            "buffers": [{"byteLength": len(self._buffer)}],
-        }
-        if self._animation["channels"]:
-            document["animations"] = [self._animation]
-        text = json.dumps(document, separators=(",", ":")).encode()
-        text += b" " * (-len(text) % 4)
-        head = struct.pack("<4sIII4s", b"glTF", 2, 28 + len(text) + len(self._buffer), len(text), b"JSON")
-        return head + text + struct.pack("<I4s", len(self._buffer), b"BIN\0") + bytes(self._buffer)
+        return self._document.content()
 
-    def _shapes(self, scene: Moving) -> dict[str, int]:
-        """Link → its node, for all links with shapes."""
-        links: dict[str, int] = {}
-        for shape in scene.shapes():
-            if shape.link not in links:
-                links[shape.link] = self._node({"name": shape.link, "children": []}, parent=0)
-            vertices, normals = (
-                np.asarray(rows, dtype=np.float32) for rows in (shape.mesh.vertices, shape.mesh.vertex_normals)
-            )
-            primitive = {
-                "attributes": {
-                    "POSITION": self._accessor(vertices, "VEC3", _VERTICES, bounds=True),
-                    "NORMAL": self._accessor(normals, "VEC3", _VERTICES),
-                },
-                "indices": self._accessor(np.uint32(shape.mesh.faces).ravel(), "SCALAR", _INDICES),
-                "material": self._materials.setdefault(tuple(shape.color), len(self._materials)),
-            }
-            self._meshes.append({"primitives": [primitive]})
-            matrix = shape.placement.T.ravel().tolist()
-            mesh = len(self._meshes) - 1
-            self._node({"name": shape.name, "mesh": mesh, "matrix": matrix}, parent=links[shape.link])
-        return links
+    def _add(self, actor: Actor, offset: Array) -> None:
+        """Add a robot, its balls, and its name if it has one."""
+        document, scene = self._document, self._scene
+        world = document.node(actor.name, document.root, translation=offset.tolist()) if actor.name else document.root
+        q, times = filled_in(scene.robot, actor.q, scene.times)
+        nodes: dict[str, int] = {}
+        parents = {joint.child: joint.parent for joint in scene.robot.description.joints}
+        for link in _from_the_root(parents, scene.robot.description.links):
+            parent = parents.get(link)
+            nodes[link] = document.node(actor.part(link), world if parent is None else nodes[parent])
+            document.move(nodes[link], times - times[0], *places_of(scene.robot, link, q, parent))
+            for name, mesh, placement in self._shapes.get(link, ()):
+                at = {} if np.array_equal(placement, np.eye(4)) else {"matrix": placement.T.ravel().tolist()}
+                document.node(actor.part(name), nodes[link], mesh=mesh, **at)
+        for one, mesh in zip(scene.balls, self._balls, strict=True):
+            node = document.node(actor.part(f"ball {one.frame}"), world, mesh=mesh)
+            turns = turned_the_short_way(one.quat_xyzw)
+            document.move(node, scene.times - scene.times[0], one.positions, turns)
+        if actor.title:
+            self._name(actor, world)
 
-    def _node(self, node: dict[str, Any], parent: int) -> int:
-        self._nodes.append(node)
-        self._nodes[parent]["children"].append(len(self._nodes) - 1)
-        return len(self._nodes) - 1
+    def _name(self, actor: Actor, world: int) -> None:
+        picture, shape = printed_name(actor.title, actor.color)
+        offsets = self._scene.offsets[:, 1]
+        widest = _WIDEST * (offsets[1] - offsets[0]) if len(offsets) > 1 else np.inf
+        height = min(_HIGH * robot_size(self._scene.robot), widest / shape)
+        material = self._document.printed(actor.title, picture)
+        mesh = self._document.mesh(actor.title, [(plate(shape * height, height), material)], CORNERS)
+        self._document.node(actor.part("name"), world, mesh=mesh, translation=self._scene.plate.tolist())
 
-    def _move(self, scene: Moving, links: dict[str, int]) -> None:
-        """Each link where it is first, and its keys if there are several."""
-        count = len(scene.q)
-        keys = self._accessor(np.asarray(scene.times, dtype=np.float32), "SCALAR", bounds=True) if count > 1 else None
-        for link, node in links.items():
-            places, turns = scene.places(link)
-            self._nodes[node] |= {"translation": places[0].tolist(), "rotation": turns[0].tolist()}
-            if keys is not None:
-                for name, values, kind in (("translation", places, "VEC3"), ("rotation", turns, "VEC4")):
-                    sampler = {"input": keys, "output": self._accessor(np.asarray(values, dtype=np.float32), kind)}
-                    self._animation["samplers"].append(sampler)
-                    target = {"node": node, "path": name}
-                    number = len(self._animation["samplers"]) - 1
-                    self._animation["channels"].append({"sampler": number, "target": target})
-
-    def _accessor(self, values: NDArray[Any], kind: str, use: int | None = None, bounds: bool = False) -> int:
-        """Append numbers to the buffer, whose entries all have four bytes."""
-        view = {"buffer": 0, "byteOffset": len(self._buffer), "byteLength": values.nbytes}
-        self._views.append(view if use is None else view | {"target": use})
-        self._buffer += np.ascontiguousarray(values).tobytes()
-        accessor: dict[str, Any] = {
-            "bufferView": len(self._views) - 1,
-            "componentType": _UINT if values.dtype == np.uint32 else _FLOAT,
-            "count": len(values),
-            "type": kind,
-        }
-        if bounds:
-            rows = values.reshape(len(values), -1)
-            accessor |= {"min": rows.min(axis=0).tolist(), "max": rows.max(axis=0).tolist()}
-        self._accessors.append(accessor)
-        return len(self._accessors) - 1
+    def _ball(self, one: RecordedBall) -> int:
+        """The mesh of a ball, with three arms if it asks for an orientation."""
+        radius = self._scene.ball_radius
+        skin = self._document.paint((*as_color(PINNED if one.pinned else BALL, "color"), 1.0), 0.3, 0.0)
+        surfaces = [(ball(np.zeros(3), radius), skin)]
+        if one.oriented:
+            for along, color in zip(np.eye(3), _AXES.values(), strict=True):
+                arm = rod(np.zeros(3), _ARM * radius * along, _THIN * radius, _THIN * radius)
+                surfaces.append((arm, self._document.paint((*as_color(color, "color"), 1.0))))
+        return self._document.mesh("ball", surfaces)
 
 
-def _material(color: tuple[float, ...]) -> dict[str, Any]:
-    """A matt material. Colours of URDF are sRGB, and glTF's factors are linear."""
-    *rgb, opacity = np.clip(color, 0.0, 1.0).tolist()
-    linear = [c / 12.92 if c <= 0.04045 else ((c + 0.055) / 1.055) ** 2.4 for c in rgb]
-    look = {"baseColorFactor": [*linear, opacity], "metallicFactor": 0.0, "roughnessFactor": 0.7}
-    material: dict[str, Any] = {"pbrMetallicRoughness": look, "doubleSided": True}
-    return material | ({"alphaMode": "BLEND"} if opacity < 1.0 else {})
+def _from_the_root(parents: dict[str, str], links: tuple[str, ...]) -> list[str]:
+    """All links, each after its parent."""
+    children: dict[str, list[str]] = {}
+    for link in links:
+        if link in parents:
+            children.setdefault(parents[link], []).append(link)
+    found = [link for link in links if link not in parents]
+    for link in found:  # which grows meanwhile
+        found += children.get(link, ())
+    return found

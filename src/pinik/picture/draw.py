@@ -30,11 +30,11 @@ from .poses import Answer, Drawable, Pose, links_of, poses_of, whose
 from .render import render
 from .solids import ball
 
-__all__ = ["BALL", "ball_radius", "draw"]
+__all__ = ["BALL", "PINNED", "ball_radius", "draw"]
 
 Array = NDArray[np.float64]
 
-BALL = "#d81f2f"
+BALL, PINNED = "#d81f2f", "#3c4654"  # the colours of balls, and of those that no motion moves
 _TINT = 0.75  # the share of a tint in a colour
 _TOUCHING, _RED = np.array([0.87, 0.04, 0.07]), 0.93  # the tint of links that touch something, and its share
 _LENS = float(np.tan(np.deg2rad(26.0) / 2))

@@ -13,6 +13,7 @@ import pytest
 from PIL import Image
 
 from desk import METHODS
+from glb_player import Player
 
 COLUMNS = ["mean-time", "mean-iterations", "efficiency", "mean-error", "largest-jump"]
 UNITS = {"ms": 1e-3, "µs": 1e-6, "%": 0.01, "m": 1.0, "cm": 0.01, "mm": 0.001, "°": np.pi / 180, "": 1.0}
@@ -222,6 +223,17 @@ def test_the_saved_animation_plays_without_a_server(open_panel, tmp_path):
     desk.page.locator("#time").fill("0")
     desk.expect(clock).to_contain_text("0.0 s of")
     assert stopped.split(" of ")[1] == clock.inner_text().split(" of ")[1]
+
+
+def test_the_last_seconds_can_be_saved_as_gltf(open_panel, tmp_path):
+    desk = open_panel(methods=("dls", "ccd"), motion="curve", running=True)
+    desk.until(lambda s: s["step"] > 90)
+    with desk.page.expect_download() as download:
+        desk.click("save-glb")
+    download.value.save_as(tmp_path / "saved.glb")
+    played = Player(tmp_path / "saved.glb")
+    assert played.duration > 1.0
+    assert {"dls tip", "ccd tip", "dls ball tip"} <= set(played.names)
 
 
 def test_a_page_saved_before_the_first_step_opens_as_well(open_panel, tmp_path):

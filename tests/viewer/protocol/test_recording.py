@@ -1,11 +1,14 @@
-"""A recording keeps the last 20 seconds, at most 30 frames per second."""
+"""A recording keeps the last 20 seconds of a session's own time, in 30 frames per second."""
 
 from __future__ import annotations
 
 import struct
 
+import numpy as np
 import pytest
 
+from pinik.viewer.protocol.packing import InstanceBlock, pack_frame
+from pinik.viewer.protocol.recording import Recording
 from stand_ins import recorded, small_frame
 
 
@@ -27,6 +30,35 @@ def test_twenty_seconds_are_kept_and_no_more():
     assert steps(recording) == list(range(60, 60 * 21, 2))
 
 
+def test_its_time_is_that_of_the_steps():
+    recording = recorded(small_frame(k) for k in (100, 102, 103, 107, 108, 109))
+    assert steps(recording) == [100, 102, 107, 109]
+    np.testing.assert_allclose(recording.times, [0.0, 2 / 60, 7 / 60, 9 / 60])
+
+
+def test_after_a_reset_time_goes_on():
+    recording = recorded(small_frame(k) for k in (50, 52, 0, 1, 2, 4))
+    assert steps(recording) == [50, 52, 0, 2, 4]
+    np.testing.assert_allclose(recording.times, np.arange(5) / 30)
+
+
+def test_steps_that_are_missing_take_their_time_too():
+    recording = recorded(small_frame(10 * k) for k in range(200))
+    assert steps(recording) == list(range(800, 2000, 10))
+    assert recording.times[-1] == pytest.approx(1190 / 60)
+
+
+def test_configurations_and_balls_are_those_of_the_frames():
+    recording = Recording()
+    rng = np.random.default_rng(3)
+    q, balls = rng.uniform(-1.0, 1.0, (2, 5, 4)), rng.uniform(-1.0, 1.0, (3, 5, 7))
+    block = InstanceBlock(np.zeros(8), np.ones((2, 7)), np.ones(2), np.ones((3, 3)))
+    for k in range(5):
+        recording.add(pack_frame(1, 2 * k, balls[:, k], [block, block]), list(q[:, k]))
+    np.testing.assert_array_equal(recording.q, q)
+    np.testing.assert_allclose(recording.balls, balls, atol=1e-7)
+
+
 @pytest.mark.parametrize(
     "change",
     [{"generation": 2}, {"instances": 4}, {"joints": 3}, {"balls": 2}, {"instances": 2, "generation": 2}],
@@ -43,5 +75,5 @@ def test_what_was_cleared_is_gone_and_the_next_frame_kept():
     recording = recorded(small_frame(k) for k in range(3))
     recording.clear()
     assert (len(recording), recording.frames, recording.frame_bytes) == (0, b"", 0)
-    recording.add(small_frame(3), 1.0)
+    recording.add(small_frame(3), [])
     assert steps(recording) == [3]

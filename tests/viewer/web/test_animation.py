@@ -249,6 +249,31 @@ def test_a_saved_session_plays_without_a_server(saved, tab):
     assert len(tab.locator("#canvas canvas").screenshot()) > 10_000  # a PNG of one colour would be smaller
 
 
+def test_the_camera_sees_from_the_beginning_where_everything_will_be(two_link, tmp_path, tab):
+    session = Session(two_link, view=2)
+    show = Show(session, later=lambda work, then: then(work()), clock=Clock())
+    for step in range(120):
+        session.move_ball(0, [0.2, 0.01 * step, 0.4])  # out of reach in the end
+        show.do({"type": "step"})
+    file = tmp_path / "away.html"
+    file.write_bytes(show.animation())
+    tab.goto(file.as_uri())
+    tab.locator("#play").click()
+    seen = "() => pinik.player._show.ballsOnScreen().map(({ at }) => [at.x, at.y])"
+    camera = "() => pinik.player._show.stage.viewer.camera.position.toArray()"
+    where = []
+    for at in ("0", "59"):
+        tab.locator("#time").fill(at)
+        tab.wait_for_timeout(1500)  # so that the camera could follow
+        where.append(tab.evaluate(camera))
+    box = tab.locator("#canvas").bounding_box()
+    for x, y in tab.evaluate(seen):
+        assert 0 < x < box["width"]
+        assert 0 < y < box["height"]
+    assert where[0] == pytest.approx(where[1])
+    assert tab.faults == []
+
+
 # The test decides when the browser draws and which time it gives to the page.
 CLOCK = """
 let waiting = [];

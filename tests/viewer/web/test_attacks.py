@@ -181,6 +181,14 @@ def test_too_many_requests_are_refused_in_words(view, monkeypatch):
     assert "Too many requests from this address" in answer
 
 
+def test_many_who_want_gltf_leave_the_good_client_in_peace(view):
+    for _ in range(1300):
+        view.send("step")
+    view.send("run", on=True)
+    answer = attack(view, attack_server.requests("/api/animation.glb"), 40)
+    assert "'200'" in answer
+
+
 def test_a_crowd_of_addresses_shares_one_budget(view, monkeypatch):
     monkeypatch.setattr(guests, "_ALL_REQUESTS_AT_ONCE", 20.0)
     monkeypatch.setattr(guests, "_ALL_REQUESTS_PER_SECOND", 20.0)

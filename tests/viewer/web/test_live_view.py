@@ -5,6 +5,7 @@ from __future__ import annotations
 import gc
 import json
 import os
+import re
 import socket
 import subprocess
 import sys
@@ -15,11 +16,14 @@ import urllib.request
 from dataclasses import dataclass
 
 import numpy as np
+import pinocchio
 import pytest
 
 import pinik
 from by_hand import two_hinges
+from glb_player import Player
 from judge import is_inside, plain_placement
+from pinik.export.glb import save_glb
 from pinik.viewer.web import live_view as live_view_module
 from robots import load_quietly
 from stand_ins import PATIENCE
@@ -340,6 +344,70 @@ def test_the_animation_is_written_to_a_file(view, tmp_path):
     view.save_animation(file)
     view.save_animation(str(file))
     assert '<script type="application/json" id="recording"' in file.read_text("utf-8")
+
+
+def test_an_animation_saved_at_once_has_the_robots_shapes(arm, tmp_path):
+    with pinik.live(arm, ["dls"], port=0, running=False) as view:
+        view.save_animation(tmp_path / "arm.html")
+    page = (tmp_path / "arm.html").read_text("utf-8")
+    (recording,) = re.findall(r'<script type="application/json" id="recording">(.*?)</script>', page, re.DOTALL)
+    with_shapes = {link.name for link in arm.description.link_tags if link.visuals}
+    document = json.loads(recording)
+    assert {document["robot"]["links"][part["link"]]["name"] for part in document["shapes"]["parts"]} == with_shapes
+
+
+def test_a_recording_holds_where_everything_was(arm, tmp_path):
+    with pinik.live(arm, ["ccd", "dls"], port=0, motion="curve", running=False) as view:
+        seen, balls = [view.configurations], [view.state["balls"][0]["position"]]
+        for _ in range(60):
+            view.send("step")
+            seen.append(view.configurations)
+            balls.append(view.state["balls"][0]["position"])
+        recording = view.recording()
+    np.testing.assert_allclose(recording.times, np.arange(31) / 30)
+    np.testing.assert_array_equal(recording.q, np.array(seen[::2]).swapaxes(0, 1))
+    assert (recording.names, recording.robot) == (["ccd", "dls"], arm)
+    (ball,) = recording.balls
+    assert (ball.frame, ball.pinned, ball.oriented) == ("tip", False, False)
+    np.testing.assert_allclose(ball.positions, balls[::2], atol=1e-6)
+    assert np.ptp(ball.positions, axis=0).max() > 0.05
+    save_glb(recording, tmp_path / "view.glb")
+    played = Player(tmp_path / "view.glb")
+    data = arm.model.createData()
+    for step in (0, 40, 60):
+        for name, q in zip(recording.names, seen[step], strict=True):
+            pinocchio.framesForwardKinematics(arm.model, data, q)
+            there = data.oMf[arm.model.getFrameId("tip")].homogeneous
+            np.testing.assert_allclose(played.place(f"{name} tip", step / 60, above=name), there, atol=1e-6)
+            at = played.place(f"{name} ball tip", step / 60, above=name)[:3, 3]
+            np.testing.assert_allclose(at, balls[step], atol=1e-6)
+
+
+def test_twenty_seconds_last_twenty_seconds(arm):
+    with pinik.live(arm, ["dls"], port=0, motion="curve", running=False) as view:
+        for _ in range(1300):
+            view.send("step")
+        recording = view.recording()
+    assert len(recording.times) == 600
+    np.testing.assert_allclose(np.diff(recording.times), 1 / 30)
+    assert recording.q.shape == (1, 600, arm.model.nq)
+
+
+def test_a_view_that_took_no_step_has_recorded_where_it_begins(arm):
+    with pinik.live(arm, ["dls"], port=0, running=False) as view:
+        recording = view.recording()
+        np.testing.assert_array_equal(recording.q, [[view.configurations[0]]])
+    assert recording.times.tolist() == [0.0]
+
+
+def test_balls_that_are_off_are_not_recorded_and_pinned_ones_are_told(arm):
+    with pinik.live(arm, ["dls"], port=0, running=False) as view:
+        for frame in ("bone1", "bone2"):
+            view.send("add_effector", frame=frame)
+        view.send("effector", index=1, mode="pinned")
+        view.send("effector", index=2, mode="off")
+        recording = view.recording()
+    assert [(ball.frame, ball.pinned) for ball in recording.balls] == [("tip", False), ("bone1", True)]
 
 
 def test_no_browser_is_no_error(view, monkeypatch):

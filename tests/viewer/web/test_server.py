@@ -23,8 +23,10 @@ import tornado.httpclient
 import tornado.websocket
 
 import pinik
+from glb_player import Player
 from judge import plain_placement
 from stand_ins import GOOD, PATIENCE, kind, no_number, read_frame
+from urdf_texts import chain
 
 ROUTES = ["/", "/meshcat/main.min.js", "/ws", "/api/state", "/api/statistics.csv"]
 ROUTES += ["/api/animation.html"]
@@ -590,3 +592,22 @@ def test_the_animation_is_a_page_to_keep(view):
     content = json.loads(document[1])
     assert content["frame_bytes"] > 0
     assert content["state"]["robot"] == "arm"
+
+
+def test_the_animation_is_a_glb_file_too(view, tmp_path):
+    for _ in range(20):
+        view.send("step")
+    status, headers, body = get(view, "/api/animation.glb")
+    assert (status, headers["Content-Type"]) == (200, "model/gltf-binary")
+    assert headers["Content-Disposition"] == 'attachment; filename="pinik-animation.glb"'
+    (tmp_path / "view.glb").write_bytes(body)
+    played = Player(tmp_path / "view.glb")
+    assert played.duration > 0.3
+    for name in (instance["method"] for instance in view.state["instances"][: view.state["view"]]):
+        assert {f"{name} tip", f"{name} ball tip", f"{name} name"} <= set(played.names)
+
+
+def test_a_robot_without_shapes_has_no_glb_file():
+    with pinik.live(pinik.load(chain(3, "revolute")), port=0, running=False) as bare:
+        status, _, body = get(bare, "/api/animation.glb")
+    assert (status, body) == (404, b"404 The robot has no shapes that can be read\n")

@@ -153,7 +153,9 @@ export class Controls {
             .closest(".field")
             .classList.toggle("faint", state.motion !== "curve");
         this._showRun(state);
-        byId("save-animation").download = `pinik-${state.robot.replace(/[^\w-]+/g, "_")}.html`;
+        const file = `pinik-${state.robot.replace(/[^\w-]+/g, "_")}`;
+        byId("save-animation").download = `${file}.html`;
+        byId("save-glb").download = `${file}.glb`;
     }
 
     _showRun({ running, steps_per_second: rate }) {

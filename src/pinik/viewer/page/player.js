@@ -6,6 +6,7 @@ import { Show } from "pinik/show.js";
 import { Theme } from "pinik/theme.js";
 import { inflated, pieces, unpackedFrames } from "pinik/unpack.js";
 
+const SAMPLES = 60; // number of frames that the camera is set up for
 const TAIL = 90; // number of earlier frames that a trail shows
 
 class Player {
@@ -25,6 +26,7 @@ class Player {
         this._show.setState(recording.state);
         for (const command of recording.commands) this._show.command(command);
         this._show.setShapes(recording.shapes);
+        this._show.foresee(this._sampled());
         this._bind();
         this._play(this._count > 1);
         this._show.stage.onTick((now) => this._tick(now));
@@ -59,6 +61,14 @@ class Player {
 
     _frame(k) {
         return this._frames.slice(k * this._size, (k + 1) * this._size);
+    }
+
+    /** Frames from the first to the last one, a few. */
+    _sampled() {
+        const count = Math.min(this._count, SAMPLES);
+        return Array.from({ length: count }, (_, k) =>
+            this._frame(Math.round((k * (this._count - 1)) / Math.max(1, count - 1))),
+        );
     }
 
     _tick(now) {

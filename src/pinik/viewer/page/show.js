@@ -270,6 +270,16 @@ export class Show {
         for (const instance of this.instances) instance.addToTrails(frame);
     }
 
+    /** Look from the beginning at all that these frames show, so that the camera need not follow. */
+    foresee(buffers) {
+        for (const frame of buffers.map((buffer) => new Frame(buffer)).filter((one) => this._fits(one))) {
+            this._draw(frame);
+            this._sight.remember();
+        }
+        this.clearTrails();
+        this.frameAll(false);
+    }
+
     clearTrails() {
         for (const instance of this.instances) instance.clearTrails();
     }

@@ -23,6 +23,29 @@ export class Sight {
         this._extent.clear();
     }
 
+    /** Keep in the picture where robots and balls are now. */
+    remember() {
+        this._visit();
+        this._extent.add(this._balls());
+    }
+
+    _visit() {
+        this._extent.add(this._show.instances.flatMap((instance) => instance.robot.corners()));
+    }
+
+    /** The outermost points of the balls and their rings, in an instance's own world. */
+    _balls() {
+        const { balls, state, ballRadius } = this._show;
+        return state.balls.flatMap(({ mode }, k) => {
+            const position = balls.places[k]?.position;
+            if (mode === "off" || !position) return [];
+            return Array.from({ length: 6 }, (_, way) => {
+                const out = (way < 3 ? 1 : -1) * HALO * ballRadius;
+                return position.clone().setComponent(way % 3, position.getComponent(way % 3) + out);
+            });
+        });
+    }
+
     /** Look at everything as soon as nothing is being dragged. */
     ask() {
         this._pending = true;
@@ -82,18 +105,10 @@ export class Sight {
 
     /** The points of an instance that should be seen, in its own world. */
     _points() {
-        const { instances, balls, state, ballRadius } = this._show;
-        this._extent.add(instances.flatMap((instance) => instance.robot.corners()));
-        const points = [...this._extent.points, ...this._show.also];
-        state.balls.forEach((ball, k) => {
-            const position = balls.places[k]?.position;
-            if (ball.mode === "off" || !position) return;
-            for (let way = 0; way < 6; way++) {
-                const out = (way < 3 ? 1 : -1) * HALO * ballRadius;
-                points.push(position.clone().setComponent(way % 3, position.getComponent(way % 3) + out));
-            }
-            points.push(...sparse(ball.curve));
-        });
+        const { state, also } = this._show;
+        this._visit();
+        const points = [...this._extent.points, ...also, ...this._balls()];
+        for (const { mode, curve } of state.balls) if (mode !== "off") points.push(...sparse(curve));
         for (const obstacle of state.obstacles ?? []) points.push(...cornersOf(obstacle));
         return points;
     }

@@ -9,11 +9,17 @@ export class Theme extends EventTarget {
         this.choice = remembered();
         this._system = matchMedia("(prefers-color-scheme: dark)");
         this._system.addEventListener("change", () => this._apply());
+        addEventListener("storage", ({ key }) => key === KEY && this._remember()); // chosen in another tab, or around
         this._apply();
     }
 
     get dark() {
         return this.choice === "dark" || (this.choice === "system" && this._system.matches);
+    }
+
+    _remember() {
+        this.choice = remembered();
+        this._apply();
     }
 
     /** Switch to the next of system, light and dark. */

@@ -10,6 +10,7 @@ import os
 import secrets
 import socket
 import threading
+import time
 import webbrowser
 from collections.abc import Callable
 from concurrent.futures import Future, ThreadPoolExecutor
@@ -20,6 +21,7 @@ import tornado.ioloop
 from numpy.typing import ArrayLike, NDArray
 
 from ... import errors
+from ...export.live_recording import LiveRecording
 from ...files import write_whole
 from ...picture.camera import Camera
 from ...picture.picture import Picture
@@ -39,6 +41,8 @@ from .watch import SECONDS
 __all__ = ["LiveView"]
 
 T = TypeVar("T")
+
+_SHORT = 0.05  # [s]
 
 
 class LiveView:
@@ -202,10 +206,18 @@ class LiveView:
     def save_animation(self, path: str | os.PathLike[str]) -> None:
         """Write the last 20 seconds as one HTML file, whole or not at all, that plays without a server.
 
+        Just after the start it waits until the robot's shapes are read.
+
         Raises:
             OSError: The file cannot be written.
         """
+        while self._do(lambda: self._show.reads_shapes):
+            time.sleep(_SHORT)
         write_whole(path, self._do(self._show.animation))
+
+    def recording(self) -> LiveRecording:
+        """Return the last 20 seconds as data, which `save_glb` and `save_rrd` of `pinik.export` write as a file."""
+        return self._do(self._show.recorded)
 
     def _do(self, work: Callable[[], T]) -> T:
         """Call `work` in the server's thread, between two steps, and return its result."""

@@ -17,7 +17,7 @@ from ...model.home import home_configuration
 from ...picture.arguments import checked_size, view_direction
 from ...picture.bodies import bodies_of
 from ...picture.camera import Camera, facing, look_from
-from ...picture.draw import BALL, ball_radius, draw
+from ...picture.draw import BALL, PINNED, ball_radius, draw
 from ...picture.picture import Picture
 from ...robot import Robot
 
@@ -27,7 +27,6 @@ Array = NDArray[np.float64]
 
 _HEIGHT = 640  # pixels of the frame
 _SIZE = (720, 360)  # of the picture
-_PINNED = "#3c4654"
 _GAP = 0.06  # between neighbours, of their width
 _FILLED = 0.9  # of the picture
 _LENS = 0.23  # for one instance; more are seen from farther away, so that all show the same side
@@ -84,7 +83,7 @@ def draw_beside(
             list(configurations),
             offset=offsets,
             balls=(offsets[:, None] + points).reshape(-1, 3),
-            ball_color=[_PINNED if pinned else BALL for _ in configurations for _, pinned in balls],
+            ball_color=[PINNED if pinned else BALL for _ in configurations for _, pinned in balls],
             view=view,
             size=size,
             ground=float(_vertices(robot, home_configuration(robot))[:, 2].min()),

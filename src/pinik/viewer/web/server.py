@@ -5,12 +5,16 @@ from __future__ import annotations
 import asyncio
 import json
 import secrets
+from contextlib import suppress
 from typing import Any
 
 import tornado.httpserver
+import tornado.iostream
 import tornado.web
 
 from ...errors import PinikError
+from ...export.glb import glb_of
+from ...export.scene import scene_of
 from ..protocol.copying import texts_to_copy
 from .budget import Turns
 from .document import document
@@ -30,6 +34,7 @@ _PATIENCE = 30.0  # [s] for a whole request, and between two requests of a conne
 _LONGEST_DELAY = 2.0  # [s]; a request that would have to wait longer is refused
 _DOWNLOADS = 4  # animations that are sent at one time; each takes some megabytes
 _PIECE = 65_536  # bytes
+_ANIMATIONS = {"html": "text/html; charset=utf-8", "glb": "model/gltf-binary"}
 
 
 def make_server(
@@ -56,7 +61,7 @@ def make_server(
             (r"/api/state", _State, common),
             (r"/api/copy/([0-3])\.json", _Copy, common),
             (r"/api/statistics\.csv", _StatisticsTable, common),
-            (r"/api/animation\.html", _Animation, {**common, "downloads": downloads}),
+            (r"/api/animation\.(html|glb)", _Animation, {**common, "downloads": downloads}),
         ],
         default_handler_class=_Nothing,
         default_handler_args=common,
@@ -202,18 +207,27 @@ class _Animation(_Download):
         super().initialize(**common)
         self._downloads = downloads
 
-    async def get(self) -> None:
+    async def get(self, kind: str) -> None:
         self.heartbeat.wake()
         if self._downloads.locked():
             self.set_header("Retry-After", "5")
             raise tornado.web.HTTPError(503, reason=f"At most {_DOWNLOADS} animations are sent at one time")
         async with self._downloads:
-            page = self.show.animation()
-            self.name("text/html; charset=utf-8", "animation.html")
-            self.set_header("Content-Length", str(len(page)))
-            for start in range(0, len(page), _PIECE):  # piece by piece, so that a slow client has no copy of its own
-                self.write(page[start : start + _PIECE])
-                await self.flush()
+            content = self.show.animation() if kind == "html" else await self._glb()
+            self.name(_ANIMATIONS[kind], f"animation.{kind}")
+            self.set_header("Content-Length", str(len(content)))
+            with suppress(tornado.iostream.StreamClosedError):  # who cancels a download wants no more of it
+                for start in range(0, len(content), _PIECE):  # in pieces, so that a slow client has no copy of its own
+                    self.write(content[start : start + _PIECE])
+                    await self.flush()
+
+    async def _glb(self) -> bytes:
+        """Make it in another thread, because reading meshes takes seconds."""
+        scene = scene_of(self.show.recorded(), None, None)
+        try:
+            return await asyncio.to_thread(glb_of, scene)
+        except PinikError as error:
+            raise tornado.web.HTTPError(404, reason="The robot has no shapes that can be read") from error
 
 
 class _Socket(_Handler, WebSocket):

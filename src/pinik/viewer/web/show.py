@@ -10,6 +10,7 @@ from typing import Any
 from ...description.catalog import catalog
 from ...echoes import shortened
 from ...errors import InputError, PinikError
+from ...export.live_recording import LiveRecording, RecordedBall
 from ...robot import Robot
 from ..protocol.messages import any_text, apply, checked, parse, text, whole_number
 from ..protocol.recording import Recording
@@ -91,7 +92,7 @@ class Show:
     @property
     def _awaits_shapes(self) -> bool:
         """Whether the robot's shapes are still being read, and nobody has asked for anything meanwhile."""
-        return self._waits_for_shapes and self._exhibit.shapes is None
+        return self._waits_for_shapes and self.reads_shapes
 
     # Tabs
 
@@ -155,11 +156,14 @@ class Show:
 
     def _send_frame(self) -> None:
         self._frame_due = False
+        self._make_frame()
+        self._seats.offer_frame(self._frame)
+
+    def _make_frame(self) -> None:
         self._frame = self._exhibit.maker.frame(self.session)
         if self.session.steps != self._recorded_step:  # moving a ball between two steps adds no frame to the recording
             self._recorded_step = self.session.steps
-            self.recording.add(self._frame, self._clock())
-        self._seats.offer_frame(self._frame)
+            self.recording.add(self._frame, [instance.q for instance in self.session.seen])
 
     def _send_state(self) -> None:
         self._state_due = False
@@ -234,6 +238,8 @@ class Show:
             self._supply()
             if self._cast() != before:
                 self._start_anew()
+            elif self.session.steps != self._recorded_step:  # several steps may be asked for between two ticks
+                self._make_frame()
 
     def _supply(self) -> None:
         """Load what the session needs now."""
@@ -295,10 +301,27 @@ class Show:
             "setup": write_setup(self.session),
         }
 
+    @property
+    def reads_shapes(self) -> bool:
+        """Whether the robot's shapes are still being read."""
+        return self._exhibit.shapes is None
+
     def animation(self) -> bytes:
         """Return the last seconds as one HTML file (UTF-8) that plays without a server."""
         shapes = self._exhibit.shapes or Shapes((), (), ())
         return animation_page(self._hello, self._exhibit.robot, shapes, self.state(), self.recording)
+
+    def recorded(self) -> LiveRecording:
+        """Return the last seconds, with the methods and the balls as they are now."""
+        if not self.recording:
+            self._make_frame()
+        balls = [
+            RecordedBall(ball.frame, places[:, :3], places[:, 3:], ball.mode == "pinned", ball.oriented)
+            for ball, places in zip(self.session.balls, self.recording.balls, strict=True)
+            if ball.mode != "off"
+        ]
+        solvers = tuple(instance.solver for instance in self.session.seen)
+        return LiveRecording(self.session.robot, solvers, self.recording.times, self.recording.q, tuple(balls))
 
 
 def _notice(words: str) -> str:
