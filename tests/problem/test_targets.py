@@ -37,6 +37,7 @@ class TestOrientations:
     def test_all_ways_to_say_a_quarter_turn_about_z_mean_it(self, fields):
         np.testing.assert_allclose(Target("tip", **fields).rotation, RIGHT_ANGLE, atol=1e-12)
 
+    @pytest.mark.filterwarnings("ignore:.* looks like degrees:pinik.InputWarning")
     @given(roll=angle, pitch=angle, yaw=angle)
     def test_rpy_turns_about_the_fixed_x_then_y_then_z(self, roll, pitch, yaw):
         np.testing.assert_allclose(

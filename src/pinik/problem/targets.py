@@ -104,7 +104,7 @@ class Target:
                 or quaternion is zero; the weight is out of its range.
 
         Warns:
-            InputWarning: An entry of a rotation matrix was changed by more than 1e-6.
+            InputWarning: An entry of a rotation matrix was changed by more than 1e-6, or `rpy` looks like degrees.
         """
         what = named(frame, relative_to)
         check_combination(what, position, rotation, rpy, quat_xyzw, quat_wxyz, placement, axis, direction, at)
