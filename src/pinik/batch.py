@@ -61,7 +61,7 @@ def run(
     targets_form: str | None = None,
     tool: pinocchio.SE3 | ArrayLike | None = None,
     relative_to: str | None = None,
-    q0: ArrayLike | Mapping[str, float] | str | Origin | None = None,
+    q0: ArrayLike | Mapping[str, float] | str | None = None,
     limits: bool = True,
     locked: Iterable[str] = (),
     restarts: int | None = None,
@@ -168,7 +168,7 @@ def _reading(
     tool: pinocchio.SE3 | ArrayLike | None,
     relative_to: str | None,
     tolerance: Tolerance,
-    q0: ArrayLike | Mapping[str, float] | str | Origin | None,
+    q0: ArrayLike | Mapping[str, float] | str | None,
     degrees: bool,
 ) -> Reading:
     for name in (frame, relative_to):

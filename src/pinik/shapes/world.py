@@ -104,12 +104,12 @@ class World:
 
     @property
     def version(self) -> int:
-        """How often the world was changed."""
+        """For pinik itself: how often the world was changed."""
         return self._version
 
     @property
     def solids(self) -> tuple[Solid, ...]:
-        """The shapes of this version; a new tuple for each version."""
+        """For pinik itself: the shapes of this version; a new tuple for each version."""
         return self._solids
 
     def add_box(self, name: str, size: ArrayLike, placement: pinocchio.SE3 | ArrayLike | None = None) -> None:

@@ -119,11 +119,11 @@ class CCD(SweepingSolver):
 
     @property
     def held(self) -> tuple[str, ...]:
-        """The joints of stiffness 0."""
+        """For pinik itself: the joints of stiffness 0."""
         return without_motion(self.stiffness)
 
     def relaxation_for(self, problem: Problem, loose: bool = False) -> float:
-        """The relaxation; if it is None, the default for the kinds of the targets.
+        """For pinik itself: the relaxation; if it is None, the default for the kinds of the targets.
 
         With `loose`, residuals stop pulling inside their tolerances, and overshooting would leave a tolerance again.
         """
