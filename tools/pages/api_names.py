@@ -11,7 +11,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import griffe
-from inner_names import WithoutInnerNames
+from for_users import ForUsers
 
 SHOWN = re.compile(r"^::: pinik\.([\w.]+)$", re.MULTILINE)
 PYTHON = re.compile(r"^```python\n(.*?)^```$", re.MULTILINE | re.DOTALL)
@@ -31,7 +31,7 @@ def faults_of_public_names(root: Path) -> Iterator[str]:
         "pinik",
         search_paths=[root / "src"],
         docstring_parser="google",
-        extensions=griffe.load_extensions(WithoutInnerNames),
+        extensions=griffe.load_extensions(ForUsers),
     )
     shown = Counter(
         name for page in (root / "docs" / "api").glob("*.md") for name in SHOWN.findall(page.read_text("utf-8"))
