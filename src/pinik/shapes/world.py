@@ -36,7 +36,7 @@ class World:
     Every change makes a new version of the world. What was computed for an earlier version stays as it was, and a call
     that has begun does not see the change, so a world may be changed while other threads use it.
 
-    Example:
+    Examples:
         >>> world = World()
         >>> world.add_box("table", [1.0, 0.8, 0.05], [0.5, 0.0, -0.025])
         >>> world.names
