@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+import importlib
 import re
 from collections.abc import Iterator
 from typing import Any
 
 import griffe
+
+from pinik.solvers.parameter import Parameter, parameters_of
 
 MARK = "For pinik itself: "
 _SECTION = re.compile(r"^Attributes\b[^\n]*:\n(?P<entries>(?:(?:    .*)?(?:\n|\Z))+)", re.MULTILINE)
@@ -20,11 +23,16 @@ class ForUsers(griffe.Extension):
         classes = list(_classes(pkg))
         told = [(one, _attributes(one)) for one in classes]  # all of them, before any is changed
         for one, attributes in told:
+            for own in _parameters(one):
+                attributes[own.name] = _in_words(own)
+                if own.name in one.members:
+                    default = own.default
+                    one.members[own.name].value = f"{default:.4g}" if isinstance(default, float) else repr(default)
             inner = {name for name, member in one.members.items() if not member.is_alias and _is_inner(member)}
             for names, words in attributes.items():
                 if words.startswith(MARK):
                     inner |= set(names.split(", ")) & set(one.members)
-            if attributes:
+            if attributes and one.docstring is not None:
                 entries = [f"    {names}: {words}" for names, words in attributes.items() if not words.startswith(MARK)]
                 one.docstring.value = "\n".join(
                     [_SECTION.sub("", one.docstring.value).rstrip(), "", "Attributes:", *entries]
@@ -54,3 +62,17 @@ def _attributes(cls: griffe.Class) -> dict[str, str]:
             if section is not None:
                 found |= {entry["names"]: entry["words"] for entry in _ENTRY.finditer(section["entries"])}
     return found
+
+
+def _parameters(cls: griffe.Class) -> tuple[Parameter, ...]:
+    """The parameters of a solver, in its signature and on the command line; none for any other class."""
+    if not cls.path.startswith("pinik.solvers."):
+        return ()
+    found = getattr(importlib.import_module(cls.module.path), cls.name)
+    return parameters_of(found) if hasattr(found, "parameters") else ()
+
+
+def _in_words(parameter: Parameter) -> str:
+    symbol = f" ({parameter.symbol})" if parameter.symbol else ""
+    allowed = parameter.range_in_words
+    return f"{parameter.help}{symbol}{f': {allowed}' if allowed else ''}."

@@ -107,7 +107,7 @@ class Limits:
         return np.asarray(np.minimum(np.maximum(chosen, lower), upper))
 
     def blocked(self, q: Array, wanted: Array, inside: Array) -> NDArray[np.bool_]:
-        """For pinik itself: whether each tangent coordinate (nv,) would cross a limit, where `q` is, in a step to `wanted`.
+        """For pinik itself: whether each tangent coordinate (nv,) is at a limit at `q`, which `wanted` lies beyond.
 
         `inside` is `wanted` clipped to the limits.
         """

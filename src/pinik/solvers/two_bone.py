@@ -56,7 +56,7 @@ class TwoBoneSolver(SweepingSolver):
 
     @property
     def exact(self) -> bool:
-        """For pinik itself: whether `max_residual` is infinite; limits may block partial steps where another way is free."""
+        """For pinik itself: whether `max_residual` is infinite; limits may block a partial step."""
         return self.max_residual == math.inf
 
     @property
@@ -65,7 +65,7 @@ class TwoBoneSolver(SweepingSolver):
         return self.exact and self.max_step == math.inf
 
     def answers(self, positions: Array, q: Array, problem: Problem, limits: Limits) -> Array:
-        """For pinik itself: the configurations (N, nq) inside the limits nearest to N positions (N, 3) [m], from `q` (N, nq).
+        """For pinik itself: the configurations (N, nq) inside the limits nearest to positions (N, 3) [m].
 
         Locked joints keep their values.
         """
