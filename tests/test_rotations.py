@@ -95,6 +95,22 @@ class TestOneMatrix:
         np.testing.assert_array_equal(found.translation, [1, 2, 3])
 
 
+class TestRollPitchYaw:
+    def test_in_degrees_warns_at_the_callers_line_and_is_taken_as_radians(self):
+        with pytest.warns(InputWarning) as given:
+            target = Target("tip", rpy=[180, 0, 30])
+        (warning,) = given
+        assert "target 'tip': rpy goes beyond a full turn in radians, and looks like degrees" in str(warning.message)
+        assert warning.filename == __file__
+        with no_warning():
+            np.testing.assert_allclose(target.rotation, Target("tip", rpy=[180.0001, 0, 30]).rotation, atol=2e-4)
+
+    @pytest.mark.parametrize("rpy", [[3, 0, 1], [6, -6, 0], [3.14, 0, 0], [7.3, 0, 0], np.radians([180, 90, 360])])
+    def test_in_radians_is_taken_in_silence(self, rpy):
+        with no_warning():
+            Target("tip", rpy=rpy)
+
+
 class TestManyMatrices:
     def test_are_what_each_alone_is(self):
         many = rotations(40)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import html
 import http.server
 import json
 import os
@@ -91,6 +92,11 @@ def test_no_style_fetches_a_font_from_elsewhere(site):
         ("quat_wxyz", "conventions.html"),
         ("choose_weights", "api/solve.html"),
         ("--write-srdf", "command-line.html"),
+        ("meshes are not found", "howto/robots.html"),
+        ("a million targets", "howto/motion.html"),
+        ("where can my robot reach", "howto/robots.html"),
+        ("blender", "howto/programs.html"),
+        ("batch.run", "api/files.html"),
     ],
 )
 def test_the_search_index_leads_to_the_page(site, words, page):
@@ -123,6 +129,60 @@ def test_a_public_name_that_is_missing_or_undocumented_is_a_fault(tmp_path):
         "absent documents a parameter y that it does not have",
         "docs/api shows other, which is not public",
     }
+
+
+def test_classes_that_calls_return_and_names_in_pages_are_shown_or_a_fault(tmp_path):
+    package = tmp_path / "src" / "pinik"
+    package.mkdir(parents=True)
+    (package / "__init__.py").write_text(
+        '"""A package."""\nfrom .inside import Base, Found, Given, Part, find\n__all__ = ["find"]\n'
+    )
+    (package / "inside.py").write_text(
+        '"""A module."""\n\nclass Base:\n    """A base."""\n\n    def of(self) -> Base:\n        """It."""\n\n'
+        'class Given:\n    """A class."""\n\nclass Part:\n    """A class."""\n\n'
+        'class Found(Base):\n    """A class.\n\n    Attributes:\n        kept: For pinik itself: a part.\n    """\n\n'
+        "    part: list[Part]\n    kept: Given\n\n"
+        '    def inner(self) -> Given:\n        """For pinik itself: it."""\n\n'
+        'def find(what: str) -> Found:\n    """Find it."""\n\ndef save(what: Found) -> None:\n    """Save it."""\n'
+    )
+    api = tmp_path / "docs" / "api"
+    api.mkdir(parents=True)
+    (api / "all.md").write_text("::: pinik.find\n\n::: pinik.inside.gone\n")
+    (tmp_path / "docs" / "page.md").write_text(
+        "```python\nimport pinik\nfrom pinik.inside import save\n\n"
+        "save(pinik.find('x').part, pinik.inside.other.more)\n```\n"
+    )
+    assert set(faults_of_public_names(tmp_path)) == {
+        "inside.gone is shown or public, and there is no such name",
+        "find has the type Found, which no page of docs/api shows",
+        "page.md uses inside.save, which no page of docs/api shows",
+        "page.md uses inside.other.more, which no page of docs/api shows",
+    }
+    (api / "more.md").write_text("::: pinik.inside.Found\n\n::: pinik.inside.save\n")
+    (api / "all.md").write_text("::: pinik.find\n")
+    (tmp_path / "docs" / "page.md").unlink()
+    assert set(faults_of_public_names(tmp_path)) == {
+        "inside.Found.part has the type Part, which no page of docs/api shows"
+    }
+
+
+def test_the_api_shows_what_is_for_users_with_inherited_attributes_and_parameters(site):
+    def plain(page):
+        return html.unescape(re.sub(r"<[^>]+>", "", (site / "api" / page).read_text("utf-8")))
+
+    robot, solve, methods = plain("robot.html"), plain("solve.html"), plain("methods.html")
+    for own in ("joint_names", "frame_names", "mimics", "velocity_limits"):
+        assert re.search(rf"^\s*{own}\s*–", robot, re.MULTILINE), own
+    assert 'id="pinik.Robot.placement"' in (site / "api" / "robot.html").read_text("utf-8")
+    for page in (site / "api").glob("*.html"):
+        if page.name != "index.html":
+            assert "For pinik itself" not in page.read_text("utf-8")
+    for inner in ("Robot.local", "Robot.surroundings", "Prepared.recall", "Prepared.searcher", "Target.shape"):
+        named = getattr(getattr(pinik, inner.split(".")[0]), inner.split(".")[1])
+        assert (named.__doc__ or named.func.__doc__).startswith("For pinik itself: ")
+    assert "pinik.Prepared.recall" not in solve
+    assert re.search(r"damping: float = 0\.7071,", methods)
+    assert re.search(r"how much steps are damped.*\(λ\): 1e-09 to 100", methods)
 
 
 def test_every_notebook_is_a_page_with_its_pictures(site):

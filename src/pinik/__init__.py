@@ -56,7 +56,7 @@ from .version import __version__ as __version__
 from .viewer.live import live
 
 if _typing.TYPE_CHECKING:
-    from .scale import batch as batch
+    from . import batch as batch
     from .workspace.front import reach
     from .workspace.reach_map import ReachMap
 else:
@@ -64,7 +64,9 @@ else:
     def __getattr__(name: str) -> object:
         """`pinik.batch`, `pinik.reach` and `ReachMap`, which few programs need, are loaded when they are asked for."""
         if name == "batch":
-            from .scale import batch as found
+            import importlib
+
+            found = importlib.import_module(".batch", __name__)  # `from . import` would ask here again
         elif name == "reach":
             from .workspace.front import reach as found
         elif name == "ReachMap":

@@ -147,7 +147,7 @@ class EngineError(PinikError, RuntimeError):
 
 
 class InputWarning(UserWarning):
-    """pinik changed an argument that was slightly off, such as a rounded rotation matrix."""
+    """pinik changed an argument that was slightly off, such as a rounded rotation matrix; or one looks like degrees."""
 
 
 class UrdfWarning(UserWarning):

@@ -32,7 +32,7 @@ __all__ = ["Robot"]
 
 
 class Robot(RobotModel):
-    """A robot as returned by `pinik.load`: a `RobotModel` that can solve, and compute many configurations at once."""
+    """A robot, as `pinik.load` returns it: where its frames are, and how to move them where they should be."""
 
     def placements(self, frame: str, Q: ArrayLike, relative_to: str | None = None) -> NDArray[np.float64]:
         """The placements of a frame at N configurations, as `placement` computes them one by one.

@@ -1,18 +1,29 @@
-"""Rotation matrices and placements that users give, checked; a rounded rotation is replaced by the nearest one."""
+"""Rotations and placements that users give, checked; a rounded rotation matrix is replaced by the nearest one."""
 
 from __future__ import annotations
 
+import math
 import sys
 import warnings
+from collections.abc import Iterable
 
 import numpy as np
 import pinocchio
 from numpy.typing import ArrayLike, NDArray
 
-from .checks import as_array, as_many, as_point
+from .checks import as_array, as_many, as_point, as_vector
 from .errors import InputError, InputWarning
 
-__all__ = ["as_rotation", "as_rotations", "as_se3", "rotations_of_quaternions", "rotations_of_rpy"]
+__all__ = [
+    "as_rotation",
+    "as_rotations",
+    "as_rpy",
+    "as_se3",
+    "like_degrees",
+    "rotations_of_quaternions",
+    "rotations_of_rpy",
+    "rpy_like_degrees",
+]
 
 # Of rotation matrices. The first is the largest entry of R Rᵀ − I, the others differences to the nearest rotation.
 _EXACT = 1e-14
@@ -20,6 +31,8 @@ _UNSAID_CHANGE = 1e-6  # replaced in silence up to here, such as numbers in sing
 _FARTHEST_ROTATION = 1e-3  # refused from here on; numbers rounded to three digits are nearer
 
 _IDENTITY = np.eye(3)
+
+_MOST_DEGREES = 1080.0
 
 Array = NDArray[np.float64]
 
@@ -106,6 +119,35 @@ def rotations_of_quaternions(quaternions: Array) -> Array:
         2.0 * (x * z - y * w), 2.0 * (y * z + x * w), 1.0 - 2.0 * (x * x + y * y),
     ]  # fmt: skip
     return np.stack(entries, axis=1).reshape(-1, 3, 3)
+
+
+def as_rpy(value: ArrayLike, what: str) -> Array:
+    """`value` as roll, pitch and yaw (3,) [rad].
+
+    Raises:
+        InputError: It is not three finite numbers.
+
+    Warns:
+        InputWarning: The numbers look like degrees.
+    """
+    rpy = as_vector(value, 3, what, "roll, pitch, yaw in radians")
+    if rpy_like_degrees(rpy.tolist()):
+        _warn(
+            f"{what} goes beyond a full turn in radians, and looks like degrees; np.radians(…) converts them, and so "
+            f"does --deg on the command line; got {rpy.tolist()}"
+        )
+    return rpy
+
+
+def rpy_like_degrees(rpy: Iterable[float]) -> bool:
+    """Whether roll, pitch and yaw [rad] go beyond a full turn, and are numbers as people write them in degrees."""
+    angles = list(rpy)
+    return max(map(abs, angles)) > 2.0 * math.pi + 0.1 and all(map(like_degrees, angles))
+
+
+def like_degrees(angle: float) -> bool:
+    """Whether an angle is a number as people write it in degrees: whole or half."""
+    return abs(angle) <= _MOST_DEGREES and (2.0 * angle).is_integer()
 
 
 def rotations_of_rpy(angles: Array) -> Array:

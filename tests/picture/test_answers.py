@@ -232,6 +232,30 @@ def test_a_fan_fades_with_the_way_from_its_start(bars, swing):
     assert np.median(picture.pixels[own][:, 3]) == pytest.approx(255 * far.opacity, abs=2)
 
 
+def test_of_a_path_the_end_is_solid_and_ghosts_at_equal_distances_lead_there(bars):
+    begin = np.array([0.3, 0.8, 0.6])
+    first, last = bars.placement("tip", begin).translation, bars.placement("tip", [1.2, 0.9, 0.2]).translation
+    line = first + np.linspace(0.0, 1.0, 100)[:, None] ** 2 * (last - first)  # slow at first
+    track = pinik.track(bars, "tip", line, begin)
+    assert track.success
+    end, *ghosts = poses_of(bars, track)
+    assert (end.opacity, end.ghost, len(ghosts)) == (1.0, False, GHOSTS)
+    assert end.q == pytest.approx(track.q[-1])
+    assert ghosts[0].q == pytest.approx(track.q[0])
+    way = np.append([0.0], np.linalg.norm(np.diff(track.q, axis=0), axis=1).cumsum())
+    places = [way[np.linalg.norm(track.q - pose.q, axis=1).argmin()] for pose in (*ghosts, end)]
+    assert np.diff(places) == pytest.approx(np.full(GHOSTS, way[-1] / GHOSTS), rel=0.3)
+    assert (np.diff([pose.opacity for pose in ghosts]) > 0.0).all()
+    alone = pinik.draw(track, view="top", **BARE)
+    assert (alone.pixels == pinik.draw(bars, track, view="top", **BARE).pixels).all()
+
+
+def test_a_path_that_stays_where_it_is_has_no_ghosts(bars):
+    here = [0.3, 0.8, 0.6]
+    place = bars.placement("tip", here).translation
+    assert len(poses_of(bars, pinik.track(bars, "tip", [place, place, place], here))) == 1
+
+
 def test_families_have_a_colour_each_and_share_the_ghosts_by_their_lengths(panda):
     default = panda.poses["default"]
     branches = panda.solve_all("panda_hand_tcp", placement=panda.placement("panda_hand_tcp", default), q0=default)

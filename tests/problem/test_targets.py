@@ -37,6 +37,12 @@ class TestOrientations:
     def test_all_ways_to_say_a_quarter_turn_about_z_mean_it(self, fields):
         np.testing.assert_allclose(Target("tip", **fields).rotation, RIGHT_ANGLE, atol=1e-12)
 
+    @pytest.mark.parametrize("place", [pinocchio.SE3.Identity(), np.eye(4)])
+    def test_a_placement_in_the_positions_stead_is_refused_with_its_keyword(self, place):
+        with pytest.raises(InputError, match=r"target 'tip': position must be 3 finite numbers; .* as placement="):
+            Target("tip", place)
+
+    @pytest.mark.filterwarnings("ignore:.* looks like degrees:pinik.InputWarning")
     @given(roll=angle, pitch=angle, yaw=angle)
     def test_rpy_turns_about_the_fixed_x_then_y_then_z(self, roll, pitch, yaw):
         np.testing.assert_allclose(

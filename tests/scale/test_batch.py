@@ -361,7 +361,7 @@ def test_what_was_begun_otherwise_is_not_resumed(panda, ur5, poses, tmp_path, ch
 
 def test_another_version_does_not_resume(panda, poses, tmp_path, monkeypatch):
     given = unfinished(panda, poses, tmp_path)
-    monkeypatch.setattr("pinik.scale.batch.versions", lambda: {"pinik": "9.9"})
+    monkeypatch.setattr("pinik.batch.versions", lambda: {"pinik": "9.9"})
     with pytest.raises(InputError, match=r'versions\.pinik was "0\.1\.0" and is "9\.9"'):
         pinik.batch.run(panda, resume=True, **given)
 

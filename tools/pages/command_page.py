@@ -74,7 +74,7 @@ def _row(parameter: Any, context: Any) -> str:
     is_flag = getattr(parameter, "is_flag", False)
     metavar = parameter.metavar or ("" if is_flag else parameter.display_type(context).upper())
     shown = f"{names} `{metavar}`" if names and not is_flag else names or f"`{metavar}`"
-    words = _plain(getattr(parameter, "help", None) or "").replace("|", "\\|").replace("\n", " ")
+    words = re.sub(r"([\[\]|])", r"\\\1", _plain(getattr(parameter, "help", None) or "")).replace("\n", " ")
     return f"| {shown.replace('|', chr(92) + '|')} | {words}{_default(parameter, is_flag)} |\n"
 
 

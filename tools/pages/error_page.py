@@ -27,7 +27,8 @@ WHAT_TO_DO = {
     "EngineError": 'Leave out `engine="native"`, or install pinik where a C++ compiler is, as the message says.',
     "MissingExtraError": "Run the install line that the message ends with.",
     "ClusterError": "Start the scheduler or its workers, or install the same versions on all machines.",
-    "InputWarning": "The answer is for the rounded argument. Give more digits, or take a quaternion.",
+    "InputWarning": "The answer is for the nearest rotation matrix: give more digits, or take a quaternion. "
+    "Angles are taken as radians, as everywhere.",
     "UrdfWarning": "The robot works, and something in its file is not as it should be. `pinik check FILE` says more. "
     "With `pinik.load(..., strict=True)` it is an error.",
     "RuntimeWarning": "Install pinik again: its compiled engine belongs to another build, so solves run in Python.",

@@ -189,12 +189,12 @@ class TwoBone:
         )
 
     def ranges(self, limits: Limits) -> Array:
-        """Lower and upper limits of the two joints (2 joints, 2) [rad], infinite where there are none."""
+        """For pinik itself: lower and upper limits of the two joints (2 joints, 2) [rad], infinite without."""
         entries = [joint.idx_q for joint in self.joints]  # a (cos, sin) pair has no bounds
         return np.stack([limits.lower[entries], limits.upper[entries]], axis=-1)
 
     def angles_at(self, q: Array) -> Array:
-        """The angles of the two joints (…, 2) at configurations (…, nq) [rad]."""
+        """For pinik itself: the angles of the two joints (…, 2) at configurations (…, nq) [rad]."""
         return np.stack(
             [
                 np.arctan2(q[..., joint.idx_q + 1], q[..., joint.idx_q]) if joint.nq == 2 else q[..., joint.idx_q]
@@ -204,7 +204,7 @@ class TwoBone:
         )
 
     def nearest(self, positions: Array, q: Array, ranges: Array, elbow: str = "nearest") -> Array:
-        """For each of N targets, the configuration inside `ranges` that brings the frame nearest to it.
+        """For pinik itself: for each of N targets, the configuration inside `ranges` nearest to it.
 
         Args:
             positions: Target positions (N, 3) [m], in `relative_to`.
@@ -220,7 +220,7 @@ class TwoBone:
         return self._configurations(values, q.copy())
 
     def off_plane(self, position: Array) -> OffPlane:
-        """How far a position (3,) [m] lies from the plane in which the frame moves."""
+        """For pinik itself: how far a position (3,) [m] lies from the plane in which the frame moves."""
         return OffPlane(float((position - self.origin) @ self.axes[:, 2]), self.axes[:, 2], self.relative_to)
 
     @cached_property

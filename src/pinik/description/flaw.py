@@ -38,10 +38,10 @@ class Flaw(str):
         cause: What is wrong and what was assumed, without the element.
         line: The line of the file, from 1; None if the flaw belongs to no line.
         code: The sort of flaw in a word for programs, such as "unknown-attribute".
-        common: The cause without the names and numbers in it, equal for all flaws that are reported together.
+        common: For pinik itself: the cause without names and numbers, equal for all flaws that are reported together.
         why: Why it matters, in one sentence.
         mend: What to do about it, in one sentence.
-        edits: The edits of the document that mend it; empty if there is no mend, or more than one.
+        edits: For pinik itself: the edits of the document that mend it; empty if there is no mend, or more than one.
         mesh: The address of a mesh that was not found; None for all other flaws.
         expanded: Whether the line is one of the URDF that xacro made of the file.
     """
@@ -85,7 +85,7 @@ class Flaw(str):
         return partial(type(self), **given), (self.element, self.cause)
 
     def of_expansion(self) -> Flaw:
-        """The same flaw, in words that say that its line is one of the URDF that xacro made of the file."""
+        """For pinik itself: the same flaw, whose line is one of the URDF that xacro made of the file."""
         given = {name: value for name, value in vars(self).items() if name not in ("element", "cause", "expanded")}
         return type(self)(self.element, self.cause, **given, expanded=True)
 

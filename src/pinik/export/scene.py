@@ -168,7 +168,7 @@ def scene_of(shown: Shown, q: ArrayLike | None, times: ArrayLike | None) -> Scen
     Raises:
         InputError: `shown` is neither, or holds no configuration; or `q` or `times` do not fit it.
     """
-    robot = shown.prepared.robot if isinstance(shown, Track) else getattr(shown, "robot", shown)
+    robot = getattr(shown, "robot", shown)
     if not isinstance(robot, Robot):
         raise InputError(f"must be a robot, a solution, a track, a self-motion or a recording; got an object of type "
                          f"{type(shown).__name__!r}", argument="shown")  # fmt: skip

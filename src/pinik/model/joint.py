@@ -63,9 +63,9 @@ class Joint:
         return own if self.leader is None else self.multiplier * own + self.offset
 
     def angle_range(self, lower: float, upper: float) -> tuple[float, float]:
-        """The range of the angle [rad or m] while the joint's entry of q runs from `lower` to `upper`, or ±infinity.
+        """For pinik itself: the range of the angle [rad or m] while the entry of q runs from `lower` to `upper`.
 
-        For a follower that entry is its leader's.
+        Both may be infinite. For a follower that entry is its leader's.
         """
         if self.multiplier == 0.0:
             return self.offset, self.offset
@@ -127,7 +127,7 @@ class Joint:
 
     @property
     def to_plane(self) -> pinocchio.SE3:
-        """The turn that brings z onto the axis, as a placement without translation.
+        """For pinik itself: the turn that brings z onto the axis, as a placement without translation.
 
         It leads from the frame in which Pinocchio's planar joint moves to that of the joint. It is the shortest one; if
         the axis points to negative z, it is the shortest one from −z, after a half turn about x.
@@ -142,7 +142,7 @@ class Joint:
         return pinocchio.SE3(half_turn @ turn, np.zeros(3))
 
     def circle(self, q: Array) -> tuple[Array, str] | None:
-        """The entries of `q` that must have length 1, and their name in words; None if there are none."""
+        """For pinik itself: the entries of `q` that must have length 1, and their name in words; None without."""
         if self.nq == 2:
             return q[self.idx_q : self.idx_q + 2], "(cos, sin)"
         if self.kind == "floating":
@@ -152,14 +152,14 @@ class Joint:
         return None
 
     def slides(self, index: int = 0) -> bool:
-        """Whether tangent coordinate `index` of the joint translates along its axis instead of rotating about it."""
+        """For pinik itself: whether tangent coordinate `index` of the joint translates instead of rotating."""
         kind = self.kind
         return kind == "prismatic" or (kind == "floating" and index < 3) or (kind == "planar" and index < 2)
 
     def range_to_draw_from(
         self, lower: float, upper: float, slide_about: float = 0.0, slide_by: float = 1.0
     ) -> tuple[float, float]:
-        """A finite range inside the limits [rad or m], from which random angles are drawn.
+        """For pinik itself: a finite range inside the limits [rad or m], from which random angles are drawn.
 
         It is the whole range, unless that is infinite or wider than 100. Then it is ±π about 0 for turning joints and
         ±`slide_by` about `slide_about` [m] for sliding joints, shifted into the limits.

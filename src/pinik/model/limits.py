@@ -44,7 +44,7 @@ class Limits:
 
     @classmethod
     def of(cls, robot: RobotModel, enabled: bool = True) -> Limits:
-        """The limits of a robot; all infinite unless `enabled`."""
+        """For pinik itself: the limits of a robot; all infinite unless `enabled`."""
         entry = np.full(robot.model.nv, -1, dtype=np.intp)
         turning = np.zeros(robot.model.nq, dtype=bool)
         tied = {joint.leader for joint in robot.joints if joint.kind == "prismatic" or joint.multiplier % 1.0 != 0.0}
@@ -58,7 +58,7 @@ class Limits:
         return cls(robot, False, np.full(robot.model.nq, -np.inf), np.full(robot.model.nq, np.inf), entry, turning)
 
     def loosened(self) -> Limits:
-        """A copy without limits, except for joints whose lower and upper limits are equal."""
+        """For pinik itself: a copy without limits, except for joints whose lower and upper limits are equal."""
         single = self.lower == self.upper
         if not single.any():
             return Limits.of(self.robot, False)
@@ -107,7 +107,7 @@ class Limits:
         return np.asarray(np.minimum(np.maximum(chosen, lower), upper))
 
     def blocked(self, q: Array, wanted: Array, inside: Array) -> NDArray[np.bool_]:
-        """Whether each tangent coordinate (nv,) is at a limit at `q` and would cross it in a step to `wanted`.
+        """For pinik itself: whether each tangent coordinate (nv,) is at a limit at `q`, which `wanted` lies beyond.
 
         `inside` is `wanted` clipped to the limits.
         """

@@ -27,7 +27,7 @@ class NamedModel:
         name: The name in the catalogue, or the name that the URDF gives.
         model: The `pinocchio.Model`, for use with Pinocchio's own functions; do not modify it. Its position limits are
             those of the robot.
-        description: The checked URDF.
+        description: The checked URDF; `description.path` is its file, or None.
         joints: All movable joints in the model's order, including followers and the root joint. Pinocchio reads the
             tree depth first and the joints of a link by name, except that leaders come before their followers.
         joint_names: The names of the one-axis joints that are not followers, in the model's order.
@@ -56,7 +56,7 @@ class NamedModel:
 
     @property
     def local(self) -> threading.local:
-        """This thread's own storage, for this class and for what others keep with a robot."""
+        """For pinik itself: this thread's own storage, for this class and for what others keep with a robot."""
         return self._local
 
     def frame_id(self, name: str) -> int:
@@ -84,7 +84,7 @@ class NamedModel:
             raise UnknownNameError("joint", name, self._joints_by_name, hint) from None
 
     def settable_joint(self, name: str) -> Joint:
-        """The joint of this name, which must not be a follower.
+        """For pinik itself: the joint of this name, which must not be a follower.
 
         Raises:
             UnknownNameError: No such joint; the message lists near names.

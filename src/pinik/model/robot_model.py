@@ -104,7 +104,7 @@ class RobotModel(NamedModel):
 
     @property
     def surroundings(self) -> Surroundings:
-        """The files around the URDF, as they are now: what an address in it leads to."""
+        """For pinik itself: the files around the URDF, as they are now: what an address in it leads to."""
         return Surroundings(self.description.path, self.package_dirs, self.allow_outside)
 
     @property
@@ -145,7 +145,7 @@ class RobotModel(NamedModel):
 
     @cached_property
     def srdf_poses(self) -> Poses:
-        """What `poses` gives, without its warnings and without what `strict` makes of them."""
+        """For pinik itself: what `poses` gives, without its warnings and without what `strict` makes of them."""
         if self._srdf is None:
             return Poses()
         names = {joint.name for joint in self.description.joints}

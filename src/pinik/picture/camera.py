@@ -28,7 +28,7 @@ class Camera:
     lens: float
 
     def seen(self, points: Array, size: tuple[int, int]) -> Array:
-        """Points (…, 3) [m] as (right, down, ahead); a point appears at the pixel (right/ahead, down/ahead)."""
+        """For pinik itself: points (…, 3) [m] as (right, down, ahead), seen at the pixel (right/ahead, down/ahead)."""
         width, height = size
         focal = height / (2.0 * self.lens)
         to_pixels = np.array([[focal, 0.0, width / 2.0], [0.0, focal, height / 2.0], [0.0, 0.0, 1.0]])
@@ -36,7 +36,7 @@ class Camera:
         return np.asarray(np.einsum("...c,rc->...r", points - self.position, to_pixels @ self.axes))
 
     def rays(self, columns: NDArray[Any], rows: NDArray[Any], size: tuple[int, int]) -> Array:
-        """The rays (…, 3) through pixels, in the world, as long as to reach a plane 1 m ahead."""
+        """For pinik itself: the rays (…, 3) through pixels, in the world, as long as to reach a plane 1 m ahead."""
         width, height = size
         scale = 2.0 * self.lens / height
         right, down, ahead = self.axes

@@ -70,7 +70,7 @@ def draw(
             `Solution`; `Branches`, of which the first is solid and the others are ghosts, each in its own tint; a
             `SelfMotion`, as a fan of ghosts that fade with the way from its solid start; or several of them, such as
             the families of `Branches`, each in its own tint. `Branches` that are infinitely many are drawn as their
-            families, or as 12 ghosts.
+            families, or as 12 ghosts. Or a `Track`, whose end is solid, with up to 12 ghosts on the way.
         balls: Points (3,) or (k, 3) [m] to mark with a ball, such as targets.
         ball_color: "#rrggbb", for all balls or for each.
         ball_radius: [m]; in proportion to the robot when None.

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from typing import TypeAlias, TypeGuard
@@ -16,13 +17,14 @@ from ..shapes.collisions import Collision
 from ..solving.branches import Branches
 from ..solving.self_motion import SelfMotion
 from ..solving.solution import Solution
+from ..solving.track import Track
 from .arguments import as_color, as_configurations
 
 __all__ = ["GHOSTS", "TINTS", "Answer", "Drawable", "Pose", "links_of", "poses_of", "whose"]
 
 Array = NDArray[np.float64]
 
-Answer: TypeAlias = Solution | Branches | SelfMotion | Sequence[SelfMotion]
+Answer: TypeAlias = Solution | Branches | SelfMotion | Sequence[SelfMotion] | Track
 Drawable: TypeAlias = ArrayLike | Answer
 
 TINTS = (
@@ -74,7 +76,7 @@ def whose(robot: Robot | Answer, shown: Drawable | None) -> tuple[Robot, Drawabl
     if isinstance(robot, Robot):
         return robot, shown
     one = robot[0] if _are_motions(robot) else robot
-    if not isinstance(one, (Solution, Branches, SelfMotion)) or not isinstance(one.robot, Robot):
+    if not isinstance(one, (Solution, Branches, SelfMotion, Track)) or not isinstance(one.robot, Robot):
         raise InputError(
             f"must be one that pinik.load returned, or an answer with its own; got an object of type "
             f"{type(robot).__name__!r}",
@@ -86,7 +88,7 @@ def whose(robot: Robot | Answer, shown: Drawable | None) -> tuple[Robot, Drawabl
 
 
 def poses_of(robot: Robot, shown: Drawable | None) -> list[Pose]:
-    """Configurations as they are; of several answers, the first as it is and the others as ghosts.
+    """Configurations as they are; of several answers, the first as it is and the others as ghosts; of a path, the end.
 
     Raises:
         InputError: `shown` holds no configuration of this robot.
@@ -102,6 +104,8 @@ def poses_of(robot: Robot, shown: Drawable | None) -> list[Pose]:
         return _of(robot, iter([Pose(shown.q, touching=links_of(shown.collisions))]))
     if _are_motions(shown):
         return _of(robot, _fans(shown))
+    if isinstance(shown, Track):
+        return _of(robot, _path(robot, shown.q))
     return [Pose(q) for q in as_configurations(robot, shown)]  # type: ignore[arg-type]
 
 
@@ -152,6 +156,17 @@ def _fan(motion: SelfMotion, count: int) -> list[tuple[Array, float]]:
         places = np.linspace(0, n - 1, count).round().astype(np.int64)
         away = np.abs(places - begin)
     return list(zip(motion.q[places], away / max(away.max(), 1), strict=True))
+
+
+def _path(robot: Robot, q: Array) -> Iterator[Pose]:
+    """The end of a path as it is, and ghosts on the way there, from its beginning on, evenly in the joints."""
+    yield Pose(q[-1])
+    steps = [np.linalg.norm(pinocchio.difference(robot.model, *pair)) for pair in itertools.pairwise(q)]
+    left = np.append(np.cumsum(steps[::-1])[::-1], 0.0)  # [rad or m] from each configuration to the end
+    if left[0] > 0.0:
+        places = {int(np.abs(left - share * left[0]).argmin()) for share in np.linspace(1.0, 0.0, GHOSTS + 1)[:-1]}
+        for k in sorted(places - {len(q) - 1}):
+            yield Pose(q[k], _NEAR + (_FAR - _NEAR) * left[k] / left[0], _tint(0), ghost=True)
 
 
 def _tint(k: int) -> Array:

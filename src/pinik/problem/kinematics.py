@@ -70,7 +70,7 @@ class Kinematics:
 
     @classmethod
     def of(cls, problem: Problem) -> Kinematics:
-        """The kinematics of a compiled problem."""
+        """For pinik itself: the kinematics of a compiled problem."""
         made = cls.__new__(cls)
         made._begin(problem)
         return made
@@ -89,7 +89,7 @@ class Kinematics:
         ]
 
     def retarget(self, targets: Target | Sequence[Target]) -> None:
-        """Replace the targets. If they are of the same kinds, nothing is compiled again."""
+        """For pinik itself: replace the targets. If they are of the same kinds, nothing is compiled again."""
         asked = as_targets(targets)
         problem = self.problem
         if [target.shape for target in asked] != problem.kinds:

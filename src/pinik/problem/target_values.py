@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from ..checks import as_length, as_plain, as_point, as_unit_vector, as_vector
 from ..errors import InputError
-from ..rotations import as_rotation, as_se3
+from ..rotations import as_rotation, as_rpy, as_se3
 
 __all__ = ["Position", "as_axis", "as_position", "as_tool", "check_combination", "named", "rotation_of"]
 
@@ -65,7 +65,7 @@ def rotation_of(
     if rotation is not None:
         return as_rotation(rotation, f"{what}rotation")
     if rpy is not None:
-        return np.array(pinocchio.rpy.rpyToMatrix(as_vector(rpy, 3, f"{what}rpy", "roll, pitch, yaw in radians")))
+        return np.array(pinocchio.rpy.rpyToMatrix(as_rpy(rpy, f"{what}rpy")))
     if quat_xyzw is None and quat_wxyz is None:
         return None
     if quat_xyzw is not None:
@@ -83,6 +83,8 @@ def rotation_of(
 
 def as_position(position: Position, what: str) -> Array:
     """A point (3,) [m], with NaN for coordinates of None."""
+    if isinstance(position, pinocchio.SE3) or getattr(position, "shape", None) == (4, 4):
+        raise InputError("must be 3 finite numbers; give a whole placement as placement=", argument=what)
     position = as_plain(position, what)
     parts = position.tolist() if isinstance(position, np.ndarray) and position.dtype == object else position
     if not isinstance(parts, (list, tuple)) or len(parts) != 3 or not any(part is None for part in parts):

@@ -104,7 +104,7 @@ class Target:
                 or quaternion is zero; the weight is out of its range.
 
         Warns:
-            InputWarning: An entry of a rotation matrix was changed by more than 1e-6.
+            InputWarning: An entry of a rotation matrix was changed by more than 1e-6, or `rpy` looks like degrees.
         """
         what = named(frame, relative_to)
         check_combination(what, position, rotation, rpy, quat_xyzw, quat_wxyz, placement, axis, direction, at)
@@ -160,7 +160,7 @@ class Target:
 
     @property
     def along(self) -> tuple[bool, bool, bool]:
-        """Along which axes of `relative_to` the position is constrained."""
+        """For pinik itself: along which axes of `relative_to` the position is constrained."""
         if self.position is None:
             return False, False, False
         x, y, z = (~np.isnan(self.position)).tolist()
@@ -168,7 +168,7 @@ class Target:
 
     @cached_property
     def shape(self) -> tuple[object, ...]:
-        """What is asked of which frame, without the numbers that say where. It is equal where only these differ."""
+        """For pinik itself: what is asked of which frame, and equal where only the numbers that say where differ."""
         axis = None if self.axis is None else tuple(self.axis.tolist())
         parts = (self.along, self.rotation is not None, axis, self.at is not None, self.tolerance)
         tool = None if self._tool is None else self._tool.homogeneous.tobytes()
@@ -201,7 +201,7 @@ class Target:
     def with_numbers(
         self, position: Array, rotation: Array, direction: Array | None = None, at: Array | None = None
     ) -> Target:
-        """The same target with other numbers, taken as they are; those that it does not ask for are ignored."""
+        """For pinik itself: the same target with other numbers; those that it does not ask for are ignored."""
         moved = object.__new__(Target)
         vars(moved).update(vars(self))
         vars(moved).pop("_key", None)
@@ -218,7 +218,7 @@ class Target:
         return moved
 
     def alone(self, part: str) -> Target | None:
-        """The same target with its position or its orientation alone; None if it does not ask for that part.
+        """For pinik itself: the same target with its position or orientation alone; None if it asks for no such.
 
         Args:
             part: "position" or "orientation".

@@ -68,7 +68,7 @@ class Tolerance(NamedTuple):
         return math.hypot(*self.position) if isinstance(self.position, tuple) else self.position
 
     def is_wide(self, size_of_chain: float) -> bool:
-        """Whether it is worth looking for an answer inside the tolerance instead of the exact one.
+        """For pinik itself: whether it is worth looking for an answer inside the tolerance instead of the exact one.
 
         Args:
             size_of_chain: The length of the chain [m].
@@ -115,7 +115,7 @@ class TargetError(_Errors):
         return self.orientation is None or self.orientation <= tolerance.orientation
 
     def excess(self, tolerance: Tolerance, metres_per_radian: float) -> float:
-        """How far the errors exceed the tolerance, in one number [m].
+        """For pinik itself: how far the errors exceed the tolerance, in one number [m].
 
         Args:
             tolerance: The tolerance.

@@ -32,7 +32,7 @@ class Summary:
 
     @classmethod
     def of(cls, rows: int, skipped: int, tally: Tally, seconds: float) -> Summary:
-        """The summary of a tally."""
+        """For pinik itself: the summary of a tally."""
         names = [status.name for status in Status]
         by_status = {name: int(tally.notes[name]) for name in names if name in tally.notes}
         return cls(rows, by_status, skipped, int(tally.earlier.get("rows", 0)), seconds)

@@ -21,7 +21,7 @@ class Avoid:
 
     Attributes:
         itself: Whether the links of the robot must not touch each other.
-        around: The shapes around the robot.
+        around: For pinik itself: the shapes around the robot.
     """
 
     itself: bool = False
@@ -54,7 +54,7 @@ class Avoid:
         return self.itself or bool(self.around)
 
     def guard(self, robot: RobotModel, engine: str) -> Guard | None:
-        """The checker for a robot; None if nothing is to be avoided.
+        """For pinik itself: the checker for a robot; None if nothing is to be avoided.
 
         Args:
             robot: The robot.

@@ -36,7 +36,7 @@ class World:
     Every change makes a new version of the world. What was computed for an earlier version stays as it was, and a call
     that has begun does not see the change, so a world may be changed while other threads use it.
 
-    Example:
+    Examples:
         >>> world = World()
         >>> world.add_box("table", [1.0, 0.8, 0.05], [0.5, 0.0, -0.025])
         >>> world.names
@@ -104,12 +104,12 @@ class World:
 
     @property
     def version(self) -> int:
-        """How often the world was changed."""
+        """For pinik itself: how often the world was changed."""
         return self._version
 
     @property
     def solids(self) -> tuple[Solid, ...]:
-        """The shapes of this version; a new tuple for each version."""
+        """For pinik itself: the shapes of this version; a new tuple for each version."""
         return self._solids
 
     def add_box(self, name: str, size: ArrayLike, placement: pinocchio.SE3 | ArrayLike | None = None) -> None:

@@ -120,24 +120,24 @@ class Solver:
         return {name: getattr(self, name) for name in field_names(type(self))}
 
     def check(self, problem: Problem) -> None:
-        """Check that this method can solve a problem. Most methods can solve any.
+        """For pinik itself: check that this method can solve a problem. Most methods can solve any.
 
         Raises:
             InputError: It cannot; the message says why.
         """
 
     def off_plane(self, robot: RobotModel, targets: Sequence[Target]) -> OffPlane | None:
-        """How far the target lies off the plane in which its frame moves; None if the method knows no such plane."""
+        """For pinik itself: how far the target lies off the plane of its frame; None if the method knows no plane."""
         return None
 
     @property
     def exact(self) -> bool:
-        """Whether the method stops only at the nearest reachable point, to within 1e-5 of the chain's length."""
+        """For pinik itself: whether it stops only at the nearest reachable point, to 1e-5 of the chain's length."""
         return False
 
     @property
     def held(self) -> tuple[str, ...]:
-        """The names of the joints that this method never moves."""
+        """For pinik itself: the names of the joints that this method never moves."""
         return ()
 
 
@@ -176,11 +176,11 @@ class JacobianSolver(Solver, ABC):
 
     @property
     def held(self) -> tuple[str, ...]:
-        """The joints of stiffness 0."""
+        """For pinik itself: the joints of stiffness 0."""
         return without_motion(self.stiffness)
 
     def roots(self, problem: Problem) -> Array | None:
-        """√w_i for every tangent coordinate (nv,), scaled so that the largest free one is 1; None without weights."""
+        """For pinik itself: √w_i for each tangent coordinate (nv,), the largest free one 1; None without weights."""
         if not self.stiffness:
             return None
         weights = np.ones(problem.model.nv)

@@ -39,7 +39,7 @@ class CCD(SweepingSolver):
     A hinge with unit axis a turns by the φ that maximises
     $g(\varphi) = k_1(1 - \cos\varphi) + k_2\cos\varphi + k_3\sin\varphi$, that is $\varphi = \operatorname{atan2}(k_3,
     k_2 - k_1)$. Let $P_c, P_d$ be the points of effector and target relative to the joint, and $u_c, u_d$ the axes of
-    their frames; then $k_1 = w_p(P_d \cdot a)(P_c \cdot a) + w_o\sum(u_d \cdot a)(u_c \cdot a)$,
+    their frames; then $k_1 = w_p(P_d \cdot a)(P_c \cdot a)$ $+\, w_o\sum(u_d \cdot a)(u_c \cdot a)$,
     $k_2 = w_p P_d \cdot P_c + w_o\sum u_d \cdot u_c$ and $k_3 = a \cdot (w_p P_c \times P_d + w_o\sum u_c \times u_d)$.
     A prismatic joint moves by $(P_d - P_c) \cdot a$. Weights: $w_o = 1$, $w_p = \alpha(1 + \rho)$ with
     $\rho = \min(\|P_d\|, \|P_c\|) / \max(\|P_d\|, \|P_c\|)$ and $\alpha = k/W^2$, where W is the chain's length.
@@ -119,11 +119,11 @@ class CCD(SweepingSolver):
 
     @property
     def held(self) -> tuple[str, ...]:
-        """The joints of stiffness 0."""
+        """For pinik itself: the joints of stiffness 0."""
         return without_motion(self.stiffness)
 
     def relaxation_for(self, problem: Problem, loose: bool = False) -> float:
-        """The relaxation; if it is None, the default for the kinds of the targets.
+        """For pinik itself: the relaxation; if it is None, the default for the kinds of the targets.
 
         With `loose`, residuals stop pulling inside their tolerances, and overshooting would leave a tolerance again.
         """

@@ -47,7 +47,7 @@ class TwoBoneSolver(SweepingSolver):
     )
 
     def check(self, problem: Problem) -> None:
-        """Check that the only target is a position of a frame that two parallel hinges move.
+        """For pinik itself: check that the only target is a position of a frame that two parallel hinges move.
 
         Raises:
             InputError: It is not; the message says why.
@@ -56,16 +56,16 @@ class TwoBoneSolver(SweepingSolver):
 
     @property
     def exact(self) -> bool:
-        """Whether `max_residual` is infinite. With partial steps, limits may block one way although another is free."""
+        """For pinik itself: whether `max_residual` is infinite; limits may block a partial step."""
         return self.max_residual == math.inf
 
     @property
     def lands_at_once(self) -> bool:
-        """Whether the first sweep reaches the final configuration."""
+        """For pinik itself: whether the first sweep reaches the final configuration."""
         return self.exact and self.max_step == math.inf
 
     def answers(self, positions: Array, q: Array, problem: Problem, limits: Limits) -> Array:
-        """The configurations (N, nq) inside the limits that come nearest to N positions (N, 3) [m], from `q` (N, nq).
+        """For pinik itself: the configurations (N, nq) inside the limits nearest to positions (N, 3) [m].
 
         Locked joints keep their values.
         """
@@ -95,7 +95,7 @@ class TwoBoneSolver(SweepingSolver):
         return there, 0
 
     def off_plane(self, robot: RobotModel, targets: Sequence[Target]) -> OffPlane:
-        """How far the target lies off the plane in which the two bones move."""
+        """For pinik itself: how far the target lies off the plane in which the two bones move."""
         bones, wanted = _bones(robot, targets)
         return bones.off_plane(wanted)
 

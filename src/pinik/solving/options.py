@@ -141,17 +141,17 @@ class Options:
 
     @property
     def restarts_at_most(self) -> int:
-        """The maximum number of restarts after a failed attempt."""
+        """For pinik itself: the maximum number of restarts after a failed attempt."""
         return self.method.restarts if self.restarts is None else self.restarts
 
     @property
     def iterations_at_most(self) -> int:
-        """The maximum number of iterations per attempt."""
+        """For pinik itself: the maximum number of iterations per attempt."""
         return self.method.max_iterations if self.max_iterations is None else self.max_iterations
 
     @property
     def iterations_to_the_end(self) -> int:
-        """The maximum number of iterations of the last run, which continues the best failed attempt."""
+        """For pinik itself: that of the last run, which continues the best failed attempt."""
         return _TO_THE_END_AT_MOST if self.max_iterations is None else self.max_iterations
 
 

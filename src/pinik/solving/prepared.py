@@ -45,9 +45,9 @@ class Prepared:
         robot: The robot.
         targets: The targets that it was prepared with.
         options: The options; `options.method` is the solver with its parameters.
-        question: The compiled problem; any thread may read it.
+        question: For pinik itself: the compiled problem; any thread may read it.
         engine: "python" or "native".
-        native: The object of the compiled engine, if that engine is used.
+        native: For pinik itself: the object of the compiled engine, if that engine is used.
     """
 
     def __init__(self, robot: RobotModel, targets: Target | Sequence[Target], options: Options) -> None:
@@ -72,19 +72,19 @@ class Prepared:
 
     @property
     def attempts(self) -> Attempts:
-        """The Python engine for this problem."""
+        """For pinik itself: the Python engine for this problem."""
         if self._attempts is None:
             self._attempts = Attempts(self.question)
         return self._attempts
 
     @cached_property
     def search(self) -> Search:
-        """The Python engine's search for all answers to this problem."""
+        """For pinik itself: the Python engine's search for all answers to this problem."""
         return Search(self.question)
 
     @cached_property
     def searcher(self) -> Searcher | None:
-        """The compiled engine's search, if that engine is used and there is a joint to move."""
+        """For pinik itself: the compiled engine's search, if that engine is used and there is a joint to move."""
         searches = self.native is not None and self.question.problem.free.any()
         return load().Searcher(self.native) if searches else None
 
@@ -117,7 +117,7 @@ class Prepared:
         q0: ArrayLike | Mapping[str, float] | str | Origin | None = None,
         began: float | None = None,
     ) -> Solution:
-        """Solve for targets of exactly the same kinds as those that it was prepared with.
+        """For pinik itself: solve for targets of exactly the same kinds as those that it was prepared with.
 
         Args:
             asked: The targets.
@@ -144,12 +144,12 @@ class Prepared:
         return None if self._call is None else self._call.solve(place, q0)
 
     def recall(self) -> None:
-        """Let the function that is being called answer the next equal call directly; see `native.recalling`."""
+        """For pinik itself: let the function that is called answer the next equal call at once (`native.recalling`)."""
         if self._call is not None:
             note(self._call)
 
     def as_asked(self, targets: Target | Sequence[Target] | pinocchio.SE3 | ArrayLike) -> tuple[Target, ...]:
-        """The targets of a call, given as for a call, checked to be of the same kinds as the prepared ones.
+        """For pinik itself: the targets of a call, checked to be of the same kinds as the prepared ones.
 
         Raises:
             InputError: The targets differ in kind from those it was prepared with.

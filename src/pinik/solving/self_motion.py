@@ -131,7 +131,7 @@ class SelfMotion:
             more dimensions, nor of a set whose kernel is larger than itself everywhere, which is not explored.
         gap: The largest distance [rad] from a configuration known to be in the set to the nearest one of `q`, if the
             set has more dimensions than one; else None.
-        known: What was explored: the place alone, the curves, or the tree.
+        known: For pinik itself: what was explored: the place alone, the curves, or the tree.
     """
 
     robot: RobotModel

@@ -189,9 +189,14 @@ class Track(Outcomes):
         return len(self) == self.asked and bool(self.reached.all()) and not self.jumps
 
     @property
+    def robot(self) -> RobotModel:
+        """The robot."""
+        return self.prepared.robot
+
+    @property
     def joint_names(self) -> tuple[str, ...]:
         """The names of the joints, in the order of the columns of `angles`."""
-        return self.prepared.robot.joint_names
+        return self.robot.joint_names
 
     @property
     def engine(self) -> str:

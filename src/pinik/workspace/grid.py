@@ -34,7 +34,7 @@ class Grid:
 
     @classmethod
     def around(cls, center: Array, half: Array, size: float) -> Grid:
-        """A grid with a cell in the middle of a box.
+        """For pinik itself: a grid with a cell in the middle of a box.
 
         Args:
             center: The middle of the box (3,) [m].
@@ -49,7 +49,7 @@ class Grid:
 
     @classmethod
     def in_box(cls, box: ArrayLike, size: float) -> Grid:
-        """A grid whose cells fill a box: its lower and upper corner (2, 3) [m].
+        """For pinik itself: a grid whose cells fill a box: its lower and upper corner (2, 3) [m].
 
         Raises:
             InputError: The box is not one, or there would be too many cells.
@@ -87,7 +87,7 @@ class Grid:
         return np.asarray(np.array(self.origin) + self.size * np.stack(np.unravel_index(cells, self.shape), axis=1))
 
     def cells_at(self, points: Array) -> Indices:
-        """The numbers (n,) of the cells in which points (n, 3) [m] lie; −1 outside the grid."""
+        """For pinik itself: the numbers (n,) of the cells in which points (n, 3) [m] lie; −1 outside the grid."""
         at = np.floor((points - np.array(self.origin)) / self.size + 0.5)
         inside = ((at >= 0.0) & (at < self.shape)).all(axis=1)
         x, y, z = np.where(inside[:, None], at, 0.0).astype(np.int64).T

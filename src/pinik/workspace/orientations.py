@@ -66,12 +66,12 @@ class Orientations:
 
     @property
     def down(self) -> slice:
-        """The orientations in which the approach axis points to −z; all of them if any orientation counts."""
+        """For pinik itself: the orientations in which the approach axis points to −z; all if any orientation counts."""
         rolls = max(self.rolls, 1)
         return slice(len(self) - rolls, len(self)) if self.directions > 1 else slice(0, len(self))
 
     def regions_of(self, rotations: Array) -> Indices:
-        """The numbers (n,) of the orientations in whose regions rotation matrices (n, 3, 3) lie."""
+        """For pinik itself: the numbers (n,) of the orientations in whose regions rotation matrices (n, 3, 3) lie."""
         if not self.directions:
             return np.zeros(len(rotations), dtype=np.int64)
         approach = rotations @ self.axis

@@ -20,7 +20,7 @@ __all__ = ["ReachMap"]
 
 
 class ReachMap(VoxelMap):
-    """What a robot can reach, as `pinik.reach` finds it: a `VoxelMap` with files, pictures, and places for the base."""
+    """What a robot can reach, cell by cell, as `pinik.reach` finds it."""
 
     def bases(
         self,

@@ -69,8 +69,8 @@ class VoxelMap:
         orientations: The orientations that are told apart: `vectors` and `rotations`.
         samples: The number of random configurations; 0 for a map by solves.
         counts_branches: Whether distinct answers were counted.
-        unit: The unit in which manipulabilities are counted.
-        counts: What was found.
+        unit: For pinik itself: the unit in which manipulabilities are counted.
+        counts: For pinik itself: what was found.
         machine: The robot; None for a map that was read from a file.
     """
 
@@ -296,7 +296,7 @@ class VoxelMap:
         return f"{words}, by {way}"
 
     def require_robot(self, robot: Robot | None, what: str) -> Robot:
-        """The robot that was given, or the map's own; InputError if there is none."""
+        """For pinik itself: the robot that was given, or the map's own; InputError if there is none."""
         machine = self.machine if robot is None else robot
         if not isinstance(machine, Robot):
             raise InputError(f"{what} needs the robot, which a map from a file does not hold: give robot=")

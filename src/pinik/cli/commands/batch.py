@@ -131,7 +131,7 @@ def batch(
       pinik batch arm examples/poses.csv --frame tip --output -
       echo '{"x":0.2,"y":0.2,"z":0.9}' | pinik batch arm - --frame tip --output - --format jsonl
     """
-    from ...scale import batch as scale
+    from ...batch import run
 
     _check_streams(robot, targets, to_file, as_json)
     units = Units(degrees)
@@ -164,7 +164,7 @@ def batch(
     source: str | BinaryIO = sys.stdin.buffer if targets == "-" else targets
     try:
         with failures_in_words(solver, method), named_by_option(options), JobProgress() as progress:
-            summary = scale.run(
+            summary = run(
                 machine,
                 source,
                 frame,

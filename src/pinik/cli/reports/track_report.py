@@ -45,7 +45,7 @@ def emit_track(track: Track, form: str, path: Path | None, units: Units) -> None
     Raises:
         CommandError: The file cannot be written, or CSV cannot hold a floating or planar joint.
     """
-    if form == "csv" and any(not joint.has_one_axis for joint in track.prepared.robot.joints):
+    if form == "csv" and any(not joint.has_one_axis for joint in track.robot.joints):
         raise CommandError("CSV has no place for floating and planar joints; use --format jsonl")
     lines = _csv_lines(track, units) if form == "csv" else _json_lines(track)
     text = "\n".join(lines)
@@ -56,7 +56,7 @@ def emit_track(track: Track, form: str, path: Path | None, units: Units) -> None
 
 
 def _csv_lines(track: Track, units: Units) -> Iterator[str]:
-    joints = [track.prepared.robot.joint(name) for name in track.joint_names]
+    joints = [track.robot.joint(name) for name in track.joint_names]
     turns = [units.degrees and joint.kind != "prismatic" for joint in joints]
     yield _csv_line((["t"] if track.times is not None else []) + list(track.joint_names))
     for index, angles in enumerate(track.angles.tolist()):
@@ -71,7 +71,7 @@ def _csv_line(cells: list[Any]) -> str:
 
 
 def _json_lines(track: Track) -> Iterator[str]:
-    robot = track.prepared.robot
+    robot = track.robot
     for index in range(len(track)):
         fields: dict[str, Any] = {} if track.times is None else {"t": float(track.times[index])}
         fields["angles"] = dict(zip(track.joint_names, track.angles[index].tolist(), strict=True))

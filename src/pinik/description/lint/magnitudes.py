@@ -6,6 +6,7 @@ import math
 from collections.abc import Iterator
 from statistics import median
 
+from ...rotations import like_degrees, rpy_like_degrees
 from ..flaw import Flaw
 from ..xml import Element
 from .plain import JointValues, joint_values, named, plain_vector
@@ -13,7 +14,6 @@ from .plain import JointValues, joint_values, named, plain_vector
 __all__ = ["magnitudes"]
 
 _MOST_TURNS = 4.0 * math.pi  # [rad]: real joints seldom turn further, except for those without an end
-_MOST_DEGREES = 1080.0
 _FAR = 10.0  # [m]: shorter distances are plausible in metres
 _TIMES = 100.0  # millimetres among metres are 1000 times too long; parts differ in length by themselves
 _MOST_MILLIMETRES = 10_000.0
@@ -48,7 +48,7 @@ def _degrees_in_limits(joints: list[JointValues]) -> Iterator[Flaw]:
     usual = [end for end in ends if end <= _MOST_TURNS]
     compared = f", while {_joints(len(usual))} within {max(usual):.3g} rad" if usual else ""
     for (joint, lower, upper), end in zip(turning, ends, strict=True):
-        if end <= _MOST_TURNS or not (_like_degrees(lower) and _like_degrees(upper)):
+        if end <= _MOST_TURNS or not (like_degrees(lower) and like_degrees(upper)):
             continue
         turns = end / (2.0 * math.pi)
         cause = f"its limits {lower:g}…{upper:g} rad are up to {turns:.3g} turns, and look like degrees{compared}"
@@ -64,7 +64,7 @@ def _degrees_in_limits(joints: list[JointValues]) -> Iterator[Flaw]:
 
 def _origin(origin: Element, owner: str, typical: float | None) -> Iterator[Flaw]:
     rpy = plain_vector(origin, "rpy")
-    if rpy is not None and max(map(abs, rpy)) > 2.0 * math.pi + 0.1 and all(map(_like_degrees, rpy)):
+    if rpy is not None and rpy_like_degrees(rpy):
         shown = " ".join(f"{math.radians(angle):.6g}" for angle in rpy)
         yield Flaw(
             owner,
@@ -107,10 +107,6 @@ def _millimetres_in_limit(joint: JointValues, typical: float) -> Iterator[Flaw]:
         common="its limits are a travel of over 100 times the length of other parts, and look like millimetres",
         mend=f'If millimetres are meant, write lower="{joint.lower / 1000.0:.6g}" upper="{joint.upper / 1000.0:.6g}".',
     )
-
-
-def _like_degrees(value: float) -> bool:
-    return abs(value) <= _MOST_DEGREES and (2.0 * value).is_integer()
 
 
 def _joints(count: int) -> str:

@@ -12,30 +12,30 @@ from typing import Any
 import pinocchio
 from numpy.typing import ArrayLike
 
-from ..checks import as_count
-from ..errors import InputError, PinikError
-from ..model.robot_model import RobotModel
-from ..problem.target_values import as_tool
-from ..problem.tolerance import Tolerance
-from ..shapes.avoid import Avoided
-from ..solvers.registry import Method
-from ..solving.options import OPTION_NAMES, Options
-from ..solving.origin import Origin
-from ..solving.prepared import Prepared
-from ..solving.words import check_words
-from .answers import columns_of
-from .asked import Reading
-from .columns import Columns
-from .delivery import AnswersGiven, Delivery
-from .identity import identity_of_options, identity_of_robot
-from .jobs.fingerprint import Fingerprint, versions
-from .jobs.job import Job, Tally
-from .jobs.runners import runner_of
-from .solving import Solving
-from .summary import Summary
-from .survey import Survey, digest_of, survey
-from .tables.parquet import pyarrow_version
-from .targets_file import TargetsFile, TargetsGiven, opened
+from .checks import as_count
+from .errors import InputError, PinikError
+from .model.robot_model import RobotModel
+from .problem.target_values import as_tool
+from .problem.tolerance import Tolerance
+from .scale.answers import columns_of
+from .scale.asked import Reading
+from .scale.columns import Columns
+from .scale.delivery import AnswersGiven, Delivery
+from .scale.identity import identity_of_options, identity_of_robot
+from .scale.jobs.fingerprint import Fingerprint, versions
+from .scale.jobs.job import Job, Tally
+from .scale.jobs.runners import runner_of
+from .scale.solving import Solving
+from .scale.summary import Summary
+from .scale.survey import Survey, digest_of, survey
+from .scale.tables.parquet import pyarrow_version
+from .scale.targets_file import TargetsFile, TargetsGiven, opened
+from .shapes.avoid import Avoided
+from .solvers.registry import Method
+from .solving.options import OPTION_NAMES, Options
+from .solving.origin import Origin
+from .solving.prepared import Prepared
+from .solving.words import check_words
 
 __all__ = ["OnProgress", "run"]
 
@@ -61,7 +61,7 @@ def run(
     targets_form: str | None = None,
     tool: pinocchio.SE3 | ArrayLike | None = None,
     relative_to: str | None = None,
-    q0: ArrayLike | Mapping[str, float] | str | Origin | None = None,
+    q0: ArrayLike | Mapping[str, float] | str | None = None,
     limits: bool = True,
     locked: Iterable[str] = (),
     restarts: int | None = None,
@@ -168,7 +168,7 @@ def _reading(
     tool: pinocchio.SE3 | ArrayLike | None,
     relative_to: str | None,
     tolerance: Tolerance,
-    q0: ArrayLike | Mapping[str, float] | str | Origin | None,
+    q0: ArrayLike | Mapping[str, float] | str | None,
     degrees: bool,
 ) -> Reading:
     for name in (frame, relative_to):
