@@ -284,5 +284,15 @@ class Session:
             raise InputError(f"instances are numbered from 0 to {len(self.instances) - 1}; got {index}")
         return self.instances[index]
 
+    def visible(self, index: int) -> Instance:
+        """A visible instance by its number.
+
+        Raises:
+            InputError: There is no such visible instance.
+        """
+        if not 0 <= index < self.view:
+            raise InputError(f"the visible instances are numbered from 0 to {self.view - 1}; got {index}")
+        return self.instances[index]
+
     def _agree_on_terms(self) -> None:
         self.scores.agree(terms(self.seen, self.settings, self.motion, self.balls), self.view)

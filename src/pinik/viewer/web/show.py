@@ -13,6 +13,7 @@ from ...errors import InputError, PinikError
 from ...robot import Robot
 from ..protocol.messages import any_text, apply, checked, parse, text, whole_number
 from ..protocol.recording import Recording
+from ..protocol.robot_words import live_command
 from ..protocol.robots import RobotMenu
 from ..protocol.setup import Setup, apply_setup, read_setup, write_setup
 from ..protocol.state import hello_message, session_state
@@ -284,6 +285,11 @@ class Show:
 
     # Answers
 
+    @property
+    def _watches(self) -> bool:
+        """Whether the file of the robot on show is watched."""
+        return self._watched is not None and self._watched.is_shown(self.session)
+
     def state(self) -> dict[str, Any]:
         """Return the `state` message."""
         return {
@@ -291,14 +297,16 @@ class Show:
             "generation": self._exhibit.generation,
             "steps_per_second": self._pace.value if self.session.running else None,
             "loading": self._loader.loading,
-            "watched": None if self._watched is None else self._watched.state,
+            "watched": None if self._watched is None else self._watched.state(self.session),
+            "command": live_command(self.session.robot, self._watches),
             "setup": write_setup(self.session),
         }
 
     def animation(self) -> bytes:
         """Return the last seconds as one HTML file (UTF-8) that plays without a server."""
         shapes = self._exhibit.shapes or Shapes((), (), ())
-        return animation_page(self._hello, self._exhibit.robot, shapes, self.state(), self.recording)
+        state = self.state() | {"command": None}  # it holds a path of this machine, and the page may be sent around
+        return animation_page(self._hello, self._exhibit.robot, shapes, state, self.recording)
 
 
 def _notice(words: str) -> str:
