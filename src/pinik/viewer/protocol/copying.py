@@ -31,7 +31,7 @@ def texts_to_copy(session: Session, instance: int) -> list[dict[str, str]]:
     Raises:
         InputError: There is no such visible instance.
     """
-    robot, q = session.robot, session.visible(instance).q
+    robot, q = session.robot, session.instances.visible(instance).q
     angles = {name: float(robot.angles(q)[name]) for name in robot.joint_names}
     pose = [
         ("pose.py", "The pose as Python", _loaded(robot) + _configuration("q", robot, q, angles)),

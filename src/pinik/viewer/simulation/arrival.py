@@ -23,7 +23,7 @@ def why_away(session: Session, index: int) -> str:
     Raises:
         InputError: There is no such visible instance.
     """
-    instance, targets = session.visible(index), session.balls.targets
+    instance, targets = session.instances.visible(index), session.balls.targets
     missed = _missed(session, targets, instance.q)
     if missed:
         balls = [f"the ball of {target.frame} by {how_far([error])}" for target, error in missed]

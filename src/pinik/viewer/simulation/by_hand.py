@@ -46,7 +46,7 @@ def set_angles(session: Session, instance: int | None, angles: Mapping[str, floa
             plane of its joint.
     """
     led = range(session.view) if instance is None else [instance]
-    q = session.visible(led[0]).q.copy()
+    q = session.instances.visible(led[0]).q.copy()
     if not angles:
         raise InputError("no joint is named whose angle is to be set")
     for name, angle in angles.items():

@@ -16,7 +16,7 @@ def step_iteration(session: Session, instance: int | None = None) -> None:
     Raises:
         InputError: There is no such visible instance.
     """
-    chosen = session.seen if instance is None else [session.visible(instance)]
+    chosen = session.seen if instance is None else [session.instances.visible(instance)]
     session.running = False
     session.stillness.end()
     for one in chosen:

@@ -142,7 +142,7 @@ class Answers:
         _put(session, self._instance, self._along, index, "place along the self-motion")
 
     def _asked(self, session: Session, instance: int) -> tuple[Robot, tuple[Target, ...], NDArray[np.float64]]:
-        q = session.visible(instance).q
+        q = session.instances.visible(instance).q
         targets = tuple(session.balls.targets)
         if not targets:
             raise InputError("no ball asks for anything; switch one on first")
@@ -179,4 +179,4 @@ class Answers:
 def _put(session: Session, instance: int, known: list[NDArray[np.float64]], index: int, what: str) -> None:
     if not 0 <= index < len(known):
         raise InputError(f"there is no {what} {index}; {len(known)} were found, numbered from 0")
-    session.visible(instance).put(known[index])
+    session.instances.visible(instance).put(known[index])

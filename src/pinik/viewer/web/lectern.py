@@ -46,7 +46,7 @@ class Lectern:
             case "explain":
                 index = checked("explain", message, {"instance": number_or_none})["instance"]
                 if index is not None:
-                    session.visible(index)
+                    session.instances.visible(index)
                 self._readers.open(tab, index)
             case "race":
                 fields = checked("race", message, {"places": _places, "seed": _seed})
