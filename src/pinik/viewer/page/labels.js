@@ -1,6 +1,6 @@
 /** The captions of the robots: method and result. They never overlap each other, and cover as little as they can. */
 
-import { beside, shared } from "pinik/beside.js";
+import { beside as bestPlace, shared } from "pinik/beside.js";
 import { make, say } from "pinik/elements.js";
 
 const GAP = 6; // [px]
@@ -22,12 +22,11 @@ export class Labels {
     /** Read how large the captions are, which depends on the size of the page. */
     measure() {
         this.scale = Number(getComputedStyle(this._element).getPropertyValue("--caption-scale")) || 1;
-    }
-
-    /** The height of the tallest caption [px]. */
-    get height() {
+        const beside = this._element.clientWidth < SMALL ? LEAST : NARROW;
         const least = (this._narrow ? NARROW_HEIGHT : HEIGHT) * this.scale;
-        return Math.max(least, ...this._chips.map(({ chip }) => chip.offsetHeight));
+        const tallest = Math.max(least, ...this._chips.map(({ chip }) => chip.offsetHeight));
+        /** The width that captions beside robots may have, and the height of the tallest caption [px]. */
+        this.size = { w: beside * this.scale, h: tallest };
     }
 
     /** @param texts {title, method, words, note, tone} of each instance */
@@ -56,9 +55,10 @@ export class Labels {
      * @param balls rectangles around all balls
      * @param room {width, height} of the picture
      * @param taken rectangles of what else stands in the picture
+     * @param beside whether there is room beside the robots, and not below them
      */
-    place(spots, balls, room, taken) {
-        this._fit(narrowest(spots.map(({ foot }) => foot)), room);
+    place(spots, balls, room, taken, beside) {
+        this._fit(beside ? this.size.w + GAP : narrowest(spots.map(({ foot }) => foot)), room);
         const covers = [
             ...spots.map(({ box }) => ({ ...box, weight: 1 })),
             ...balls.map((ball) => ({ ...ball, weight: WEIGHTS.ball })),
@@ -66,7 +66,7 @@ export class Labels {
         ];
         const placed = [];
         this._each(spots, (spot, chip, i) => {
-            const place = beside(spot, sizeOf(chip), covers, room, this._ways[i]);
+            const place = bestPlace(spot, sizeOf(chip), covers, room, this._ways[i]);
             this._ways[i] = place.way;
             placed.push(apart(place, placed, room));
             covers.push({ ...placed.at(-1), weight: WEIGHTS.caption });

@@ -1,0 +1,68 @@
+"""The frames and states that all tabs are sent: what is due, and the recording of the frames."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable
+from typing import Any
+
+from ..protocol.recording import Recording
+from ..simulation.session import Session
+from .outbox import Message
+from .seats import Seats
+
+__all__ = ["Broadcast"]
+
+_STATES_PER_SECOND = 4
+
+
+class Broadcast:
+    """Sends frames and states to the tabs that are not late, and records the frames.
+
+    Attributes:
+        recording: The frames of the last seconds.
+        frame: The newest frame.
+        frame_due: Whether something has changed that only another frame shows.
+        state_due: Whether the next state is sent as soon as possible.
+    """
+
+    def __init__(self, seats: Seats, clock: Callable[[], float]) -> None:
+        self.recording = Recording()
+        self.frame: Message = b""
+        self.frame_due = self.state_due = True
+        self._seats, self._clock = seats, clock
+        self._recorded_step, self._state_sent = -1, clock()
+
+    @property
+    def is_due(self) -> bool:
+        """Whether anything is to be sent."""
+        return self.frame_due or self.state_due
+
+    def start_anew(self, frame: bytes) -> None:
+        """Discard the recording, whose frames show other instances or balls than this one."""
+        self.recording.clear()
+        self._recorded_step = -1
+        self.frame = frame
+        self.frame_due = self.state_due = True
+        self._state_sent = self._clock()
+
+    def send_frame(self, frame: bytes, step: int) -> None:
+        """Send a frame, and record it unless it is of the same step as the last one."""
+        self.frame_due = False
+        self.frame = frame
+        if step != self._recorded_step:  # moving a ball between two steps adds no frame to the recording
+            self._recorded_step = step
+            self.recording.add(frame, self._clock())
+        self._seats.offer_frame(frame)
+
+    def wants_state(self, session: Session) -> bool:
+        """Whether a state is to be sent now: one is due, or the session has moved for a quarter of a second."""
+        often_enough = self._clock() - self._state_sent >= 1.0 / _STATES_PER_SECOND
+        return self.state_due or (session.running and often_enough and not session.rests)
+
+    def send_state(self, state: Callable[[], dict[str, Any]]) -> None:
+        """Send what `state` returns, which is asked only if there is a tab."""
+        self.state_due = False
+        self._state_sent = self._clock()
+        if self._seats:
+            self._seats.offer_state(json.dumps(state()))
