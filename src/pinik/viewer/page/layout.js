@@ -12,7 +12,7 @@ const ABOVE = 1.2; // [rad] the elevation from which a view is one from above
 const STEEP = 0.5; // [rad] the least elevation of the camera for two rows
 const GAP = 0.02; // between neighbours, as a fraction of what keeps them apart
 const SLENDER = 0.5; // the least width of a column, as a fraction of a robot's height, where there is room for it
-const NEARER = 0.9; // between two rows, as a fraction of what would keep their convex outlines apart, where one tilts
+const NEARER = 0.87; // between two rows, as a fraction of what would keep their convex outlines apart, where one tilts
 const ROOM = 0.8; // the least distance of two rows on the ground, as a fraction of a robot's depth
 const ROUNDS = 5; // for the room of captions, which depends on how far the camera is
 

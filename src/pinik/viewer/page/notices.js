@@ -4,6 +4,10 @@ import { byId, icon, make, say } from "pinik/elements.js";
 
 const SHOWN = 8000; // [ms]
 const GOOD = 4000; // [ms]
+const MOST = 3;
+const MARGIN = 10; // [px] below and above all notices
+
+const heightOf = (element) => element.getBoundingClientRect().height;
 
 export class Notices {
     error(words) {
@@ -15,7 +19,9 @@ export class Notices {
         close.addEventListener("click", remove);
         setTimeout(remove, SHOWN);
         toasts.append(toast);
-        while (toasts.children.length > 3) toasts.firstChild.remove();
+        // No more than stand over the figures below the stage, so that they cover no robot.
+        const room = heightOf(document.querySelector(".dock")) - 2 * MARGIN;
+        while (toasts.children.length > (heightOf(toasts) > room ? 1 : MOST)) toasts.firstChild.remove();
     }
 
     /** @param command the command that shows the present robot, or null if it was not read from a file */
