@@ -131,7 +131,7 @@ def test_robots_in_a_row_fill_its_width_and_are_as_near_as_their_outlines_allow(
         outlines = [outline(points) for points in picture["visited"]]
         assert all(shared(a, b) < 0.02 * area(a) for a, b in itertools.pairwise(outlines))
         apart = outlines[1].mean(axis=0)[0] - outlines[0].mean(axis=0)[0]
-        nearer = np.array([0.06 * apart, 0.0])
+        nearer = np.array([0.1 * apart, 0.0])
         assert all(shared(a + nearer, b) > 0.0 for a, b in itertools.pairwise(outlines)), "they could stand nearer"
         assert np.ptp(np.concatenate(outlines)[:, 0]) > 0.95 * picture["size"][0]
         heights = [np.ptp(points[:, 1]) for points in outlines]
