@@ -85,6 +85,7 @@ def test_undo_and_redo_bring_back_settings_balls_poses_and_robots(open_panel):
     ball = desk.state["balls"][0]["position"]
     desk.type("joint-number-bone1_x", 25)
     desk.until(lambda s: angles(s)["bone1_x"] == pytest.approx(math.radians(25)))
+    desk.agree()  # else the tab may not have seen what was between the two changes, which are then undone as one
     desk.part("limits").click()
     desk.until(lambda s: not s["limits"])
     desk.agree()
@@ -105,6 +106,19 @@ def test_undo_and_redo_bring_back_settings_balls_poses_and_robots(open_panel):
     desk.agree()
     desk.click("undo")
     assert desk.until(lambda s: s["robot"] == "arm")
+
+
+def test_changes_that_follow_each_other_before_an_answer_are_undone_as_one(open_panel):
+    desk = open_panel("arm", methods=("dls",))
+    desk.runs("{ for (const id of ['limits', 'polish']) document.getElementById(id).click(); }")
+    desk.until(lambda s: not s["limits"] and s["polish"])
+    desk.agree()
+    desk.click("undo")
+    desk.until(lambda s: s["limits"] and not s["polish"])
+    desk.expect("undo").to_be_disabled()
+    desk.agree()
+    desk.click("redo")
+    desk.until(lambda s: not s["limits"] and s["polish"])
 
 
 def test_what_changes_nothing_is_not_undone(open_panel):

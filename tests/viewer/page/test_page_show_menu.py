@@ -239,3 +239,20 @@ def test_a_lost_connection_says_how_to_start_again(open_panel):
     desk.view.close()
     desk.expect("banner").to_contain_text(f"pinik live two_link --port {desk.view.port}")
     desk.wait(lambda: float(desk.runs("getComputedStyle(document.querySelector('.panel')).opacity")) < 0.6)
+
+
+def test_a_lost_connection_names_the_path_of_ones_own_file(open_panel, tmp_path):
+    file = tmp_path / "my arm.urdf"
+    file.write_text(robot(link("base"), link("tip"), joint("turn", "base", "tip")))
+    desk = open_panel(file, ("dls",), watch=True)
+    desk.faults.excuse("WebSocket")
+    desk.view.close()
+    desk.expect("banner").to_contain_text(f"pinik live '{file}' --watch --port {desk.view.port}")
+
+
+def test_a_lost_connection_names_no_command_for_a_robot_without_a_file(open_panel):
+    desk = open_panel(robot(link("base"), link("tip"), joint("turn", "base", "tip")), ("dls",))
+    desk.faults.excuse("WebSocket")
+    desk.view.close()
+    desk.expect("banner").to_contain_text("start it again where you started it.")
+    assert desk.part("banner").locator("code").count() == 0

@@ -51,3 +51,16 @@ def test_camera_and_angles_stay_and_a_fault_is_said_over_the_last_good_robot(ope
     assert state["instances"][0]["angles"]["turn"] == pytest.approx(1.0), "inside the new limits"
     desk.expect("watched").to_be_hidden()
     assert desk.runs(where) == pytest.approx(camera)
+
+
+def test_a_fault_says_whether_the_robot_or_another_one_is_seen_meanwhile(open_panel, tmp_path):
+    path = tmp_path / "own.urdf"
+    path.write_text(arm(0.4))
+    desk = open_panel(path, methods=("dls",), watch=True)
+    own = desk.state["robot"]
+    path.write_text("<robot/>")
+    desk.expect("watched").to_contain_text("You see the robot as it last was.")
+    desk.choose("robot", "two_link")
+    desk.expect("watched").to_contain_text("You see another robot meanwhile.")
+    desk.choose("robot", own)
+    desk.expect("watched").to_contain_text("You see the robot as it last was.")

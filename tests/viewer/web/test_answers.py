@@ -10,6 +10,7 @@ import pytest
 
 import pinik
 from judge import plain_placement
+from pinik.viewer.simulation.by_hand import set_angles
 from pinik.viewer.simulation.session import Session
 from pinik.viewer.web.answers import Answers
 from robots import load_quietly
@@ -103,13 +104,44 @@ def test_a_place_without_self_motion_says_so(scene):
     assert "isolated" in told["message"]
 
 
-def test_an_instance_that_has_not_arrived_is_told_why(scene):
-    scene.session.move_ball(0, [3.0, 0.0, 0.0])
-    scene.session.step()
-    scene.answers.follow(scene.session, 1, 0)
+def self_motion_words(scene, instance=0):
+    """What the page is told of a self-motion that there is not."""
+    scene.answers.follow(scene.session, 1, instance)
     scene.later.do_all()
-    assert scene.sent[-1]["type"] == "error"
-    assert "must reach the targets" in scene.sent[-1]["message"]
+    told = scene.sent[-1]
+    assert (told["type"], told["placements"], told["closed"]) == ("self_motion", [], False)
+    return told["message"]
+
+
+def test_a_robot_that_misses_its_ball_says_which_by_how_much_and_what_to_do(scene):
+    ball = scene.session.balls[0]
+    scene.session.move_ball(0, [3.0, 0.0, 0.0])
+    words = self_motion_words(scene, 1)
+    at = plain_placement(UR5, ball.frame, scene.session.instances[1].q).translation
+    away = float(np.linalg.norm(at - ball.position))
+    assert words.startswith(f"robot 2 (pinv) misses the ball of {ball.frame} by {away:.3g} m"), words
+    assert words.endswith("let the robot arrive first (Start), or move the ball to where it can")
+    assert "limits=" not in words
+    assert "pinik" not in words
+
+
+def test_a_robot_that_reaches_its_ball_beyond_its_limits_says_which_joint_is_beyond():
+    scene, joint = Scene(PANDA), "panda_joint4"  # which has to stay below -0.07
+    scene.session.change_settings(limits=False)
+    set_angles(scene.session, None, {joint: 0.4})
+    scene.session.change_settings(limits=True)
+    words = self_motion_words(scene)
+    assert f"robot 1 (dls) reaches every ball only with {joint} beyond the joint limits" in words
+    assert "switch Joint limits off" in words
+
+
+def test_a_robot_that_is_near_a_ball_that_it_cannot_reach_exactly_says_so(two_link):
+    scene = Scene(two_link)
+    reach = np.linalg.norm(two_link.placement(scene.session.balls[0].frame, np.zeros(2)).translation)
+    scene.session.move_ball(0, [reach + 0.5e-4, 0.0, 0.0])
+    set_angles(scene.session, None, dict.fromkeys(two_link.joint_names, 0.0))
+    scene.session.move_ball(0, [reach + 0.5e-4, 0.0, 0.0])
+    assert "robot 1 (dls) is within the tolerance of every ball, but" in self_motion_words(scene)
 
 
 def test_what_was_asked_before_another_robot_came_is_told_to_nobody(scene):

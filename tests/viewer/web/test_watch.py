@@ -78,7 +78,7 @@ def test_a_changed_file_brings_the_new_robot_with_the_old_angles_and_settings(st
     assert sorted(now.leading.among(now.balls.targets)) == [1]
     told = [json.loads(m) for m in stage.tab.sent if isinstance(m, str) and '"robot"' in m[:20]]
     assert [message["keeps_view"] for message in told if message["type"] == "robot"] == [False, True]
-    assert stage.show.state()["watched"] == {"file": "own.urdf", "fault": None}
+    assert stage.show.state()["watched"] == {"file": "own.urdf", "fault": None, "shown": True}
 
 
 def test_a_faulty_file_is_said_in_words_over_the_last_good_robot_until_it_is_good_again(stage):
@@ -153,3 +153,15 @@ def test_srdf_meshes_and_included_files_are_watched_too(tmp_path):
 def test_only_a_robot_from_a_file_can_be_watched(two_link):
     with pytest.raises(pinik.InputError, match="path of a file"):
         pinik.live(two_link, watch=True, port=0)
+
+
+def test_the_state_says_whether_the_watched_robot_is_the_one_on_show(stage):
+    write(stage.path, "<robot/>")
+    stage.look()
+    assert stage.show.state()["watched"]["shown"]
+    stage.show.do({"type": "robot", "name": "two_link", "root": "fixed"})
+    stage.look()
+    state = stage.show.state()
+    assert state["robot"] == "two_link"
+    assert not state["watched"]["shown"]
+    assert state["watched"]["fault"]

@@ -1,6 +1,7 @@
 /** Where a caption hangs: beside its robot, where it covers the least. */
 
-const GAP = 8; // [px] between a caption and its robot
+/** Between a caption and its robot, or the edge of the picture [px]. */
+export const EDGE = 8;
 const WAYS = ["below", "above", "right", "left"];
 const RANK = 500; // [px²] that one way may cover more than the next one before that one is better
 const STAY = 300; // [px²] that another way must cover less before a caption moves; less than a rank, so that it returns
@@ -26,13 +27,13 @@ export function beside({ box, foot }, size, covers, room, before) {
 
 function wanted(way, box, foot, { w, h }) {
     const middle = box.y + box.h / 2 - h / 2;
-    if (way === "below") return { x: foot.x - w / 2, y: box.y + box.h + GAP };
-    if (way === "above") return { x: box.x + box.w / 2 - w / 2, y: box.y - h - GAP };
-    return way === "right" ? { x: box.x + box.w + GAP, y: middle } : { x: box.x - w - GAP, y: middle };
+    if (way === "below") return { x: foot.x - w / 2, y: box.y + box.h + EDGE };
+    if (way === "above") return { x: box.x + box.w / 2 - w / 2, y: box.y - h - EDGE };
+    return way === "right" ? { x: box.x + box.w + EDGE, y: middle } : { x: box.x - w - EDGE, y: middle };
 }
 
 function inside({ x, y }, { w, h }, { width, height }) {
-    const clamp = (value, most) => Math.max(GAP, Math.min(value, most - GAP));
+    const clamp = (value, most) => Math.max(EDGE, Math.min(value, most - EDGE));
     return { x: clamp(x, width - w), y: clamp(y, height - h) };
 }
 

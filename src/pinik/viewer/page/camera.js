@@ -1,7 +1,8 @@
 /** The camera: presets, framing, and smooth transitions. */
 
 import { axesOf } from "pinik/framing.js";
-import { arrange, extent } from "pinik/layout.js";
+import { arrange } from "pinik/layout.js";
+import { Silhouette } from "pinik/silhouette.js";
 import { THREE } from "pinik/three.js";
 
 export const PRESETS = {
@@ -15,8 +16,9 @@ export const PRESETS = {
 const CROWDED = 1.05; // how much wider robots may become before they are moved apart
 const GLIDE = 480; // [ms]
 const DRAG = 4; // [px] that a pressed pointer moves before it counts as a drag
-const SIDES = 16; // [px] left and right of the robots
+const SIDES = 12; // [px] left and right of the robots
 const MOST_ABOVE = 1 / 3; // of the picture's height, kept free above the robots
+const BESIDE = 14; // [px] between a caption and what is next to it
 
 export class Camera extends EventTarget {
     constructor(stage) {
@@ -26,8 +28,8 @@ export class Camera extends EventTarget {
         this.preset = "iso";
         this.moved = false;
         this.offsets = [];
-        [this.captionHeight, this.buttons] = [44, 48]; // [px] what captions below and buttons above need
-        [this._rows, this._column] = [1, Infinity];
+        [this.caption, this.buttons] = [{ w: 200, h: 44 }, 48]; // [px] what captions, and buttons above, need
+        [this.captions, this._apart] = ["below", Infinity];
         this.together = false; // whether all instances stand in one place
         this._calm = matchMedia("(prefers-reduced-motion: reduce)");
         this._watchHand(stage.canvas);
@@ -54,14 +56,15 @@ export class Camera extends EventTarget {
         this.dispatchEvent(new Event("taken"));
     }
 
-    /** Tangents of the half angles that the robots may fill; captions hang below them, and above a second row. */
-    _lens(rows) {
+    /** Tangents of the half angles that the robots may fill, and of a caption's width. */
+    _lens(captions) {
         const { width, height, viewer } = this._stage;
         const half = Math.tan((viewer.camera.fov * Math.PI) / 360);
         const scale = (2 * half) / height; // tangent per pixel
         const part = (size, margin) => Math.max(size / 2 - margin, 10) * scale;
-        const { left, right, top, bottom } = this._margins(rows);
+        const { left, right, top, bottom } = this._margins(captions);
         return {
+            caption: (this.caption.w + BESIDE) * scale,
             left: part(width, left),
             right: part(width, right),
             top: part(height, top),
@@ -70,24 +73,25 @@ export class Camera extends EventTarget {
     }
 
     /** What is kept free around the robots for buttons and captions [px]. */
-    _margins(rows) {
+    _margins(captions) {
         const { width, height } = this._stage;
-        const caption = this.captionHeight + 14;
+        const caption = this.caption.h + BESIDE;
         const side = Math.min(SIDES, width / 4);
-        const top = Math.min(this.buttons + (rows > 1 ? caption : 0), MOST_ABOVE * height);
-        return { left: side, right: side, top, bottom: Math.min(caption, height / 4) };
+        const right = captions === "beside" ? Math.min(side + this.caption.w + BESIDE, width / 2) : side;
+        const top = Math.min(this.buttons + (captions === "around" ? caption : 0), MOST_ABOVE * height);
+        return { left: side, right, top, bottom: captions === "beside" ? BESIDE : Math.min(caption, height / 4) };
     }
 
     /** Whether a point of the picture lies in the outer half of what is kept free. */
     isOutside({ x, y }) {
         const { width, height } = this._stage;
-        const { left, right, top, bottom } = this._margins(this._rows);
+        const { left, right, top, bottom } = this._margins(this.captions);
         return x < left / 2 || y < top / 2 || x > width - right / 2 || y > height - bottom / 2;
     }
 
     /** Whether robots that extend to these points (Vector3s) come into each other's place. */
     isCrowded(points) {
-        return !this.together && extent(points, axesOf(PRESETS[this.preset]).right) > CROWDED * this._column;
+        return !this.together && new Silhouette(points, axesOf(this._view)).beside > CROWDED * this._apart;
     }
 
     /** Arrange `count` instances and look at them all; `points` (Vector3s) are those of one instance. */
@@ -95,12 +99,11 @@ export class Camera extends EventTarget {
         if (!points.length || !this._stage.width) return;
         this.preset = preset;
         this.moved = false;
-        const arranged = arrange(points, this.together ? 1 : count, PRESETS[preset], (rows) => this._lens(rows));
+        const arranged = arrange(points, this.together ? 1 : count, PRESETS[preset], (captions) => this._lens(captions));
         const sphere = new THREE.Sphere().setFromPoints(arranged.everything);
         this._stage.lights.aim(sphere.center, 1.05 * sphere.radius, arranged.view.azimuth);
         this.sphere = sphere;
-        this._rows = arranged.rows;
-        this._column = arranged.column;
+        [this._view, this.captions, this._apart] = [arranged.view, arranged.captions, arranged.apart];
         const goal = {
             ...arranged.view,
             target: arranged.camera.target,

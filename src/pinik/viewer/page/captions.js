@@ -14,6 +14,7 @@ export class Captions {
         this._show = show;
         this._said = 0;
         this._toolbar = element.parentElement.querySelector(".views");
+        this._toasts = element.parentElement.querySelector(".toasts");
     }
 
     setHello(hello) {
@@ -25,37 +26,43 @@ export class Captions {
         const { awaiting } = this._show;
         if (this._told === state && this._count === instances && this._awaited === awaiting) return;
         Object.assign(this, { _told: state, _count: instances, _awaited: awaiting });
-        const texts = state.instances.slice(0, instances).map((instance, i) => {
-            const { title, method, status, position_error, orientation_error } = instance;
-            const led = state.led?.includes(i);
-            const words = led ? "moved by hand" : verdict(status, position_error ?? NaN, orientation_error ?? NaN, state);
-            const note = this._show.instances[i]?.note ?? "";
-            return { title, method, words: awaiting ? AWAITING : words, tone: tone(status), note };
-        });
-        this._labels.set(texts);
-        this.place();
-    }
-
-    /** Read how large the captions are; returns their height [px]. */
-    measure() {
-        this._labels.measure();
-        return this._labels.height;
+        const results = state.instances.slice(0, instances);
+        this._write(
+            state,
+            results.map(({ status, position_error, orientation_error }) => [status, position_error, orientation_error]),
+        );
     }
 
     /** Show the results of a recorded frame, but not more often than one can read. */
     say(now, frame, state) {
         if (now - this._said < WORDS) return;
         this._said = now;
+        const figures = state.instances.slice(0, frame.instances).map((_, i) => frame.figures(i));
+        this._write(
+            state,
+            figures.map(({ status, positionError, orientationError }) => {
+                return [this._statuses[status], positionError, orientationError];
+            }),
+        );
+    }
+
+    /** @param results [status, position error, orientation error] of each instance, errors null or NaN if not asked for */
+    _write(state, results) {
         const { awaiting, instances } = this._show;
-        const texts = state.instances.slice(0, frame.instances).map(({ title, method }, i) => {
-            const { status, positionError, orientationError } = frame.figures(i);
-            const name = this._statuses[status];
+        const texts = results.map(([status, position, orientation], i) => {
+            const { title, method } = state.instances[i];
             const led = state.led?.includes(i);
-            const words = led ? "moved by hand" : verdict(name, positionError, orientationError, state);
-            return { title, method, words: awaiting ? AWAITING : words, tone: tone(name), note: instances[i]?.note ?? "" };
+            const words = led ? "moved by hand" : verdict(status, position ?? NaN, orientation ?? NaN, state);
+            return { title, method, words: awaiting ? AWAITING : words, tone: tone(status), note: instances[i]?.note ?? "" };
         });
         this._labels.set(texts);
         this.place();
+    }
+
+    /** Read how large the captions are; returns the size {w, h} of the largest one [px]. */
+    measure() {
+        this._labels.measure();
+        return this._labels.size;
     }
 
     place() {
@@ -71,7 +78,7 @@ export class Captions {
             ...{ x: at.x - radius, y: at.y - radius },
             ...{ w: 2 * radius, h: 2 * radius },
         }));
-        this._labels.place(spots, balls, room, this._taken());
+        this._labels.place(spots, balls, room, this._taken(), this._show.camera.captions === "beside");
     }
 
     /** The rectangle that an instance has covered so far, and the middle of what it stands on [px]. */
@@ -93,11 +100,14 @@ export class Captions {
         return buttons ? buttons.y + buttons.h + BESIDE : 0;
     }
 
+    /** The rectangles of the buttons and of the notices. */
     _taken() {
         if (!this._toolbar) return [];
         const stage = this._show.stage.element.getBoundingClientRect();
-        const { left, top, width: w, height: h } = this._toolbar.getBoundingClientRect();
-        return [{ x: left - stage.left, y: top - stage.top, w, h }];
+        return [this._toolbar, ...(this._toasts?.children ?? [])].map((element) => {
+            const { left, top, width: w, height: h } = element.getBoundingClientRect();
+            return { x: left - stage.left, y: top - stage.top, w, h };
+        });
     }
 }
 

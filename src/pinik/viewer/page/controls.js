@@ -8,7 +8,7 @@ import { plain, spaced } from "pinik/words.js";
 const DEGREE = Math.PI / 180;
 
 export class Controls {
-    /** @param connection sends the messages; notices says what is wrong with an input */
+    /** @param connection sends the messages; notices says what is wrong with an input, and how to start again */
     constructor(connection, notices) {
         this._connection = connection;
         this._notices = notices;
@@ -128,6 +128,7 @@ export class Controls {
     setState(state) {
         this.state = state;
         const { hello } = this;
+        this._notices.setCommand(state.command);
         // A robot from the user's own file is not in the catalogue.
         if (!hello.robots.includes(state.robot))
             offer(

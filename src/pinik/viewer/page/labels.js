@@ -1,10 +1,11 @@
 /** The captions of the robots: method and result. They never overlap each other, and cover as little as they can. */
 
-import { beside, shared } from "pinik/beside.js";
+import { beside as bestPlace, EDGE, shared } from "pinik/beside.js";
 import { make, say } from "pinik/elements.js";
 
 const GAP = 6; // [px]
-const NARROW = 165; // [px] a label with less room than this shows the method's short name
+const NARROW = 140; // [px] a label with less room than this shows the method's short name
+const BESIDE = 165; // [px] the room that a label gets beside a robot
 const SMALL = 620; // [px] and so it does in a picture that is less wide than this
 const WIDEST = 230; // [px]
 const [HEIGHT, NARROW_HEIGHT] = [44, 34]; // [px]
@@ -16,25 +17,30 @@ export class Labels {
         this._element = element;
         this._chips = [];
         this._ways = [];
+        this._texts = [];
         this.measure();
     }
 
     /** Read how large the captions are, which depends on the size of the page. */
     measure() {
         this.scale = Number(getComputedStyle(this._element).getPropertyValue("--caption-scale")) || 1;
-    }
-
-    /** The height of the tallest caption [px]. */
-    get height() {
+        const beside = this._element.clientWidth < SMALL ? LEAST : BESIDE;
         const least = (this._narrow ? NARROW_HEIGHT : HEIGHT) * this.scale;
-        return Math.max(least, ...this._chips.map(({ chip }) => chip.offsetHeight));
+        const tallest = Math.max(least, ...this._chips.map(({ chip }) => chip.offsetHeight));
+        /** The width that captions beside robots may have, and the height of the tallest caption [px]. */
+        this.size = { w: beside * this.scale, h: tallest };
     }
 
     /** @param texts {title, method, words, note, tone} of each instance */
     set(texts) {
         while (this._chips.length < texts.length) this._chips.push(this._make(this._chips.length));
         while (this._chips.length > texts.length) this._chips.pop().chip.remove();
-        texts.forEach(({ title, method, words, note, tone }, i) => {
+        this._texts = texts;
+        this._write();
+    }
+
+    _write() {
+        this._texts.forEach(({ title, method, words, note, tone }, i) => {
             const { name, state, extra } = this._chips[i];
             say(name, this._narrow ? method : title);
             say(state, words);
@@ -56,9 +62,10 @@ export class Labels {
      * @param balls rectangles around all balls
      * @param room {width, height} of the picture
      * @param taken rectangles of what else stands in the picture
+     * @param beside whether there is room beside the robots, and not below them
      */
-    place(spots, balls, room, taken) {
-        this._fit(narrowest(spots.map(({ foot }) => foot)), room);
+    place(spots, balls, room, taken, beside) {
+        this._fit(beside ? this.size.w + GAP : narrowest(spots.map(({ foot }) => foot), room), room);
         const covers = [
             ...spots.map(({ box }) => ({ ...box, weight: 1 })),
             ...balls.map((ball) => ({ ...ball, weight: WEIGHTS.ball })),
@@ -66,7 +73,7 @@ export class Labels {
         ];
         const placed = [];
         this._each(spots, (spot, chip, i) => {
-            const place = beside(spot, sizeOf(chip), covers, room, this._ways[i]);
+            const place = bestPlace(spot, sizeOf(chip), covers, room, this._ways[i]);
             this._ways[i] = place.way;
             placed.push(apart(place, placed, room));
             covers.push({ ...placed.at(-1), weight: WEIGHTS.caption });
@@ -90,7 +97,11 @@ export class Labels {
             LEAST * this.scale,
             Math.min(WIDEST * this.scale, space - GAP, width - 2 * GAP),
         );
-        this._narrow = most < NARROW * this.scale || width < SMALL * this.scale;
+        const narrow = most < NARROW * this.scale || width < SMALL * this.scale;
+        if (narrow !== this._narrow) {
+            this._narrow = narrow;
+            this._write();
+        }
         this._element.classList.toggle("narrow", this._narrow);
         this._element.style.setProperty("--most", `${most}px`);
     }
@@ -122,10 +133,15 @@ function apart(place, others, { width }) {
     return moved;
 }
 
-/** The smallest distance between neighbours in the first row. */
-function narrowest(feet) {
+/** The room below each robot of the first row: captions there are alike in width, and those at the sides stay inside. */
+function narrowest(feet, { width }) {
     const row = feet.filter((foot) => Math.abs(foot.y - feet[0].y) < 60).map((foot) => foot.x);
     row.sort((a, b) => a - b);
     const gaps = row.slice(1).map((x, k) => x - row[k]);
-    return gaps.length ? Math.min(...gaps) : Infinity;
+    if (!gaps.length) return Infinity;
+    // A caption that the side of the picture moves inwards reaches up to that of its neighbour.
+    const inner = [row[1], width - row.at(-2)].map((x) => (2 * (x - EDGE)) / 3);
+    const outer = [row[0], width - row.at(-1)];
+    const moved = inner.filter((room, k) => room > 2 * (outer[k] - EDGE));
+    return Math.min(...gaps, ...moved);
 }

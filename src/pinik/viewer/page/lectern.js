@@ -45,11 +45,10 @@ export class Lectern {
     }
 
     setHello(hello) {
-        this._asked = null; // a new connection knows nothing of the old one's requests
+        this._asksAnew = true; // a new connection knows nothing of the old one's requests
         this._lessons.setHello(hello);
         this._thesis.setHello(hello);
         this._race.fail();
-        this._ask();
     }
 
     setRobot() {
@@ -58,7 +57,11 @@ export class Lectern {
 
     setState(state) {
         this._running = state.running;
-        this._explain.setState(state);
+        this._explain.setState(state); // which may choose another robot, since fewer are shown
+        if (this._asksAnew) {
+            [this._asksAnew, this._asked] = [false, null];
+            this._ask();
+        }
         this._race.setState(state);
         this._thesis.setState(state);
     }

@@ -4,6 +4,10 @@ import { byId, icon, make, say } from "pinik/elements.js";
 
 const SHOWN = 8000; // [ms]
 const GOOD = 4000; // [ms]
+const MOST = 3;
+const MARGIN = 10; // [px] below and above all notices
+
+const heightOf = (element) => element.getBoundingClientRect().height;
 
 export class Notices {
     error(words) {
@@ -15,30 +19,39 @@ export class Notices {
         close.addEventListener("click", remove);
         setTimeout(remove, SHOWN);
         toasts.append(toast);
-        while (toasts.children.length > 3) toasts.firstChild.remove();
+        // No more than stand over the figures below the stage, so that they cover no robot.
+        const room = heightOf(document.querySelector(".dock")) - 2 * MARGIN;
+        while (toasts.children.length > (heightOf(toasts) > room ? 1 : MOST)) toasts.firstChild.remove();
     }
 
-    /** @param robot the name of the robot on show, for the command that starts the server again */
-    connected(on, robot = "") {
+    /** @param command the command that shows the present robot, or null if it was not read from a file */
+    setCommand(command) {
+        this._command = command;
+    }
+
+    connected(on) {
         const banner = byId("banner");
-        if (!on && banner.hidden)
-            banner.replaceChildren(
-                "Connection lost. Trying again … If the server has ended, start it again in a terminal: ",
-                make("code", {}, `pinik live ${robot} --port ${location.port}`.replace("  ", " ")),
-            );
+        const again = "Connection lost. Trying again … If the server has ended, start it again";
+        if (!on && banner.hidden && this._command)
+            banner.replaceChildren(`${again} in a terminal: `, make("code", {}, `${this._command} --port ${location.port}`));
+        else if (!on && banner.hidden) banner.replaceChildren(`${again} where you started it.`);
         banner.hidden = on;
         document.documentElement.classList.toggle("offline", !on);
     }
 
-    /** Say what is wrong with the watched file, or that it is good again. */
+    /** Say what is wrong with the watched file and what is shown meanwhile, or that the file is good again. */
     watched(file) {
-        const fault = file?.fault ?? null;
-        if (fault === (this._fault ?? null)) return;
         const strip = byId("watched");
-        clearTimeout(this._mended);
+        const fault = file?.fault ?? null;
+        const before = this._fault ?? null;
         this._fault = fault;
-        if (fault) say(strip, `${fault}. You see the robot as it last was.`);
-        else {
+        if (fault) {
+            const shown = file.shown ? "the robot as it last was" : "another robot meanwhile";
+            say(strip, `${fault}. You see ${shown}.`);
+        }
+        if (fault === before) return;
+        clearTimeout(this._mended);
+        if (!fault) {
             say(strip, `${file?.file ?? "The file"} is good again.`);
             this._mended = setTimeout(() => {
                 strip.hidden = true;

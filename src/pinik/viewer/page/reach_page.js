@@ -18,7 +18,7 @@ class ReachPage {
         this._theme = new Theme();
         this.stage = new Stage(byId("canvas"), this._theme);
         this.camera = new Camera(this.stage);
-        this.camera.captionHeight = 0;
+        this.camera.caption = { w: 0, h: 0 };
         this._cells = new Cells(map);
         this._cells.group.applyMatrix4(new THREE.Matrix4().set(...map.placement.flat()));
         this._robot = robotOf(parts);

@@ -206,8 +206,8 @@ export class Show {
         if (this.instances.length) this._sight.all(smoothly, preset);
     }
 
-    /** The heights of the captions, and of the buttons at the upper edge [px]. */
-    get takenHeights() {
+    /** The size {w, h} of the largest caption, and the height of the buttons at the upper edge [px]. */
+    get taken() {
         return [this._captions.measure(), this._captions.below];
     }
 

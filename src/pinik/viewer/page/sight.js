@@ -70,7 +70,7 @@ export class Sight {
     all(smoothly, preset) {
         const { camera, stage, instances, ground, robot } = this._show;
         this._pending = false;
-        [camera.captionHeight, camera.buttons] = this._show.takenHeights;
+        [camera.caption, camera.buttons] = this._show.taken;
         const points = this._points();
         this._framed = sizeOf(points);
         camera.frame(points, instances.length, preset, smoothly);

@@ -51,7 +51,10 @@ export class Undo {
         else this._last.time = performance.now();
     }
 
-    /** Remember what was before a message that changes something; the messages of one drag are one change. */
+    /**
+     * Remember what was before a message that changes something. The messages of one drag are one change, and so are
+     * messages that follow each other before the session has answered the first, because nobody saw what was between.
+     */
     _note(message) {
         if (this._silent || NOT_CHANGES.has(message.type) || !this._state) return;
         const { type, index, instance, name, angles } = message;
@@ -60,7 +63,8 @@ export class Undo {
         const goes = key === this._last.key && (this._pressed || now - this._last.time < PAUSE);
         this._last = { key, time: now };
         if (goes) return;
-        this._before.push(this._now());
+        const before = this._now();
+        if (this._before.at(-1) !== before) this._before.push(before);
         this._before.splice(0, this._before.length - MOST);
         this._after = [];
         this._show();

@@ -9,14 +9,13 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ...description.catalog import catalog, find
-from ...errors import InputError
 from ...problem.tolerance import Tolerance
 from ...robot import Robot
 from ...solvers.base import Solver
 from ...solvers.registry import known_methods
 from ..simulation.session import Session
 from .parameters import changed_parameters
+from .robot_words import is_named, robot_words, source_of
 
 __all__ = ["texts_to_copy"]
 
@@ -32,9 +31,7 @@ def texts_to_copy(session: Session, instance: int) -> list[dict[str, str]]:
     Raises:
         InputError: There is no such visible instance.
     """
-    if not 0 <= instance < session.view:
-        raise InputError(f"the visible instances are numbered from 0 to {session.view - 1}; got {instance}")
-    robot, q = session.robot, session.instances[instance].q
+    robot, q = session.robot, session.instances.visible(instance).q
     angles = {name: float(robot.angles(q)[name]) for name in robot.joint_names}
     pose = [
         ("pose.py", "The pose as Python", _loaded(robot) + _configuration("q", robot, q, angles)),
@@ -53,23 +50,13 @@ def texts_to_copy(session: Session, instance: int) -> list[dict[str, str]]:
     return [{"name": name, "title": title, "text": text} for name, title, text in (*question, *pose)]
 
 
-def _is_named(robot: Robot) -> bool:
-    """Whether it is the robot that the catalogue has under its name."""
-    return robot.name in catalog() and find(robot.name).urdf == robot.description.path
-
-
-def _source(robot: Robot) -> str:
-    """What `pinik.load` and the command take: a name in the catalogue, or the path as it was given."""
-    return robot.name if _is_named(robot) else robot.description.source
-
-
 def _loaded(robot: Robot) -> str:
     options = "" if robot.root == "fixed" else f", root={robot.root!r}"
-    if robot.package_dirs and not _is_named(robot):
+    if robot.package_dirs and not is_named(robot):
         options += f", package_dirs={[str(folder) for folder in robot.package_dirs]!r}"
     if robot.allow_outside:
         options += ", allow_outside=True"
-    return f"import pinik\n\nrobot = pinik.load({_source(robot)!r}{options})\n"
+    return f"import pinik\n\nrobot = pinik.load({source_of(robot)!r}{options})\n"
 
 
 def _root(robot: Robot, q: Array) -> dict[str, Any]:
@@ -113,7 +100,7 @@ def _import_of(solver: Solver) -> tuple[str, str]:
 def _command(session: Session, instance: int, angles: dict[str, float]) -> str:
     solver, settings = session.instances[instance].solver, session.settings
     module, name = _import_of(solver)
-    words = ["pinik", "solve", *_robot_words(session.robot), "--targets", "-"]
+    words = ["pinik", "solve", *robot_words(session.robot), "--targets", "-"]
     words += ["--method", f"{module}:{name}" if module else solver.name]
     for parameter, value in changed_parameters(solver).items():
         words += ["--param", f"{parameter}={json.dumps(value)}"]
@@ -129,17 +116,10 @@ def _command(session: Session, instance: int, angles: dict[str, float]) -> str:
 
 
 def _pose_command(robot: Robot, angles: dict[str, float]) -> str:
-    words = ["pinik", "fk", *_robot_words(robot)]
+    words = ["pinik", "fk", *robot_words(robot)]
     for joint, angle in angles.items():
         words += ["--set", f"{joint}={angle!r}"]
     return shlex.join(words) + "\n"
-
-
-def _robot_words(robot: Robot) -> list[str]:
-    words = [_source(robot)] + ([] if robot.root == "fixed" else ["--root", robot.root])
-    for folder in () if _is_named(robot) else robot.package_dirs:
-        words += ["--package-dir", str(folder)]
-    return words + (["--allow-outside"] if robot.allow_outside else [])
 
 
 def _yaml(name: str) -> str:

@@ -149,6 +149,11 @@ def _messages(session: Session, setup: Setup) -> Iterator[dict[str, Any]]:
         methods = setup["methods"].split(",")
         if len(methods) > len(session.instances):
             raise InputError(f"set-up: methods must be at most {len(session.instances)}; got {len(methods)}")
+        if strange := changed.keys() - set(map(str, range(len(methods)))):
+            raise InputError(
+                f"set-up: parameters must belong to one of the methods 0 to {len(methods) - 1}; "
+                f"got {shortened(min(strange), QUOTED)!r}"
+            )
         for index, method in enumerate(methods):
             if session.instances[index].solver.name != method:
                 yield {"type": "method", "instance": index, "method": method}

@@ -9,9 +9,10 @@ from ...description.catalog import catalog
 from ...motion.curves import CURVES
 from ...solvers.base import Solver
 from ..simulation.instance import Instance
+from ..simulation.instances import VIEWS
 from ..simulation.looks import LOOKS
 from ..simulation.motion import MOTIONS
-from ..simulation.session import STEPS_PER_SECOND, VIEWS, Session
+from ..simulation.session import STEPS_PER_SECOND, Session
 from ..simulation.standing import STATUSES
 from ..simulation.statistics import WINDOWS, Summary
 from ..simulation.swinging import LOOKED_AT, swinging

@@ -16,7 +16,7 @@ def with_robot(session: Session, robot: Robot) -> Session:
         [instance.solver for instance in session.instances], session.methods, robot, principal_frames(robot)
     )
     other = Session(robot, solvers, view=session.view, seed=session.seed, clock=session.clock)
-    other.methods = session.methods
+    other.instances.methods = session.methods
     other.notes = notes
     other.running, other.misses.pause = session.running, session.misses.pause
     other.apply_settings(session.settings)

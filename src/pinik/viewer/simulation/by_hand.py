@@ -45,12 +45,10 @@ def set_angles(session: Session, instance: int | None, angles: Mapping[str, floa
             angle is not finite or is outside the limits while these are enforced, or a placement is none or leaves the
             plane of its joint.
     """
-    if instance is not None and not 0 <= instance < session.view:
-        raise InputError(f"the visible instances are numbered from 0 to {session.view - 1}; got {instance}")
+    led = range(session.view) if instance is None else [instance]
+    q = session.instances.visible(led[0]).q.copy()
     if not angles:
         raise InputError("no joint is named whose angle is to be set")
-    led = range(session.view) if instance is None else [instance]
-    q = session.instances[led[0]].q.copy()
     for name, angle in angles.items():
         joint = session.robot.settable_joint(name)
         if isinstance(angle, Sequence) and not joint.has_one_axis:

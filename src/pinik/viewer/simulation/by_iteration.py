@@ -14,9 +14,9 @@ def step_iteration(session: Session, instance: int | None = None) -> None:
     """Stop, and let one visible instance, or all, take one iteration towards the balls, which stay where they are.
 
     Raises:
-        InputError: There is no such instance.
+        InputError: There is no such visible instance.
     """
-    chosen = session.seen if instance is None else [session.instance(instance)]
+    chosen = session.seen if instance is None else [session.instances.visible(instance)]
     session.running = False
     session.stillness.end()
     for one in chosen:

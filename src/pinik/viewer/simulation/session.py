@@ -9,20 +9,18 @@ from typing import Any
 
 from numpy.typing import ArrayLike
 
-from ...errors import InputError, UnknownNameError
+from ...errors import UnknownNameError
 from ...model.home import home_configuration
-from ...motion.effectors import principal_frames
 from ...robot import Robot
 from ...solvers.base import Solver
-from ...solvers.registry import make_solver
-from ...solving.question import check_joint_names
 from .ball import MODES
 from .balls import Balls
 from .contacts import Contacts
 from .instance import Instance
+from .instances import Instances
 from .leading import Leading
 from .looks import Looks
-from .method_menu import Methods, check_balls, chosen, filled_up, offered
+from .method_menu import Methods
 from .misses import Misses
 from .motion import MOTIONS, Motion
 from .obstacles import Obstacles
@@ -31,10 +29,9 @@ from .statistics import Summary
 from .step_settings import StepSettings
 from .stillness import Stillness
 
-__all__ = ["STEPS_PER_SECOND", "VIEWS", "Session"]
+__all__ = ["STEPS_PER_SECOND", "Session"]
 
 STEPS_PER_SECOND = 60
-VIEWS = (1, 2, 4)
 # The share of a step's time that the solvers may take; the rest is for drawing and for messages from the page.
 _SOLVERS_SHARE = 0.7
 _SECONDS_OF_ONE_STEP = 0.25  # of all solvers together, if somebody asks for a single step, which nothing hurries
@@ -44,12 +41,9 @@ _DEFAULT_METHODS = ("ccd", "jt", "pinv", "dls")
 class Session:
     """One, two or four instances of a robot, the balls that they chase, and the motion of the balls.
 
-    There are always four instances; `view` is the number of them that step and are visible.
-
     Attributes:
         robot: The robot.
-        methods: Short name → class, for every available method.
-        instances: All four instances.
+        instances: All four instances, of which some step and are visible.
         balls: The balls, each with the frame that chases it.
         motion: The automatic motion of the balls.
         contacts: What the instances touch, and whether they avoid it.
@@ -91,41 +85,44 @@ class Session:
             InputError: There are no methods or more than four, one of them cannot chase any ball of this robot, or
                 the view is not 1, 2 or 4.
         """
-        frames = principal_frames(robot)
-        solvers, self.methods = chosen(methods, robot, frames, VIEWS[-1])
-        if view is None:
-            view = next(count for count in VIEWS if count >= len(solvers))
-        solvers = filled_up(solvers, self.methods, robot, frames, VIEWS[-1])
-        for solver in solvers:
-            check_joint_names(robot, solver)
         self.robot = robot
         self.looks, self.running = Looks(), False
         self.steps = 0
         self.stillness = Stillness()
         self.notes: list[str] = []
-        self._offered: tuple[list[str], list[str]] = ([], [])  # for which frames, what
-        self.settings = StepSettings()
         self.leading, self.misses = Leading(), Misses()
         self.motion = Motion(robot, seed)
         self.seed, self.clock = seed, clock
         self.home = home_configuration(robot)
         self.contacts, self.obstacles = Contacts(robot), Obstacles()
-        self.instances = [Instance(robot, s, self.home, self.settings, clock, self.contacts) for s in solvers]
+        self.instances = Instances(robot, methods, view, self.home, clock, self.contacts)
         self.balls = Balls(robot)
         self.scores = Scoreboard(clock)
-        self.set_view(view)
+
+    @property
+    def methods(self) -> dict[str, type[Solver]]:
+        """Short name → class, for every available method."""
+        return self.instances.methods
+
+    @property
+    def settings(self) -> StepSettings:
+        """How the steps of all instances go."""
+        return self.instances.settings
+
+    @property
+    def view(self) -> int:
+        """The number of instances that step and are visible."""
+        return self.instances.view
 
     @property
     def seen(self) -> list[Instance]:
         """The instances that step and are visible."""
-        return self.instances[: self.view]
+        return self.instances.seen
 
     @property
     def offered(self) -> list[str]:
         """Names of the methods that can chase one of the balls."""
-        if self._offered[0] != self.balls.frames:  # kept: every state message needs it, and a check takes milliseconds
-            self._offered = self.balls.frames, offered(self.methods, self.robot, self.balls.frames)
-        return self._offered[1]
+        return self.instances.offered(self.balls.frames)
 
     @property
     def summaries(self) -> list[Summary]:
@@ -180,42 +177,19 @@ class Session:
 
     def set_view(self, count: int) -> None:
         """Show 1, 2 or 4 instances."""
-        if type(count) is not int or count not in VIEWS:
-            raise InputError(f"a view must have 1, 2 or 4 instances; got {count!r}")
-        self.view = count
+        self.instances.show(count)
 
     def set_method(self, index: int, method: str, **parameters: Any) -> None:
-        """Change the method of an instance, by short name; parameters that are not given have their defaults.
-
-        Raises:
-            UnknownNameError: There is no such method, or it has no such parameter.
-            InputError: A value is out of range, the method cannot chase any of the balls, or there is no such instance.
-        """
-        if method not in self.methods:
-            raise UnknownNameError("method", method, self.methods)
-        try:
-            solver = make_solver(self.methods[method], **parameters)
-        except TypeError as error:  # a custom class with a field that has no default
-            raise InputError(f"method {method!r} cannot be created from its defaults: {error}") from None
-        check_balls(solver, self.robot, self.balls.frames)
-        self._set_solver(index, solver)
+        """Change the method of an instance, as `Instances.set_method` does."""
+        self.instances.set_method(index, method, self.balls.frames, parameters)
 
     def set_parameter(self, index: int, name: str, value: Any) -> None:
-        """Set one parameter of an instance's method.
-
-        Raises:
-            UnknownNameError: There is no such parameter, or it names a joint that the robot does not have.
-            InputError: The value is out of range, or there is no such instance.
-        """
-        solver = self.instance(index).solver
-        self._set_solver(index, make_solver(type(solver), **(solver.parameters | {name: value})))
+        """Set one parameter of an instance's method, as `Instances.set_parameter` does."""
+        self.instances.set_parameter(index, name, value)
 
     def apply_settings(self, settings: StepSettings) -> None:
         """Set how the steps of all instances go."""
-        if settings != self.settings:
-            self.settings = settings
-            for instance in self.instances:
-                instance.settings = settings
+        self.instances.apply_settings(settings)
 
     def change_settings(self, **changes: Any) -> None:
         """Change some of the settings, by their names in `StepSettings`."""
@@ -267,22 +241,6 @@ class Session:
         """
         self.balls.add(frame, "off")
         self.set_mode(len(self.balls) - 1, "on")
-
-    def _set_solver(self, index: int, solver: Solver) -> None:
-        instance = self.instance(index)
-        check_joint_names(self.robot, solver)
-        if solver != instance.solver:
-            instance.solver = solver
-
-    def instance(self, index: int) -> Instance:
-        """An instance by its number.
-
-        Raises:
-            InputError: There is no such instance.
-        """
-        if not 0 <= index < len(self.instances):
-            raise InputError(f"instances are numbered from 0 to {len(self.instances) - 1}; got {index}")
-        return self.instances[index]
 
     def _agree_on_terms(self) -> None:
         self.scores.agree(terms(self.seen, self.settings, self.motion, self.balls), self.view)

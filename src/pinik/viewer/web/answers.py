@@ -17,6 +17,7 @@ from ...solving.self_motion import SelfMotion, self_motion
 from ...solving.solve_all import solve_all
 from ..protocol.messages import checked, whole_number
 from ..protocol.packing import JointPlacements
+from ..simulation.arrival import why_away, why_near_only
 from ..simulation.instance import same_objects
 from ..simulation.session import Session
 from .later import Later
@@ -97,20 +98,29 @@ class Answers:
         self._begin(session, targets, work, take)
 
     def follow(self, session: Session, generation: int, instance: int) -> None:
-        """Find how an instance can move while the balls' frames stay where they are.
+        """Find how an instance can move while the balls' frames stay where they are; if it misses one, say so.
 
         Raises:
             InputError: There is no such instance, or no ball asks for anything.
         """
         robot, targets, q = self._asked(session, instance)
         limits, tolerance = session.settings.limits, session.settings.tolerance
+        away, near_only = why_away(session, instance), why_near_only(session, instance)
 
-        def work() -> SelfMotion:
-            return self_motion(robot, targets, q, points=_POINTS, limits=limits, tolerance=tolerance)
+        def work() -> SelfMotion | str:
+            if away:
+                return away
+            try:
+                return self_motion(robot, targets, q, points=_POINTS, limits=limits, tolerance=tolerance)
+            except InputError as error:
+                if error.argument != "q":
+                    raise
+                return near_only
 
-        def take(found: SelfMotion) -> None:
-            self._along, self._instance = list(found.q) if found.dimension == 1 else [], instance
-            words = {"message": str(found), "instance": instance, "closed": found.closed}
+        def take(found: SelfMotion | str) -> None:
+            curve = None if isinstance(found, str) or found.dimension != 1 else found
+            self._along, self._instance = list(curve.q) if curve else [], instance
+            words = {"message": str(found), "instance": instance, "closed": curve is not None and curve.closed}
             self._say("self_motion", generation, robot, self._along, words)
 
         self._begin(session, targets, work, take)
@@ -132,13 +142,12 @@ class Answers:
         _put(session, self._instance, self._along, index, "place along the self-motion")
 
     def _asked(self, session: Session, instance: int) -> tuple[Robot, tuple[Target, ...], NDArray[np.float64]]:
-        if not 0 <= instance < session.view:
-            raise InputError(f"instances are numbered from 0 to {session.view - 1}; got {instance}")
+        q = session.instances.visible(instance).q
         targets = tuple(session.balls.targets)
         if not targets:
             raise InputError("no ball asks for anything; switch one on first")
         session.set_motion("hand")
-        return session.robot, targets, session.instances[instance].q
+        return session.robot, targets, q
 
     def _begin(
         self, session: Session, targets: Sequence[Target], work: Callable[[], Any], take: Callable[[Any], None]
@@ -170,6 +179,4 @@ class Answers:
 def _put(session: Session, instance: int, known: list[NDArray[np.float64]], index: int, what: str) -> None:
     if not 0 <= index < len(known):
         raise InputError(f"there is no {what} {index}; {len(known)} were found, numbered from 0")
-    if not 0 <= instance < session.view:
-        raise InputError(f"instances are numbered from 0 to {session.view - 1}; got {instance}")
-    session.instances[instance].put(known[index])
+    session.instances.visible(instance).put(known[index])

@@ -44,7 +44,10 @@ class Lectern:
         """
         match message["type"]:
             case "explain":
-                self._readers.open(tab, checked("explain", message, {"instance": number_or_none})["instance"])
+                index = checked("explain", message, {"instance": number_or_none})["instance"]
+                if index is not None:
+                    session.instances.visible(index)
+                self._readers.open(tab, index)
             case "race":
                 fields = checked("race", message, {"places": _places, "seed": _seed})
                 self._race(tab, session, fields["places"], fields["seed"])

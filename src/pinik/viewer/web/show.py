@@ -7,33 +7,29 @@ import time
 from collections.abc import Callable
 from typing import Any
 
-from ...description.catalog import catalog
 from ...echoes import shortened
-from ...errors import InputError, PinikError
+from ...errors import PinikError
 from ...export.live_recording import LiveRecording, RecordedBall
 from ...robot import Robot
 from ..protocol.messages import any_text, apply, checked, parse, text, whole_number
 from ..protocol.recording import Recording
-from ..protocol.robots import RobotMenu
 from ..protocol.setup import Setup, apply_setup, read_setup, write_setup
 from ..protocol.state import hello_message, session_state
-from ..simulation.another_robot import with_robot
 from ..simulation.session import Session
 from .animation import animation_page
 from .answers import Answers
+from .broadcast import Broadcast
 from .exhibit import Exhibit
 from .later import Later
 from .lectern import Lectern, scene_of
 from .pace import Pace
 from .readers import Readers
-from .robot_loader import RobotLoader
+from .robots_on_show import RobotsOnShow
 from .scene import Shapes
 from .seats import Seats, Tab
-from .watched import Watched
 
 __all__ = ["Show"]
 
-_STATES_PER_SECOND = 4
 _LONGEST_ERROR = 400  # characters; an error may quote a whole message
 
 
@@ -42,7 +38,6 @@ class Show:
 
     Attributes:
         session: The session on show; choosing another robot replaces it.
-        recording: The frames of the last seconds.
     """
 
     def __init__(
@@ -54,15 +49,13 @@ class Show:
         reload: Callable[[], Robot] | None = None,
     ) -> None:
         self.session = session
-        self.recording = Recording()
-        menu = RobotMenu(session.robot)
-        self._loader = RobotLoader(menu, later)
+        self._robots = RobotsOnShow(lambda: self.session, later, reload)
         self._later, self._clock, self._seats = later, clock, Seats()
+        self._broadcast = Broadcast(self._seats, clock)
         self._readers = Readers(self._seats.is_late)
         self._lectern = Lectern(self._readers, later, _notice)
-        self._hello = hello_message(version, session.methods, menu.own_names)
+        self._hello = hello_message(version, session.methods, self._robots.own_names)
         self._pace = Pace(clock)
-        self._watched = None if reload is None else Watched(session.robot, reload, later, menu)
         self._answers = Answers(later, self._seats.send)
         self._exhibit = Exhibit(session, 1, False, self._seats, later)
         self._show(session)
@@ -83,11 +76,12 @@ class Show:
 
     def _start_anew(self) -> None:
         """Discard the recording, whose frames show other instances or balls."""
-        self.recording.clear()
-        self._recorded_step = -1
-        self._frame = self._exhibit.maker.frame(self.session)
-        self._frame_due = self._state_due = True
-        self._state_sent = self._clock()
+        self._broadcast.start_anew(self._exhibit.maker.frame(self.session))
+
+    @property
+    def recording(self) -> Recording:
+        """The frames of the last seconds."""
+        return self._broadcast.recording
 
     @property
     def _awaits_shapes(self) -> bool:
@@ -102,9 +96,8 @@ class Show:
 
     def is_lively(self) -> bool:
         """Return whether there is a tab, and anything to tell it without being asked."""
-        waits = self._awaits_shapes or self._loader.loading is not None or self.session.contacts.waits
-        waits = waits or self._frame_due or self._state_due
-        return self.is_watched() and (waits or not self.session.sleeps)
+        waits = self._awaits_shapes or self._robots.loads or self.session.contacts.waits
+        return self.is_watched() and (waits or self._broadcast.is_due or not self.session.sleeps)
 
     def join(self, tab: Tab) -> None:
         """Add a tab and send it everything."""
@@ -112,7 +105,7 @@ class Show:
             tab.send(json.dumps(message))
         for part in self._exhibit.messages():
             tab.send(part)
-        self._seats.add(tab, self._frame)
+        self._seats.add(tab, self._broadcast.frame)
 
     def leave(self, tab: Tab) -> None:
         """Remove a tab."""
@@ -125,10 +118,10 @@ class Show:
             message = parse(message_text)
             if message["type"] == "drawn":
                 checked("drawn", message, {"step": whole_number})
-                self._seats.drawn(tab, lambda: self._frame, lambda: json.dumps(self.state()))
+                self._seats.drawn(tab, lambda: self._broadcast.frame, lambda: json.dumps(self.state()))
                 self._readers.catch_up(tab, self.session, self._exhibit.generation)
             elif self._lectern.receive(tab, message, self.session):
-                self._state_due = True
+                self._broadcast.state_due = True
             else:
                 self.do(message)
         except PinikError as error:
@@ -144,58 +137,40 @@ class Show:
         """
         if not (self._awaits_shapes and self._seats) and self.session.tick():
             self._pace.note_step()
-            self._frame_due = self._frame_due or not self.session.rests
-            self._state_due = self._state_due or not self.session.running  # it has paused
+            self._broadcast.frame_due |= not self.session.rests
+            self._broadcast.state_due |= not self.session.running  # it has paused
         else:
             self._pace.forget()
-        if self._frame_due:
-            self._send_frame()
-        often_enough = self._clock() - self._state_sent >= 1.0 / _STATES_PER_SECOND
-        if self._state_due or (self.session.running and often_enough and not self.session.rests):
+        if self._broadcast.frame_due:
+            self._broadcast.send_frame(self._exhibit.maker.frame(self.session), self.session)
+        if self._broadcast.wants_state(self.session):
             self._send_state()
 
-    def _send_frame(self) -> None:
-        self._frame_due = False
-        self._make_frame()
-        self._seats.offer_frame(self._frame)
-
-    def _make_frame(self) -> None:
-        self._frame = self._exhibit.maker.frame(self.session)
-        if self.session.steps != self._recorded_step:  # moving a ball between two steps adds no frame to the recording
-            self._recorded_step = self.session.steps
-            self.recording.add(self._frame, [instance.q for instance in self.session.seen])
-
     def _send_state(self) -> None:
-        self._state_due = False
-        self._state_sent = self._clock()
-        if self._seats:
-            self._seats.offer_state(json.dumps(self.state()))
+        self._broadcast.send_state(self.state)
         self._readers.send(self.session, self._exhibit.generation)
 
     def look_at_files(self) -> bool:
         """Look at the watched files while somebody watches; return whether there is anything new to send."""
-        if self._watched is not None and self.is_watched():
-            self._watched.look(self._take_reloaded)
-        return self._frame_due or self._state_due
+        if self.is_watched():
+            self._robots.look_at_files(self._take_reloaded, self._take_fault)
+        return self._broadcast.is_due
 
-    def _take_reloaded(self, robot: Robot | None) -> None:
-        self._state_due = True
-        if robot is None or self._watched is None:
-            return
-        try:
-            session = self._watched.renew(self.session, robot)
-        except PinikError as error:
-            self._seats.send(_notice(str(error)))
-            session = None
-        self._hello["robots"] = [*self._loader.menu.own_names, *catalog()]
+    def _take_fault(self) -> None:
+        self._broadcast.state_due = True
+
+    def _take_reloaded(self, session: Session | None, words: list[str]) -> None:
+        self._hello["robots"] = self._robots.names
         self._seats.send(json.dumps(self._hello))
-        if session is not None:
-            self._change_session(session, keeps_view=True)
-            self._say(session.notes)
+        self._take_session(session, words, keeps_view=True)
 
-    def _say(self, notes: list[str]) -> None:
-        for note in notes:
-            self._seats.send(_notice(note))
+    def _take_session(self, session: Session | None, words: list[str], keeps_view: bool = False) -> None:
+        """Go on with another session if there is one, and tell everybody these words."""
+        self._broadcast.state_due = True
+        if session is not None:
+            self._change_session(session, keeps_view)
+        for notice in words:
+            self._seats.send(_notice(notice))
 
     # Requests
 
@@ -219,14 +194,14 @@ class Show:
                 self._set_up(setup)
                 self.session.motion.start_at(phase)
             case kind if kind in self._answers.KINDS:
-                self._state_due = True
+                self._broadcast.state_due = True
                 self._change(lambda session: self._answers.receive(message, session, self._exhibit.generation))
             case kind:
                 before = self._leads()
                 self._change(lambda session: apply(session, message))
                 # Every frame shows a ball or a joint that is dragged, so the state can wait until it is due anyway.
                 waits = kind in ("ball", "angles") and before == self._leads()
-                self._state_due = self._state_due or not waits or not self.session.running
+                self._broadcast.state_due |= not waits or not self.session.running
 
     def _change(self, act: Callable[[Session], None]) -> None:
         """Change the session, and start a new recording if its instances or balls are others now."""
@@ -234,19 +209,22 @@ class Show:
         try:
             act(self.session)
         finally:
-            self._frame_due = True
+            self._broadcast.frame_due = True
             self._supply()
             if self._cast() != before:
                 self._start_anew()
-            elif self.session.steps != self._recorded_step:  # several steps may be asked for between two ticks
-                self._make_frame()
+            elif self._broadcast.lacks(self.session):  # several steps may be asked for between two ticks
+                self._record()
+
+    def _record(self) -> None:
+        self._broadcast.record(self._exhibit.maker.frame(self.session), self.session)
 
     def _supply(self) -> None:
         """Load what the session needs now."""
         self._exhibit.supply(self.session, self._take_contacts)
 
     def _take_contacts(self, why_not: str) -> None:
-        self._state_due = self._frame_due = True
+        self._broadcast.state_due = self._broadcast.frame_due = True
         if why_not:
             self._seats.send(_notice(why_not))
 
@@ -263,30 +241,14 @@ class Show:
         name = setup.get("robot", robot.name)
         root = setup.get("root", "fixed" if "robot" in setup else robot.root)
         if (name, root) == (robot.name, robot.root):
-            self._state_due = True
+            self._broadcast.state_due = True
             self._change(lambda session: apply_setup(session, setup))
         else:
             self._load(name, root, setup)
 
     def _load(self, name: str, root: str, setup: Setup) -> None:
-        self._loader.load(name, root, lambda robot: self._take_robot(robot, setup))
-        self._state_due = True
-
-    def _take_robot(self, robot: Robot | InputError, setup: Setup) -> None:
-        self._state_due = True
-        try:
-            if isinstance(robot, InputError):
-                raise robot
-            session = with_robot(self.session, robot)
-            try:
-                if setup:
-                    apply_setup(session, setup)
-            finally:
-                self._change_session(session)
-            if "methods" not in setup:
-                self._say(session.notes)
-        except PinikError as error:
-            self._seats.send(_notice(str(error)))
+        self._robots.load(name, root, setup, self._take_session)
+        self._broadcast.state_due = True
 
     # Answers
 
@@ -296,8 +258,7 @@ class Show:
             **session_state(self.session),
             "generation": self._exhibit.generation,
             "steps_per_second": self._pace.value if self.session.running else None,
-            "loading": self._loader.loading,
-            "watched": None if self._watched is None else self._watched.state,
+            **self._robots.state(),
             "setup": write_setup(self.session),
         }
 
@@ -309,12 +270,13 @@ class Show:
     def animation(self) -> bytes:
         """Return the last seconds as one HTML file (UTF-8) that plays without a server."""
         shapes = self._exhibit.shapes or Shapes((), (), ())
-        return animation_page(self._hello, self._exhibit.robot, shapes, self.state(), self.recording)
+        state = self.state() | {"command": None}  # it holds a path of this machine, and the page may be sent around
+        return animation_page(self._hello, self._exhibit.robot, shapes, state, self.recording)
 
     def recorded(self) -> LiveRecording:
         """Return the last seconds, with the methods and the balls as they are now."""
         if not self.recording:
-            self._make_frame()
+            self._record()
         balls = [
             RecordedBall(ball.frame, places[:, :3], places[:, 3:], ball.mode == "pinned", ball.oriented)
             for ball, places in zip(self.session.balls, self.recording.balls, strict=True)

@@ -30,10 +30,13 @@ class Watched:
         self._watch = Watch(robot, reload, later)
         self._name, self._menu = robot.name, menu
 
-    @property
-    def state(self) -> dict[str, Any]:
+    def is_shown(self, session: Session) -> bool:
+        """Whether this robot is the session's, and not another one meanwhile."""
+        return session.robot.name == self._name
+
+    def state(self, session: Session) -> dict[str, Any]:
         """What the `state` message says of it."""
-        return {"file": self._watch.file, "fault": self._watch.fault}
+        return {"file": self._watch.file, "fault": self._watch.fault, "shown": self.is_shown(session)}
 
     def look(self, then: Callable[[Robot | None], None]) -> None:
         """Look at the files, and if they have changed, call `then` with the robot, or with None if there is a fault."""
@@ -45,7 +48,7 @@ class Watched:
         Raises:
             PinikError: The session cannot go on with the robot.
         """
-        is_shown = session.robot.name == self._name
+        is_shown = self.is_shown(session)
         self._menu.renew(robot)
         self._name = robot.name
         return reloaded(session, robot.with_root(session.robot.root)) if is_shown else None
