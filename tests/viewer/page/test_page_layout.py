@@ -138,23 +138,33 @@ def test_robots_in_a_row_fill_its_width_and_are_as_near_as_their_outlines_allow(
         assert max(heights) / min(heights) < 1.02, "robots side by side have the same size"
 
 
-# The mean height of the robots' outlines, as a part of the stage's, while one row was preferred there.
-BEFORE = {
-    ("panda", "top"): {"1280": 0.39, "390": 0.24},
-    ("lion", "side"): {"1280": 0.24, "390": 0.13},
-}
-
-
-@pytest.mark.parametrize(("robot", "view"), BEFORE)
-def test_two_rows_show_robots_larger_where_one_row_leaves_half_of_the_stage_empty(open_desk, robot, view):
-    desk = open_desk(robot, METHODS, motion="curve", root="free_flyer" if robot == "lion" else "fixed")
-    for size, before in BEFORE[robot, view].items():
+def test_two_rows_show_lions_larger_where_one_row_leaves_most_of_the_stage_empty(open_desk):
+    desk = open_desk("lion", METHODS, motion="curve", root="free_flyer")
+    for size, before in {"1280": 0.24, "390": 0.13}.items():  # the mean height of an outline in a row [stage's height]
         desk.page.set_viewport_size(SIZES[size])
-        picture = look(desk, view)
+        picture = look(desk, "side")
         outlines = [np.array(points) for points in picture["visited"]]
         assert outlines[2].mean(axis=0)[1] - outlines[0].mean(axis=0)[1] > 0.2 * picture["size"][1], "in two rows"
-        assert np.mean([np.ptp(points[:, 1]) for points in outlines]) > 1.08 * before * picture["size"][1]
+        assert np.mean([np.ptp(points[:, 1]) for points in outlines]) > 1.4 * before * picture["size"][1]
         assert np.ptp(np.concatenate(outlines)[:, 1]) > 0.5 * picture["size"][1]
+
+
+ARRANGED = """async () => {
+    const { arrange } = await import("pinik/layout.js"), { PRESETS } = await import("pinik/camera.js");
+    const { THREE } = await import("pinik/three.js");
+    const sides = [-0.5, 0.5], points = sides.flatMap((x) => sides.map((y) => new THREE.Vector3(x, y, 0)));
+    const lens = (captions) => pinik.show.camera._lens(captions);
+    return Object.entries(PRESETS).map(([name, view]) => {
+        const { captions, offsets } = arrange(points, 4, view, lens);
+        return [name, captions, new Set(offsets.map(({ x }) => x.toFixed(3))).size];
+    });
+}"""
+
+
+def test_flat_squares_stand_in_two_rows_where_the_view_is_from_above_with_captions_beside_them(open_desk):
+    desk = open_desk("two_link", METHODS)
+    arranged = {name: (captions, rows) for name, captions, rows in desk.page.evaluate(ARRANGED)}
+    assert arranged["top"] == ("beside", 2)
 
 
 @pytest.mark.parametrize("robot", ["arm", "panda", "lion"])

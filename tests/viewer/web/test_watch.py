@@ -165,3 +165,11 @@ def test_the_state_says_whether_the_watched_robot_is_the_one_on_show(stage):
     assert state["robot"] == "two_link"
     assert not state["watched"]["shown"]
     assert state["watched"]["fault"]
+
+
+def test_the_command_has_the_path_of_the_file_which_no_saved_page_has(stage):
+    assert stage.show.state()["command"] == f"pinik live {stage.path} --watch"
+    assert str(stage.path).encode() not in stage.show.animation()
+    stage.show.do({"type": "robot", "name": "two_link", "root": "fixed"})
+    stage.look()
+    assert stage.show.state()["command"] == "pinik live two_link"

@@ -29,7 +29,7 @@ export class Camera extends EventTarget {
         this.moved = false;
         this.offsets = [];
         [this.caption, this.buttons] = [{ w: 200, h: 44 }, 48]; // [px] what captions, and buttons above, need
-        [this.captions, this._apart] = ["below", Infinity];
+        [this._view, this.captions, this._apart] = [PRESETS.iso, "below", Infinity];
         this.together = false; // whether all instances stand in one place
         this._calm = matchMedia("(prefers-reduced-motion: reduce)");
         this._watchHand(stage.canvas);
