@@ -105,6 +105,13 @@ def test_the_search_index_leads_to_the_page(site, words, page):
     assert page in {location.partition("#")[0] for location, text in texts.items() if words in text}
 
 
+def test_answers_to_questions_come_first_in_searches(site):
+    entries = json.loads((site / "search" / "search_index.json").read_text("utf-8"))["docs"]
+    boosts = {entry["location"]: entry.get("boost", 1) for entry in entries}
+    assert boosts["howto/answers.html#hold-the-elbow-up"] == 2
+    assert boosts["two_bone.html"] == 1
+
+
 def test_every_public_name_has_its_place_in_the_api(site):
     api = " ".join(path.read_text("utf-8") for path in (site / "api").glob("*.html"))
     for name in pinik.__all__:
@@ -182,6 +189,7 @@ def test_the_api_shows_what_is_for_users_with_inherited_attributes_and_parameter
         assert (named.__doc__ or named.func.__doc__).startswith("For pinik itself: ")
     assert "pinik.Prepared.recall" not in solve
     assert re.search(r"damping: float = 0\.7071,", methods)
+    assert re.search(r"chunk: int = 8192,", plain("files.html"))
     assert re.search(r"how much steps are damped.*\(λ\): 1e-09 to 100", methods)
 
 

@@ -39,6 +39,10 @@ class ForUsers(griffe.Extension):
                 )
             for name in inner:
                 del one.members[name]
+        for function in _functions(pkg):
+            for parameter in function.parameters:
+                if isinstance(parameter.default, griffe.ExprName):
+                    parameter.default = _constant(pkg, parameter.default) or parameter.default
 
 
 def _classes(within: griffe.Module | griffe.Class) -> Iterator[griffe.Class]:
@@ -47,6 +51,25 @@ def _classes(within: griffe.Module | griffe.Class) -> Iterator[griffe.Class]:
             if member.is_class:
                 yield member
             yield from _classes(member)
+
+
+def _functions(within: griffe.Module | griffe.Class) -> Iterator[griffe.Function]:
+    for member in within.members.values():
+        if not member.is_alias:
+            if member.is_function:
+                yield member
+            elif member.is_module or member.is_class:
+                yield from _functions(member)
+
+
+def _constant(package: griffe.Module, name: griffe.ExprName) -> str | None:
+    """The number that a name of pinik stands for; None if it is none."""
+    try:
+        named = package[name.canonical_path.removeprefix("pinik.")]
+        value = str((named.final_target if named.is_alias else named).value)
+    except (KeyError, AttributeError, griffe.AliasResolutionError):
+        return None
+    return value if re.fullmatch(r"[\d._e+-]+", value) else None
 
 
 def _is_inner(member: griffe.Object) -> bool:

@@ -55,6 +55,8 @@ def on_files(files: Files, config: MkDocsConfig) -> Files:
 
 
 def on_page_markdown(markdown: str, page: Page, config: MkDocsConfig, files: Files) -> str:
+    if page.file.src_uri.startswith("howto/"):
+        page.meta["search"] = {"boost": 2}  # answers to questions come before other pages
     text = with_links_of_the_site(markdown, page.file.src_uri, lambda place: place in files.src_uris)
     return with_wide_lists(text)
 

@@ -40,7 +40,8 @@ WAYS = ("sampling", "solving")
 """The ways to find what is reached."""
 
 DIRECTIONS, ROLLS = 48, 12
-RESTARTS, MAX_ITERATIONS = 16, 20
+RESTARTS = 16
+MAX_ITERATIONS = 20
 
 _SAMPLES, _SAMPLES_OF_POSITIONS = 10_000_000, 2_000_000
 _CELLS = 12  # between the base and the edge of what is reached
