@@ -82,10 +82,10 @@ class Show:
         self._supply()
 
     def _start_anew(self) -> None:
-        """Discard the recording, whose frames show other instances or balls."""
+        """Discard the recording, whose frames show other instances or balls, and begin one with where they are."""
         self.recording.clear()
         self._recorded_step = -1
-        self._frame = self._exhibit.maker.frame(self.session)
+        self._make_frame()
         self._frame_due = self._state_due = True
         self._state_sent = self._clock()
 
@@ -313,8 +313,6 @@ class Show:
 
     def recorded(self) -> LiveRecording:
         """Return the last seconds, with the methods and the balls as they are now."""
-        if not self.recording:
-            self._make_frame()
         balls = [
             RecordedBall(ball.frame, places[:, :3], places[:, 3:], ball.mode == "pinned", ball.oriented)
             for ball, places in zip(self.session.balls, self.recording.balls, strict=True)
