@@ -23,7 +23,8 @@ SOURCE = ROOT / "src" / "pinik"
 ONLY_THERE = {
     "yourdfpy": {"shapes.second_opinion"},
     "coal": {"engine", "shapes.coal_checker"},
-    "trimesh": {"shapes.mesh_files", "shapes.meshes", "shapes.neighbours", "shapes.triangles"},
+    "trimesh": {"shapes.mesh_files", "shapes.meshes", "shapes.neighbours", "shapes.simplified", "shapes.triangles"},
+    "fast_simplification": {"shapes.simplified"},
     "robot_descriptions": {"description.downloads"},
     "xacro": {"description.xacro_process"},
     "xacrodoc": {"description.xacro_process"},

@@ -41,7 +41,7 @@ class Page {
             onText: (message) => this._on[message.type]?.(message),
             onBinary: (buffer) => this._take(buffer),
             onOpen: () => this.notices.connected(true),
-            onClose: () => this.notices.connected(false, this.state?.robot),
+            onClose: () => this.notices.connected(false),
         });
         this.show = new Show({ canvas: byId("canvas"), labels: byId("labels") }, this.theme);
         this.controls = new Controls(this.connection, this.notices);

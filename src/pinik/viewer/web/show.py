@@ -75,8 +75,8 @@ class Show:
         self._supply()
 
     def _start_anew(self) -> None:
-        """Discard the recording, whose frames show other instances or balls."""
-        self._broadcast.start_anew(self._exhibit.maker.frame(self.session))
+        """Discard the recording, whose frames show other instances or balls, and begin one with where they are."""
+        self._broadcast.start_anew(self._exhibit.maker.frame(self.session), self.session)
 
     @property
     def recording(self) -> Recording:
@@ -275,8 +275,6 @@ class Show:
 
     def recorded(self) -> LiveRecording:
         """Return the last seconds, with the methods and the balls as they are now."""
-        if not self.recording:
-            self._record()
         balls = [
             RecordedBall(ball.frame, places[:, :3], places[:, 3:], ball.mode == "pinned", ball.oriented)
             for ball, places in zip(self.session.balls, self.recording.balls, strict=True)
