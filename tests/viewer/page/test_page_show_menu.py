@@ -40,7 +40,7 @@ def test_each_look_of_the_menu_is_kept_by_the_session_and_the_link(open_panel):
 
 def test_robots_in_one_place_share_the_ball_and_have_a_legend(open_panel):
     desk = open_panel("arm", METHODS)
-    assert len({tuple(place) for place in desk.runs(PLACES)}) == 4
+    desk.wait(lambda: len({tuple(place) for place in desk.runs(PLACES)}) == 4)
     desk.page.keyboard.press("0")
     desk.until(lambda s: s["looks"] == ["overlay"])
     desk.wait(lambda: len({tuple(place) for place in desk.runs(PLACES)}) == 1)
