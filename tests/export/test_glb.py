@@ -254,7 +254,13 @@ def test_a_plate_in_front_of_each_robot_says_its_method(arm, recorded, stage):
         assert stage.numbers(mesh.primitives[0].attributes.TEXCOORD_0)[low_left].tolist() == [0.0, 1.0]
 
 
-def test_what_cannot_be_written_is_refused_in_words(arm, track, tmp_path):
+@pytest.fixture
+def arm_on_show(arm):
+    with pinik.live(arm, port=0) as view:
+        yield view
+
+
+def test_what_cannot_be_written_is_refused_in_words(arm, arm_on_show, track, tmp_path):
     with pytest.raises(pinik.InputError, match=r"must end with '\.glb'"):
         save_glb(track, tmp_path / "track.gltf")
     with pytest.raises(pinik.InputError, match="must increase"):
@@ -263,6 +269,10 @@ def test_what_cannot_be_written_is_refused_in_words(arm, track, tmp_path):
         save_glb(track, tmp_path / "a.glb", track.q)
     with pytest.raises(pinik.InputError, match="must be a robot, a solution"):
         save_glb("arm", tmp_path / "a.glb")
+    with pytest.raises(pinik.InputError, match=r"must be .* the recording\(\) of a live view; got .* 'LiveView'"):
+        save_glb(arm_on_show, tmp_path / "a.glb")
+    with pytest.raises(pinik.InputError, match="must be .*; got an object of type 'Branches'"):
+        save_glb(arm.solve_all("tip", position=arm.placement("tip", arm.random(2)).translation), tmp_path / "a.glb")
     with pytest.raises(pinik.InputError, match="no visual shapes"):
         save_glb(pinik.load(chain(3, "revolute")), tmp_path / "a.glb")
     assert list(tmp_path.iterdir()) == []
