@@ -271,7 +271,7 @@ def test_what_cannot_be_written_is_refused_in_words(arm, arm_on_show, track, tmp
         save_glb("arm", tmp_path / "a.glb")
     with pytest.raises(pinik.InputError, match=r"must be .* the recording\(\) of a live view; got .* 'LiveView'"):
         save_glb(arm_on_show, tmp_path / "a.glb")
-    with pytest.raises(pinik.InputError, match="must be .*; got an object of type 'Branches'"):
+    with pytest.raises(pinik.InputError, match="got an object of type 'Branches'"):
         save_glb(arm.solve_all("tip", position=arm.placement("tip", arm.random(2)).translation), tmp_path / "a.glb")
     with pytest.raises(pinik.InputError, match="no visual shapes"):
         save_glb(pinik.load(chain(3, "revolute")), tmp_path / "a.glb")
