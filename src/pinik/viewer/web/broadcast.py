@@ -38,11 +38,11 @@ class Broadcast:
         """Whether anything is to be sent."""
         return self.frame_due or self.state_due
 
-    def start_anew(self, frame: bytes) -> None:
-        """Discard the recording, whose frames show other instances or balls than this one."""
+    def start_anew(self, frame: bytes, session: Session) -> None:
+        """Discard the recording, whose frames show other instances or balls than this one, and record this one."""
         self.recording.clear()
         self._recorded_step = -1
-        self.frame = frame
+        self.record(frame, session)
         self.frame_due = self.state_due = True
         self._state_sent = self._clock()
 

@@ -75,8 +75,8 @@ class Show:
         self._supply()
 
     def _start_anew(self) -> None:
-        """Discard the recording, whose frames show other instances or balls."""
-        self._broadcast.start_anew(self._exhibit.maker.frame(self.session))
+        """Begin another recording, as the frames of the last one show other instances or balls."""
+        self._broadcast.start_anew(self._exhibit.maker.frame(self.session), self.session)
 
     @property
     def recording(self) -> Recording:
@@ -214,10 +214,7 @@ class Show:
             if self._cast() != before:
                 self._start_anew()
             elif self._broadcast.lacks(self.session):  # several steps may be asked for between two ticks
-                self._record()
-
-    def _record(self) -> None:
-        self._broadcast.record(self._exhibit.maker.frame(self.session), self.session)
+                self._broadcast.record(self._exhibit.maker.frame(self.session), self.session)
 
     def _supply(self) -> None:
         """Load what the session needs now."""
@@ -275,8 +272,6 @@ class Show:
 
     def recorded(self) -> LiveRecording:
         """Return the last seconds, with the methods and the balls as they are now."""
-        if not self.recording:
-            self._record()
         balls = [
             RecordedBall(ball.frame, places[:, :3], places[:, 3:], ball.mode == "pinned", ball.oriented)
             for ball, places in zip(self.session.balls, self.recording.balls, strict=True)
