@@ -506,6 +506,7 @@ def test_the_recording_begins_anew_where_frames_change_their_kind(stage):
         {"type": "add_effector", "frame": "link1"},
         {"type": "remove_effector", "index": 1},
         {"type": "setup", "setup": "view=2"},
+        {"type": "method", "instance": 1, "method": "jt"},  # else its name would stand on what another one did
     ):
         show.do(message)
         assert len(show.recording) == 1
