@@ -266,7 +266,18 @@ def test_the_page_of_errors_has_the_messages_that_a_user_meets():
         pinik.load("arm").solve("tip", position=[1, 2])
     with pytest.raises(pinik.UnknownNameError):
         pinik.load("arm").solve("tpi", position=[1, 2, 3])
-    assert any(matches(line, str(wrong.value)) for line in re.findall(r"^    \* `` (.*) ``$", page, re.MULTILINE))
+    with pytest.warns(pinik.InputWarning) as rounded:
+        pinik.Target("tip", rotation=np.eye(3) + 1e-4)
+    with pytest.warns(pinik.InputWarning) as in_degrees:
+        pinik.Target("tip", rpy=[180, 0, 90])
+    with pytest.raises(pinik.RobotLoadError) as twice:
+        pinik.load('<robot name="r"><link name="base"/><link name="base"/></robot>')
+    with pytest.raises(pinik.RobotLoadError) as other_file:
+        pinik.load('<robot name="r"><group_state name="home" group="arm"/></robot>')
+    met = [wrong.value, rounded[0].message, in_degrees[0].message]
+    met += [fault.value.cause.partition(" (line ")[0] for fault in (twice, other_file)]
+    lines = re.findall(r"^    \* `` (.*) ``$", page, re.MULTILINE)
+    assert [str(words) for words in met if not any(matches(line, str(words)) for line in lines)] == []
     assert "no frame '…'; did you mean '…'?" in page
 
 

@@ -6,6 +6,7 @@ pinik.batch.run(robot, "poses.csv", "tip", output="answers.csv")
 from __future__ import annotations
 
 import time
+import warnings
 from collections.abc import Callable, Iterable, Mapping
 from typing import Any
 
@@ -13,7 +14,7 @@ import pinocchio
 from numpy.typing import ArrayLike
 
 from .checks import as_count
-from .errors import InputError, PinikError
+from .errors import InputError, InputWarning, PinikError
 from .model.robot_model import RobotModel
 from .problem.target_values import as_tool
 from .problem.tolerance import Tolerance
@@ -129,6 +130,9 @@ def run(
         MissingExtraError: Parquet needs pyarrow, a cluster dask and distributed, and they are not installed.
         ClusterError: The cluster cannot be used.
         OSError: A file cannot be read or written.
+
+    Warns:
+        InputWarning: Roll, pitch and yaw of a row look like degrees, and are taken as radians.
     """
     if not isinstance(robot, RobotModel):
         raise InputError(f"robot must be what pinik.load returns; got {robot!r}")
@@ -146,6 +150,13 @@ def run(
         reading = _reading(robot, table, frame, tool, relative_to, options.tolerance, q0, degrees)
         found = _surveyed(table, reading, (on_bad or _unsaid) if skip_bad else None)
         _check_kinds(found, reading, options)
+        if found.like_degrees:
+            warnings.warn(
+                f"{found.like_degrees}: roll, pitch and yaw go beyond a full turn in radians, and look like degrees; "
+                "--deg (degrees=True) takes the angles of a CSV file as degrees",
+                InputWarning,
+                stacklevel=2,
+            )
         columns = columns_of(robot, whole_ids=found.whole_ids, times=times)
         work = Solving(reading, options, columns, table.form, delivery.form, degrees and delivery.form == "csv")
         fingerprint = _fingerprint(work, digest_of(table.path), rows)

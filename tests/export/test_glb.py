@@ -65,6 +65,24 @@ def test_joints_move_evenly_between_keys_even_where_they_turn_far(tmp_path):
             np.testing.assert_allclose(played.place(link, time), plain(panda, now, link), atol=2e-6)
 
 
+GEARED = """<robot name="geared"><link name="base"/>
+<link name="slow"><visual><geometry><box size="0.1 0.1 0.1"/></geometry></visual></link><link name="fast"/>
+<joint name="leader" type="revolute"><parent link="base"/><child link="slow"/><axis xyz="0 0 1"/>
+  <limit lower="-1" upper="1" effort="1" velocity="1"/></joint>
+<joint name="follower" type="continuous"><parent link="base"/><child link="fast"/><axis xyz="0 0 1"/>
+  <mimic joint="leader" multiplier="-4"/></joint></robot>"""
+
+
+def test_a_follower_that_turns_farther_than_its_leader_goes_the_whole_way(tmp_path):
+    robot = pinik.load(GEARED)
+    save_glb(robot, tmp_path / "geared.glb", [[0.0], [0.9]], times=[0.0, 1.0])
+    played = Player(tmp_path / "geared.glb")
+    for time in np.linspace(0.0, 1.0, 11):
+        for link in ("slow", "fast"):
+            expected = plain(robot, np.array([0.9 * time]), link)
+            np.testing.assert_allclose(played.place(link, time), expected, atol=2e-6)
+
+
 def test_a_free_root_moves_its_first_link(tmp_path):
     lion = load_quietly("lion", root="free_flyer")
     q = np.array([lion.random(k) for k in range(3)])
@@ -236,7 +254,13 @@ def test_a_plate_in_front_of_each_robot_says_its_method(arm, recorded, stage):
         assert stage.numbers(mesh.primitives[0].attributes.TEXCOORD_0)[low_left].tolist() == [0.0, 1.0]
 
 
-def test_what_cannot_be_written_is_refused_in_words(arm, track, tmp_path):
+@pytest.fixture
+def arm_on_show(arm):
+    with pinik.live(arm, port=0) as view:
+        yield view
+
+
+def test_what_cannot_be_written_is_refused_in_words(arm, arm_on_show, track, tmp_path):
     with pytest.raises(pinik.InputError, match=r"must end with '\.glb'"):
         save_glb(track, tmp_path / "track.gltf")
     with pytest.raises(pinik.InputError, match="must increase"):
@@ -245,6 +269,10 @@ def test_what_cannot_be_written_is_refused_in_words(arm, track, tmp_path):
         save_glb(track, tmp_path / "a.glb", track.q)
     with pytest.raises(pinik.InputError, match="must be a robot, a solution"):
         save_glb("arm", tmp_path / "a.glb")
+    with pytest.raises(pinik.InputError, match=r"must be .* the recording\(\) of a live view; got .* 'LiveView'"):
+        save_glb(arm_on_show, tmp_path / "a.glb")
+    with pytest.raises(pinik.InputError, match="got an object of type 'Branches'"):
+        save_glb(arm.solve_all("tip", position=arm.placement("tip", arm.random(2)).translation), tmp_path / "a.glb")
     with pytest.raises(pinik.InputError, match="no visual shapes"):
         save_glb(pinik.load(chain(3, "revolute")), tmp_path / "a.glb")
     assert list(tmp_path.iterdir()) == []

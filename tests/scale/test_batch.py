@@ -221,6 +221,23 @@ def test_roll_pitch_and_yaw_and_degrees(panda, tmp_path):
             assert answers[f"angle.{name}"][0] == pytest.approx(expected, abs=1e-5)
 
 
+@pytest.mark.parametrize("form", FORMATS)
+def test_angles_that_look_like_degrees_are_warned_of_once_with_the_first_row(panda, tmp_path, form):
+    rows = [(0.3, -0.2, 0.7), (180.0001, 0.0, 30.0), (180.0, 0.0, 30.0), (-90.0, 0.0, 0.0)]
+    columns = dict(zip(("roll", "pitch", "yaw"), map(list, zip(*rows, strict=True)), strict=True))
+    path, output = write(tmp_path / f"t.{form}", columns), tmp_path / f"o.{form}"
+    with pytest.warns(pinik.InputWarning) as given:
+        pinik.batch.run(panda, path, TIP, output=output, chunk=1)
+    (warning,) = given
+    place = {"csv": "line 4", "jsonl": "line 3"}.get(form, "row 2")
+    assert f"t.{form}: {place}: roll, pitch and yaw go beyond a full turn in radians" in str(warning.message)
+    assert warning.filename == __file__
+    if form == "csv":
+        pinik.batch.run(panda, path, TIP, output=output, degrees=True)  # warnings are errors in tests
+    quiet = write(tmp_path / f"q.{form}", {name: column[:2] for name, column in columns.items()})
+    pinik.batch.run(panda, quiet, TIP, output=output)
+
+
 def test_continuous_joints_stay_at_the_turn_of_their_start(kinova, tmp_path):
     frame = kinova.frame_names[-1]
     name = next(joint.name for joint in kinova.joints if joint.nq == 2)

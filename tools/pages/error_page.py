@@ -138,20 +138,69 @@ def messages() -> dict[str, set[str]]:
     return found
 
 
-def _said_in(tree: ast.AST) -> Iterator[tuple[str, str]]:
-    for node in ast.walk(tree):
+def _said_in(tree: ast.Module) -> Iterator[tuple[str, str]]:
+    for node, words in _with_words(tree, Words(tree, tree)):
         if isinstance(node, ast.Raise) and isinstance(node.exc, ast.Call):
             call = node.exc
             name = ast.unparse(call.func).rpartition(".")[2]
             if name == "UnknownNameError":
                 yield name, f"no {_template(call.args[0])} '…'; did you mean '…'?"
-            elif call.args and (message := _template(call.args[0])).strip("… "):
-                argument = next((one.value for one in call.keywords if one.arg == "argument"), None)
-                yield name, message if argument is None else f"{_template(argument)} {message}"
-        elif isinstance(node, ast.Call) and ast.unparse(node.func) == "warnings.warn":
-            words, category = node.args[0], ast.unparse(node.args[1])
-            if (message := _template(words)).strip("…: "):
-                yield category, message
+                continue
+            argument = next((one.value for one in call.keywords if one.arg == "argument"), None)
+            for message in words.of(call.args[0]) if call.args else ():
+                if _is_sentence(message):
+                    yield name, message if argument is None else f"{_template(argument)} {message}"
+        elif isinstance(node, ast.Call) and ast.unparse(node.func) in WARNS:
+            category = WARNS[ast.unparse(node.func)] or ast.unparse(node.args[1])
+            for message in words.of(node.args[0]):
+                if _is_sentence(message):
+                    yield category, message
+
+
+WARNS = {"warnings.warn": None, "_warn": "InputWarning"}
+"""What warns → the class of its warnings, or None if the second argument names it."""
+
+
+class Words:
+    """What expressions in a function say."""
+
+    def __init__(self, module: ast.Module, scope: ast.AST) -> None:
+        self._module, self._values, self._returned = module, {}, {}
+        for part in {module, scope}:
+            for node in module.body if part is module else ast.walk(scope):
+                if isinstance(node, ast.Assign) and isinstance(node.targets[0], ast.Name):
+                    self._values.setdefault(node.targets[0].id, []).append(node.value)
+        for node in module.body:
+            if isinstance(node, ast.FunctionDef):
+                self._returned[node.name] = [one.value for one in ast.walk(node) if isinstance(one, ast.Return)]
+
+    def of(self, node: ast.expr | None, depth: int = 3) -> list[str]:
+        """All that an expression can be: a name what is assigned to it, a call what the module's function returns."""
+        found: list[ast.expr | None] = []
+        if isinstance(node, ast.Name):
+            found = self._values.get(node.id, [])
+        elif isinstance(node, ast.Call) and isinstance(node.func, ast.Name):
+            found = self._returned.get(node.func.id, [])
+        elif isinstance(node, ast.IfExp):
+            found = [node.body, node.orelse]
+        elif isinstance(node, ast.BoolOp):
+            found = node.values
+        if found and depth:
+            return [words for one in found for words in self.of(one, depth - 1)]
+        return [] if node is None else [_template(node)]
+
+
+def _with_words(module: ast.Module, words: Words, node: ast.AST | None = None) -> Iterator[tuple[ast.AST, Words]]:
+    """All nodes of a module, each with the words of the innermost function around it."""
+    for child in ast.iter_child_nodes(node or module):
+        inner = Words(module, child) if isinstance(child, ast.FunctionDef) else words
+        yield child, inner
+        yield from _with_words(module, inner, child)
+
+
+def _is_sentence(message: str) -> bool:
+    """Whether there is a word in it, apart from remarks such as "(line …)"."""
+    return re.search(r"\w", re.sub(r"\(.*?\)", "", message)) is not None
 
 
 def _template(node: ast.expr) -> str:

@@ -17,9 +17,13 @@ _FARTHEST = np.pi / 3  # that a joint turns between two keys; beyond π a player
 
 def filled_in(robot: Robot, q: Array, times: Array) -> tuple[Array, Array]:
     """Configurations (n, nq) and times (n,) with others between them where a joint turns far."""
+    rates = np.ones(robot.model.nv)  # how much faster the fastest follower of a joint turns
+    for joint in robot.joints:
+        if joint.leader is not None:
+            rates[joint.idx_v] = max(rates[joint.idx_v], abs(joint.multiplier))
     rows, when = [q[:1]], [times[:1]]
     for before, after, start, end in zip(q[:-1], q[1:], times[:-1], times[1:], strict=True):
-        way = pinocchio.difference(robot.model, before, after)
+        way = rates * pinocchio.difference(robot.model, before, after)
         count = max(1, int(np.ceil(np.abs(way).max(initial=0.0) / _FARTHEST)))
         shares = np.arange(1, count + 1) / count
         rows.append(np.array([pinocchio.interpolate(robot.model, before, after, share) for share in shares[:-1]]

@@ -8,7 +8,7 @@ import weakref
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
-from typing import TYPE_CHECKING, TypeAlias
+from typing import TYPE_CHECKING, TypeAlias, get_args
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -166,12 +166,12 @@ def scene_of(shown: Shown, q: ArrayLike | None, times: ArrayLike | None) -> Scen
         times: When it is at each (n,) [s], increasing; those of a track or a recording, or 30 a second, when None.
 
     Raises:
-        InputError: `shown` is neither, or holds no configuration; or `q` or `times` do not fit it.
+        InputError: `shown` is none of these, or holds no configuration; or `q` or `times` do not fit it.
     """
     robot = getattr(shown, "robot", shown)
-    if not isinstance(robot, Robot):
-        raise InputError(f"must be a robot, a solution, a track, a self-motion or a recording; got an object of type "
-                         f"{type(shown).__name__!r}", argument="shown")  # fmt: skip
+    if not isinstance(shown, get_args(Shown)) or not isinstance(robot, Robot):
+        raise InputError(f"must be a robot, a solution, a track, a self-motion or the recording() of a live view; got "
+                         f"an object of type {type(shown).__name__!r}", argument="shown")  # fmt: skip
     if q is not None and not isinstance(shown, Robot):
         raise InputError("must be left out, because the answer has its own configurations", argument="q")
     if isinstance(shown, LiveRecording):

@@ -15,7 +15,7 @@ from ..errors import PinikError
 from ..model.robot_model import RobotModel
 from ..problem.targets import Target
 from ..problem.tolerance import Tolerance
-from ..rotations import rotations_of_quaternions, rotations_of_rpy
+from ..rotations import rotations_of_quaternions, rotations_of_rpy, rpy_like_degrees
 from ..solving.origin import Origin
 from .columns import POSITION, TOLERANCES, Columns
 from .kinds import Kind, kinds_of
@@ -109,6 +109,14 @@ class Reading:
             {name: value if np.ndim(value) == 0 else value[rows] for name, value in turned.items()},
             faults.sorted(),
         )
+
+    def like_degrees(self, table: Table) -> int | None:
+        """The first row whose roll, pitch and yaw are taken as radians and look like degrees."""
+        if len(self.columns.turned) != 3 or self.degrees:
+            return None
+        numbers = np.stack([table.numbers[name] for name in self.columns.turned], axis=1)
+        beyond = np.flatnonzero(np.abs(numbers).max(axis=1, initial=0.0) > 2.0 * math.pi)
+        return next((row for row in beyond.tolist() if rpy_like_degrees(numbers[row].tolist())), None)
 
     def _read_positions(self, table: Table, goals: Array, faults: _Faults) -> Truths:
         along = np.zeros((len(table), 3), dtype=bool)

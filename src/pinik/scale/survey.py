@@ -33,6 +33,8 @@ class Survey:
         repeated: Chunk → the indices of rows in it whose id belongs to an earlier row.
         whole_ids: Whether the ids are whole numbers of at most 64 bits.
         kinds: The kinds of rows, tolerances aside, with the place of the first row of each.
+        like_degrees: The place of the first row whose roll, pitch and yaw look like degrees and are not taken as such;
+            "" if there is none.
     """
 
     rows: int = 0
@@ -41,6 +43,7 @@ class Survey:
     repeated: dict[int, tuple[int, ...]] = field(default_factory=dict)
     whole_ids: bool = True
     kinds: dict[Kind, str] = field(default_factory=dict)
+    like_degrees: str = ""
 
     def chunk(self, source: Source, number: int) -> RawChunk:
         """One chunk, as the work on it needs it."""
@@ -75,6 +78,8 @@ def survey(source: Source, reading: Reading, label: str, on_bad: Callable[[str],
         found.faulty += len(table) - len(asked.rows)
         for fault in asked.faults:
             on_bad(_words(label, source, table, fault))
+        if not found.like_degrees and (row := reading.like_degrees(table)) is not None:
+            found.like_degrees = f"{label}: {source.place} {table.places[row]}"
         for index, kind in enumerate(asked.kinds):
             common = kind._replace(tolerance=None)
             if common not in found.kinds:

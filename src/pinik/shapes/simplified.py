@@ -15,9 +15,8 @@ from .triangles import creased
 __all__ = ["simplified"]
 
 LEAST = 60  # triangles; a cylinder with fewer has corners
-PATIENCE = (
-    3.0  # fast-simplification's `agg`; above 5, some triangles of a ball are so thin that their normals are wrong
-)
+# fast-simplification's `agg`; above 5, some triangles of a ball are so thin that their normals are wrong.
+PATIENCE = 3.0
 LOST = 0.05  # of a mesh's diagonal, by which it may become smaller
 
 

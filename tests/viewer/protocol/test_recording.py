@@ -31,9 +31,19 @@ def test_twenty_seconds_are_kept_and_no_more():
 
 
 def test_its_time_is_that_of_the_steps():
-    recording = recorded(small_frame(k) for k in (100, 102, 103, 107, 108, 109))
-    assert steps(recording) == [100, 102, 107, 109]
-    np.testing.assert_allclose(recording.times, [0.0, 2 / 60, 7 / 60, 9 / 60])
+    recording = recorded(small_frame(k) for k in (100, 102, 103, 104, 105, 106, 107))
+    assert steps(recording) == [100, 102, 104, 106]
+    np.testing.assert_allclose(recording.times, np.arange(4) / 30)
+
+
+def test_a_pause_without_frames_is_no_slow_motion():
+    """Nothing moves for five seconds, and then the ball is put elsewhere."""
+    recording, block = Recording(), InstanceBlock(np.zeros(8), np.ones((2, 7)), np.ones(2), np.ones((1, 3)))
+    for step, place in ((0, 0.1), (2, 0.2), (302, 0.9), (304, 1.0)):
+        recording.add(pack_frame(1, step, np.full((1, 7), place), [block]), [np.full(2, place)])
+    np.testing.assert_allclose(recording.times, [0.0, 2 / 60, 5.0, 302 / 60, 304 / 60])
+    np.testing.assert_allclose(recording.q[0, :, 0], [0.1, 0.2, 0.2, 0.9, 1.0])
+    np.testing.assert_allclose(recording.balls[0, :, 0], [0.1, 0.2, 0.2, 0.9, 1.0], atol=1e-7)
 
 
 def test_after_a_reset_time_goes_on():

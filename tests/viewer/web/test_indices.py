@@ -13,7 +13,8 @@ from pinik.viewer.web.show import Show
 from robots import load_quietly
 from stand_ins import GOOD, Clock, Later, Tab, snapshot
 
-ROWS = re.findall(r"^\| `(\w+)` \|([^|]*)\|", Path("docs/live-protocol.md").read_text(), re.MULTILINE)
+PROTOCOL = (Path(__file__).parents[3] / "docs" / "live-protocol.md").read_text("utf-8")
+ROWS = re.findall(r"^\| `(\w+)` \|([^|]*)\|", PROTOCOL, re.MULTILINE)
 NUMBERED = [(kind, name) for kind, fields in ROWS for name in ("instance", "index") if f"`{name}`" in fields]
 OTHERS = {
     "explain": {"instance": 0},

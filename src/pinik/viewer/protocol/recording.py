@@ -63,21 +63,34 @@ class Recording:
 
     @property
     def times(self) -> Array:
-        """When each frame was (n,) [s], from 0 on."""
-        at = np.array([moment.at for moment in self._moments], dtype=np.float64)
+        """When each of `q` and `balls` was (n,) [s], from 0 on.
+
+        While nothing moves there are no frames. The last one then counts again right before the next one, so that
+        nobody takes the pause for a slow motion.
+        """
+        at = np.array([at for at, _ in self._shown()], dtype=np.float64)
         return (at - at[:1]) / STEPS_PER_SECOND
 
     @property
     def q(self) -> Array:
         """The configurations (instances, n, nq) of at least one frame."""
-        return np.stack([moment.q for moment in self._moments], axis=1)
+        return np.stack([moment.q for _, moment in self._shown()], axis=1)
 
     @property
     def balls(self) -> Array:
         """The balls' placements (balls, n, 7) in at least one frame: x, y, z [m], qx, qy, qz, qw."""
         (count,) = struct.unpack_from("<f", self._moments[0].frame, _BALLS)
-        rows = [np.frombuffer(moment.frame, "<f4", 7 * int(count), _HEADER) for moment in self._moments]
+        rows = [np.frombuffer(moment.frame, "<f4", 7 * int(count), _HEADER) for _, moment in self._shown()]
         return np.array(rows, dtype=np.float64).reshape(len(rows), -1, 7).swapaxes(0, 1)
+
+    def _shown(self) -> list[tuple[int, _Moment]]:
+        """The frames with the steps at which they show something, twice before a pause."""
+        shown: list[tuple[int, _Moment]] = []
+        for moment in self._moments:
+            if shown and moment.at - shown[-1][0] > _BETWEEN:
+                shown.append((moment.at - _BETWEEN, shown[-1][1]))
+            shown.append((moment.at, moment))
+        return shown
 
     def add(self, frame: bytes, q: Sequence[Array]) -> None:
         """Add a frame message with the configuration (nq,) of each of its instances, if it is due.

@@ -204,7 +204,7 @@ class Show:
                 self._broadcast.state_due |= not waits or not self.session.running
 
     def _change(self, act: Callable[[Session], None]) -> None:
-        """Change the session, and start a new recording if its instances or balls are others now."""
+        """Change the session, and start a new recording if its instances, their methods or balls are others now."""
         before = self._cast()
         try:
             act(self.session)
@@ -214,10 +214,7 @@ class Show:
             if self._cast() != before:
                 self._start_anew()
             elif self._broadcast.lacks(self.session):  # several steps may be asked for between two ticks
-                self._record()
-
-    def _record(self) -> None:
-        self._broadcast.record(self._exhibit.maker.frame(self.session), self.session)
+                self._broadcast.record(self._exhibit.maker.frame(self.session), self.session)
 
     def _supply(self) -> None:
         """Load what the session needs now."""
@@ -228,9 +225,9 @@ class Show:
         if why_not:
             self._seats.send(_notice(why_not))
 
-    def _cast(self) -> tuple[int, list[str]]:
-        """Return what the layout of a frame depends on: the number of instances and the balls."""
-        return self.session.view, [ball.frame for ball in self.session.balls]
+    def _cast(self) -> tuple[list[str], list[str]]:
+        """Return what a recording has one of: the method of each visible instance, and the frame of each ball."""
+        return [instance.solver.name for instance in self.session.seen], [ball.frame for ball in self.session.balls]
 
     def _leads(self) -> tuple[str, frozenset[int]]:
         """Return what moves the balls."""
