@@ -100,7 +100,7 @@ def write_whole(path: str | os.PathLike[str], content: bytes) -> None:
         raise PermissionError(errno.EACCES, os.strerror(errno.EACCES), str(path))
     unfinished = target.with_name(f".{os.urandom(8).hex()}.unfinished")
     try:
-        with open(os.open(unfinished, os.O_WRONLY | os.O_CREAT | os.O_EXCL | os.O_CLOEXEC, 0o666), "wb") as file:
+        with open(_new(unfinished, path), "wb") as file:
             file.write(content)
             file.flush()
             if mode is not None:
@@ -111,6 +111,14 @@ def write_whole(path: str | os.PathLike[str], content: bytes) -> None:
         with contextlib.suppress(OSError):
             os.unlink(unfinished)
         raise
+
+
+def _new(unfinished: Path, path: str | os.PathLike[str]) -> int:
+    """Open a new file to write; an error names the file that it stands for."""
+    try:
+        return os.open(unfinished, os.O_WRONLY | os.O_CREAT | os.O_EXCL | os.O_CLOEXEC, 0o666)
+    except OSError as error:
+        raise OSError(error.errno, error.strerror, os.fspath(path)) from None
 
 
 def _may_write(path: Path) -> bool:

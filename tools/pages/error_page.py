@@ -150,12 +150,19 @@ def _said_in(tree: ast.Module) -> Iterator[tuple[str, str]]:
             for message in words.of(call.args[0]) if call.args else ():
                 if _is_sentence(message):
                     yield name, message if argument is None else f"{_template(argument)} {message}"
+        elif isinstance(node, ast.Call) and ast.unparse(node.func) in NOTES:
+            for message in words.of(node.args[-1]):
+                if _is_sentence(message):
+                    yield "InputError", message
         elif isinstance(node, ast.Call) and ast.unparse(node.func) in WARNS:
             category = WARNS[ast.unparse(node.func)] or ast.unparse(node.args[1])
             for message in words.of(node.args[0]):
                 if _is_sentence(message):
                     yield category, message
 
+
+NOTES = {"faults.add", "on_bad"}
+"""What notes the faults of rows, each with its words last; `batch` raises the first, or leaves the rows out."""
 
 WARNS = {"warnings.warn": None, "_warn": "InputWarning"}
 """What warns → the class of its warnings, or None if the second argument names it."""

@@ -59,7 +59,7 @@ def _record(scene: Scene, path: Path) -> None:
     with needed_by("a .rrd file", "rerun"):
         import rerun
 
-    recording = rerun.RecordingStream(f"pinik: {scene.robot.name}", send_properties=False)
+    recording = rerun.RecordingStream("pinik", send_properties=False)
     recording.save(path)
     recording.log("/", rerun.ViewCoordinates.RIGHT_HAND_Z_UP, static=True)
     when = [rerun.TimeColumn("time", duration=scene.times)]

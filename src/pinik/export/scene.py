@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import os
 import warnings
 import weakref
@@ -193,7 +194,7 @@ def _times(own: Array | None, given: ArrayLike | None, count: int) -> Array:
 
 
 def _cast(recording: LiveRecording) -> tuple[Actor, ...]:
-    cast = zip(recording.names, recording.solvers, TINTS, recording.q, strict=False)
+    cast = zip(recording.names, recording.solvers, itertools.cycle(TINTS), recording.q, strict=False)
     return tuple(Actor(name, solver.title, color, q) for name, solver, color, q in cast)
 
 

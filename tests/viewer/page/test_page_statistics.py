@@ -14,6 +14,7 @@ from PIL import Image
 
 from desk import METHODS
 from glb_player import Player
+from urdf_texts import chain
 
 COLUMNS = ["mean-time", "mean-iterations", "efficiency", "mean-error", "largest-jump"]
 UNITS = {"ms": 1e-3, "µs": 1e-6, "%": 0.01, "m": 1.0, "cm": 0.01, "mm": 0.001, "°": np.pi / 180, "": 1.0}
@@ -234,6 +235,15 @@ def test_the_last_seconds_can_be_saved_as_gltf(open_panel, tmp_path):
     played = Player(tmp_path / "saved.glb")
     assert played.duration > 1.0
     assert {"dls tip", "ccd tip", "dls ball tip"} <= set(played.names)
+
+
+def test_a_robot_without_shapes_offers_no_gltf(open_panel, tmp_path):
+    bare = tmp_path / "bare.urdf"
+    bare.write_text(chain(3, "revolute"))
+    desk = open_panel(bare, methods=("dls",))
+    desk.expect("save-glb").to_be_hidden()
+    desk.page.get_by_test_id("robot").select_option("two_link", force=True)
+    desk.expect("save-glb").to_be_visible()
 
 
 def test_a_page_saved_before_the_first_step_opens_as_well(open_panel, tmp_path):

@@ -159,6 +159,10 @@ export class Controls {
         byId("save-glb").download = `${file}.glb`;
     }
 
+    setShapes({ parts }) {
+        byId("save-glb").hidden = !parts.length;
+    }
+
     _showRun({ running, steps_per_second: rate }) {
         const start = byId("start");
         start.title = running ? "Stop (space)" : "Start (space)";

@@ -111,6 +111,7 @@ class Page {
         },
         shapes: (shapes) => {
             const notes = this.show.setShapes(shapes);
+            this.controls.setShapes(shapes);
             if (shapes.generation === this.robot.generation)
                 this.notices.warnings([...this.robot.warnings, ...shapes.warnings, ...notes]);
             for (const note of notes) this.notices.error(note);

@@ -12,7 +12,7 @@ import tornado.httpserver
 import tornado.iostream
 import tornado.web
 
-from ...errors import PinikError
+from ...errors import InputError, PinikError
 from ...export.glb import glb_of
 from ...export.scene import scene_of
 from ..protocol.copying import texts_to_copy
@@ -226,7 +226,7 @@ class _Animation(_Download):
         scene = scene_of(self.show.recorded(), None, None)
         try:
             return await asyncio.to_thread(glb_of, scene)
-        except PinikError as error:
+        except InputError as error:
             raise tornado.web.HTTPError(404, reason="The robot has no shapes that can be read") from error
 
 
