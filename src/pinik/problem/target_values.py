@@ -83,7 +83,7 @@ def rotation_of(
 
 def as_position(position: Position, what: str) -> Array:
     """A point (3,) [m], with NaN for coordinates of None."""
-    if isinstance(position, pinocchio.SE3) or getattr(position, "shape", None) == (4, 4):
+    if isinstance(position, pinocchio.SE3) or (isinstance(position, np.ndarray) and position.shape == (4, 4)):
         raise InputError("must be 3 finite numbers; give a whole placement as placement=", argument=what)
     position = as_plain(position, what)
     parts = position.tolist() if isinstance(position, np.ndarray) and position.dtype == object else position

@@ -46,6 +46,7 @@ def red_spots(picture):
 def test_all_four_instances_follow_the_ball_that_is_dragged(open_desk):
     desk = open_desk(methods=METHODS, running=True)
     desk.until(desk.is_followed)
+    desk.settle()
     begin, seen_from = place(desk.state), camera(desk)
     start = desk.ball_on_screen()
     drag(desk, start, (-25, 40), release=False)
