@@ -81,7 +81,7 @@ def test_the_turns_of_a_sweep_play_slowly_in_the_scene(open_panel):
     desk.shows(f"{marks}.some(Boolean)")
     desk.click("replay")
     desk.expect("replay").to_have_text("Stop")
-    desk.wait(lambda: rows.nth(1).get_attribute("class") == "now")
+    desk.shows("document.querySelectorAll('[data-testid=turns] li')[1].className === 'now'")
     desk.click("teach-close")
     desk.shows(f"!{marks}.some(Boolean)")
 

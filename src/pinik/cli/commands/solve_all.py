@@ -80,7 +80,7 @@ def solve_all(
 
     Examples:
 
-      pinik solve-all ur5 --frame tool0 --position 0.4 0.1 0.4 --rpy 180 0 90 --deg
+      pinik solve-all ur5 --frame tool0 --position 0.4 0.1 0.4 --rpy 3.14 0 1.57
       pinik solve-all two_link --frame tip --position 0.4 0.3 0 --method two_bone
     """
     units = Units(degrees)
