@@ -16,7 +16,7 @@ from .gltf import Document
 from .keys import filled_in, places_of, turned_the_short_way
 from .live_recording import RecordedBall
 from .plate import CORNERS, plate, printed_name
-from .scene import Actor, Scene, Shown, check_suffix, scene_of
+from .scene import ARM, Actor, Scene, Shown, check_suffix, scene_of
 from .surfaces import cleaned
 
 __all__ = ["glb_of", "save_glb"]
@@ -26,7 +26,7 @@ Array = NDArray[np.float64]
 # In URDF x points forward, y to the left and z up; in glTF z points forward, x to the left and y up.
 _AS_IN_GLTF = (-0.5, -0.5, -0.5, 0.5)
 _AXES = {"x": "#e5484d", "y": "#3d9a50", "z": "#3b7ddd"}  # those of a ball that asks for an orientation
-_ARM, _THIN = 3.4, 0.13  # of a ball's radius: how long and thick they are
+_THIN = 0.13  # how thick they are, of a ball's radius
 _HIGH = 0.09  # a plate, of the robot's size
 _WIDEST = 0.94  # a plate, of the distance of neighbours
 
@@ -79,6 +79,8 @@ class _Writer:
             if len(solid.faces):
                 mesh = self._document.mesh(name, [(solid, self._document.paint(shape.color))])
                 self._shapes.setdefault(shape.link, []).append((name, mesh, shape.placement))
+        self._parents = {joint.child: joint.parent for joint in scene.robot.description.joints}
+        self._links = _from_the_root(self._parents, scene.robot.description.links)
         self._balls = [self._ball(one) for one in scene.balls]
         for actor, offset in zip(scene.actors, scene.offsets, strict=True):
             self._add(actor, offset)
@@ -92,9 +94,8 @@ class _Writer:
         world = document.node(actor.name, document.root, translation=offset.tolist()) if actor.name else document.root
         q, times = filled_in(scene.robot, actor.q, scene.times)
         nodes: dict[str, int] = {}
-        parents = {joint.child: joint.parent for joint in scene.robot.description.joints}
-        for link in _from_the_root(parents, scene.robot.description.links):
-            parent = parents.get(link)
+        for link in self._links:
+            parent = self._parents.get(link)
             nodes[link] = document.node(actor.part(link), world if parent is None else nodes[parent])
             document.move(nodes[link], times - times[0], *places_of(scene.robot, link, q, parent))
             for name, mesh, placement in self._shapes.get(link, ()):
@@ -123,7 +124,7 @@ class _Writer:
         surfaces = [(ball(np.zeros(3), radius), skin)]
         if one.oriented:
             for along, color in zip(np.eye(3), _AXES.values(), strict=True):
-                arm = rod(np.zeros(3), _ARM * radius * along, _THIN * radius, _THIN * radius)
+                arm = rod(np.zeros(3), ARM * radius * along, _THIN * radius, _THIN * radius)
                 surfaces.append((arm, self._document.paint((*as_color(color, "color"), 1.0))))
         return self._document.mesh("ball", surfaces)
 

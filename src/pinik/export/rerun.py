@@ -14,13 +14,11 @@ from ..files import write_whole
 from ..picture.arguments import as_color
 from ..picture.draw import BALL, PINNED
 from .keys import places_of
-from .scene import Scene, Shown, check_suffix, scene_of
+from .scene import ARM, Scene, Shown, check_suffix, scene_of
 
 __all__ = ["save_rrd"]
 
 Array = NDArray[np.float64]
-
-_ARM = 3.4  # how long the axes of a ball that asks for an orientation are, of its radius
 
 
 def save_rrd(
@@ -92,7 +90,7 @@ def _record(scene: Scene, path: Path) -> None:
             )
             recording.log(entity, sphere, static=True)
             if one.oriented:
-                recording.log(entity, rerun.TransformAxes3D(_ARM * scene.ball_radius), static=True)
+                recording.log(entity, rerun.TransformAxes3D(ARM * scene.ball_radius), static=True)
         if actor.title:
             color = _bytes(as_color(actor.color, "color"))
             label = rerun.Points3D([scene.plate], labels=[actor.title], colors=[color], show_labels=True)

@@ -31,10 +31,13 @@ from .live_recording import LiveRecording, RecordedBall
 if TYPE_CHECKING:
     from ..shapes.meshes import Shape
 
-__all__ = ["Actor", "Scene", "Shown", "check_suffix", "scene_of"]
+__all__ = ["ARM", "Actor", "Scene", "Shown", "check_suffix", "scene_of"]
 
 Array = NDArray[np.float64]
 Shown: TypeAlias = Robot | Solution | Track | SelfMotion | LiveRecording
+
+ARM = 3.4
+"""How long the axes of a ball that asks for an orientation are, of its radius."""
 
 _PERIOD = 1.0 / 30.0  # [s] between configurations without times
 _GAP = 0.08  # between neighbours, of their width

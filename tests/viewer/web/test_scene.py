@@ -14,7 +14,7 @@ import umsgpack
 import pinik
 from pinik.shapes.meshes import load_shapes
 from pinik.viewer.protocol.robot_message import robot_message
-from pinik.viewer.web.scene import make_shapes, meshcat_script
+from pinik.viewer.web.scene import collision_shapes, make_shapes, meshcat_script
 from robots import load_quietly
 from urdf_texts import joint, link, robot
 
@@ -98,6 +98,14 @@ def test_a_robot_of_many_triangles_brings_the_same_surface_with_few_of_them(name
 
 def test_a_robot_of_few_triangles_brings_no_others():
     for command in make_shapes(load_quietly("arm")).commands:
+        message, *_ = everything(command)
+        assert message["object"]["geometries"][0]["userData"] == {"fine": 0, "first": 0}
+
+
+def test_collision_shapes_are_sent_in_detail_alone():
+    shapes = collision_shapes(load_quietly("ur5"))
+    assert shapes.commands
+    for command in shapes.commands:
         message, *_ = everything(command)
         assert message["object"]["geometries"][0]["userData"] == {"fine": 0, "first": 0}
 

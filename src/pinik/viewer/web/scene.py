@@ -76,7 +76,9 @@ def make_shapes(robot: Robot) -> Shapes:
     with needed_by("the robot's shape", "live"):
         from ...shapes.meshes import load_shapes  # over a second to import
 
-    return _converted(robot, *load_shapes(robot), "/pinik/shapes")
+    shapes, warnings = load_shapes(robot)
+    share = _COARSE / max(1, sum(len(shape.mesh.faces) for shape in shapes))
+    return _converted(robot, shapes, warnings, "/pinik/shapes", share)
 
 
 def collision_shapes(robot: Robot) -> Shapes:
@@ -84,15 +86,14 @@ def collision_shapes(robot: Robot) -> Shapes:
     with needed_by("the robot's collision shapes", "live"):
         from ...shapes.meshes import load_collision_shapes
 
-    return _converted(robot, *load_collision_shapes(robot), "/pinik/collisions")
+    return _converted(robot, *load_collision_shapes(robot), "/pinik/collisions", 1.0)  # always drawn in detail
 
 
-def _converted(robot: Robot, shapes: Sequence[Shape], warnings: Sequence[str], root: str) -> Shapes:
-    """Convert shapes into commands for parts below `root` in meshcat's tree."""
+def _converted(robot: Robot, shapes: Sequence[Shape], warnings: Sequence[str], root: str, share: float) -> Shapes:
+    """Convert shapes into commands for parts below `root` in meshcat's tree; `share` is as for `_with_coarse`."""
     by_link: dict[str, dict[Color, list[Shape]]] = {}
     for shape in shapes:
         by_link.setdefault(shape.link, {}).setdefault(shape.color, []).append(shape)
-    share = _COARSE / max(1, sum(len(shape.mesh.faces) for shape in shapes))
     parts, commands = [], []
     for index, link in enumerate(robot.description.links):
         for part, (color, same) in enumerate(by_link.get(link, {}).items()):
