@@ -103,7 +103,7 @@ def test_a_robot_of_few_triangles_brings_no_others():
 
 
 def test_collision_shapes_are_sent_in_detail_alone():
-    shapes = collision_shapes(load_quietly("ur5"))
+    shapes = collision_shapes(load_quietly("kinova"))
     assert shapes.commands
     for command in shapes.commands:
         message, *_ = everything(command)
