@@ -393,8 +393,8 @@ def test_the_methods_behave_as_the_page_says():
     assert times[-1] == pytest.approx(13.0, abs=0.1)
     assert all(errors[name][laps].max() < 0.0002 for name in ("dls", "pinv"))
     assert all(0.010 < errors[name][laps].max() < 0.0155 for name in ("ccd", "jt"))
-    for name in ("ccd", "jt", "dls"):
-        np.testing.assert_allclose(errors[name][away], 0.243, atol=0.0015)
-        assert speeds[name][away[1:]].max() < 0.1
-    assert errors["pinv"][away].max() > 0.4
+    for name, within, calm in (("dls", 0.0005, 0.01), ("ccd", 0.0015, 0.2), ("jt", 0.0035, 0.2)):
+        np.testing.assert_allclose(errors[name][away], 0.1574, atol=within)
+        assert speeds[name][away[1:]].max() < calm
+    assert errors["pinv"][away].max() > 0.35
     assert speeds["pinv"][away[1:]].max() > 5.0

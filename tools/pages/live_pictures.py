@@ -19,7 +19,7 @@ from pinik.viewer.web.show import Show
 LAP = 240  # steps of a 60th of a second in which the ball goes round its curve
 WAY = 60  # steps in which it goes out of reach, and back
 AWAY = 180  # steps for which it stays there
-FAR = (1.1, 0.5, 0.9)  # [m]
+FAR = (0.6, -0.3, 1.3)  # [m]
 
 
 def way_of_the_ball(home: NDArray[np.float64]) -> Iterator[NDArray[np.float64]]:
