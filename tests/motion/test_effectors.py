@@ -48,6 +48,7 @@ def test_a_robot_without_poses_is_slightly_bent_inside_its_limits():
         ("two_link", {"tip"}),
         ("lion", {"left_fore_paw", "right_fore_paw", "left_hind_paw", "right_hind_paw", "nose", "tail_tip"}),
         ("panda", {"panda_hand_tcp"}),
+        ("tiago_no_hand", {"wrist_ft_tool_link", "head_2_link"}),
     ],
 )
 def test_the_ends_of_known_robots_get_the_balls(name, frames):
@@ -73,6 +74,24 @@ def test_fingers_of_one_hand_are_one_end():
     )
     text = robot(*map(link, ("base", "arm", "palm")), arm, fingers)
     assert len(principal_frames(load_quietly(text))) == 1
+
+
+def test_a_foot_with_a_sensor_is_an_end_and_a_torso_that_turns_in_place_is_none():
+    at = '<origin xyz="0 0 -0.4"/>'
+    body = joint("spine", "pelvis", "torso") + joint("hip", "pelvis", "thigh") + joint("knee", "thigh", "foot", at)
+    sensor = joint("fixing", "foot", "foot_imu", at, kind="fixed")
+    text = robot(*map(link, ("pelvis", "torso", "thigh", "foot", "foot_imu")), body, sensor)
+    assert principal_frames(load_quietly(text)) == ["foot"]
+
+
+def test_a_hand_with_an_unknown_name_goes_before_the_head():
+    out = '<origin xyz="0.3 0 0"/>'
+    text = robot(
+        *map(link, ("torso", "neck", "head", "upper", "nub")),
+        joint("yaw", "torso", "neck", out) + joint("nod", "neck", "head", out),
+        joint("raise", "torso", "upper", '<origin xyz="-0.3 0 0"/>') + joint("bend", "upper", "nub", out),
+    )
+    assert principal_frames(load_quietly(text)) == ["nub", "head"]
 
 
 @pytest.mark.parametrize("name", ["arm", "lion", "tiago"])

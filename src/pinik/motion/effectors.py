@@ -12,33 +12,37 @@ from ..robot import Robot
 
 __all__ = ["principal_frames"]
 
-# Common names of end effectors, in order of rank.
+# Common names of end effectors, in order of rank. The end of an arm with an unknown name goes before a head.
 _NAMES_OF_ENDS = (
     r"tcp|tool|^tip$|_ee$|^ee_|end_?effector|eef|paw",
     r"grip|hand|palm|wrist|foot|sole|nose|flange",
-    r"head|arm|leg|finger|tip",
+    r"arm|leg|finger|tip",
+    r"^(?!.*head)",
 )
 _NO_ENDS = (
-    r"imu|gyro|cam|optic|depth|laser|sensor|fsr|rotor|motor_|collision|visual|shape|shoulder|wheel|hole|_itb|_dh_"
+    r"imu|gyro|acceler|cam|d4\d\d|lidar|mid360|optic|depth|laser|sensor|fsr|rotor|motor_|collision|visual|shape|shoulder"
+    r"|wheel|caster|hole|logo|_itb|_dh_"
 )
 _MOST = 6
+_POINT = 1e-6  # [m]: a shorter chain turns its end in place
 _APART = 0.12  # of the longest chain: ends closer to each other than this belong to one hand
 
 
 def principal_frames(robot: Robot) -> list[str]:
     """The principal end effectors, best first, at most six: the ends of arms, legs, head and tail.
 
-    Of ends close to each other, such as the fingers of a hand, only the one with the best name and the longest chain
-    is listed.
+    A link that carries nothing but sensors is an end too. Of ends close to each other, such as the fingers of a hand,
+    only the one with the best name and the longest chain is listed.
     """
     carriers = {joint.parent for joint in robot.description.joints}
     ends = [link for link in robot.description.links if link not in carriers]
-    ends = [link for link in ends if not re.search(_NO_ENDS, link.lower())] or ends
+    ends = [link for link in ends if _may_be_end(link)] or ends
+    ends += _last_links(robot, ends)
     q = home_configuration(robot)
     places = {link: robot.placement(link, q).translation for link in ends}
     chains = {link: chain_of(robot.model, robot.joints, robot.frame_id(link)) for link in ends}
-    moved = [link for link in ends if chains[link].joints]
-    lengths = {link: chains[link].length() for link in moved}
+    lengths = {link: chains[link].length() for link in ends if chains[link].joints}
+    moved = [link for link in lengths if lengths[link] > _POINT] or list(lengths)
     moved.sort(key=lambda link: (_rank(link), -len(chains[link].joints), -lengths[link]))
     apart = _APART * max(lengths.values(), default=0.0)
     chosen: list[str] = []
@@ -46,6 +50,18 @@ def principal_frames(robot: Robot) -> list[str]:
         if all(np.linalg.norm(places[link] - places[other]) >= apart for other in chosen):
             chosen.append(link)
     return chosen[:_MOST] or list(robot.frame_names[-1:])
+
+
+def _may_be_end(link: str) -> bool:
+    return not re.search(_NO_ENDS, link.lower())
+
+
+def _last_links(robot: Robot, ends: list[str]) -> list[str]:
+    """The links that are moved by the last joint of a branch, where the branch has no end yet."""
+    model = robot.model
+    ended = {model.frames[robot.frame_id(link)].parentJoint for link in ends}
+    last = [model.names[j] for j in range(1, model.njoints) if not model.children[j] and j not in ended]
+    return [joint.child for joint in robot.description.joints if joint.name in last and _may_be_end(joint.child)]
 
 
 def _rank(name: str) -> int:
