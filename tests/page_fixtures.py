@@ -20,6 +20,7 @@ if TYPE_CHECKING:
 
 FLAGS = [
     "--no-sandbox",
+    "--disable-gpu-compositing",  # the processor draws everything, so frames need not go through the graphics process
     "--use-angle=swiftshader",
     "--enable-unsafe-swiftshader",
     "--ignore-gpu-blocklist",
@@ -27,7 +28,10 @@ FLAGS = [
     "--no-first-run",
     "--disable-background-networking",
 ]
-SLOW_SCREEN = """{
+# Triangles are not drawn, and frames are rare; everything else happens.
+UNDRAWN = """{
+    for (const name of ["drawElements", "drawArrays", "drawElementsInstanced", "drawArraysInstanced"])
+        WebGL2RenderingContext.prototype[name] = () => {};
     const atOnce = window.requestAnimationFrame;
     window.requestAnimationFrame = (draw) => setTimeout(() => atOnce(draw), 100);
 }"""
@@ -59,29 +63,29 @@ def browser() -> Iterator[Browser]:
 def tabs(browser: Browser) -> Iterator[Tabs]:
     """Tabs that a module's tests share, because opening one takes a second; every test has a server of its own.
 
-    A tab with a slow screen draws less often, which leaves processor time for other things.
+    A tab that is not drawn leaves processor time for other things.
     """
     opened: dict[bool, tuple[Page, Faults]] = {}
 
-    def tab(slow: bool) -> tuple[Page, Faults]:
-        if slow not in opened:
-            context = new_context(browser)
-            if slow:
-                context.add_init_script(SLOW_SCREEN)
+    def tab(drawn: bool) -> tuple[Page, Faults]:
+        if drawn not in opened:
+            context = new_context(browser, drawn=drawn)
             faults = Faults(context)
-            opened[slow] = context.new_page(), faults
-        return opened[slow]
+            opened[drawn] = context.new_page(), faults
+        return opened[drawn]
 
     yield tab
     for page, _ in opened.values():
         page.context.close()
 
 
-def new_context(browser: Browser, *, bypass_csp: bool = True, **options: Any) -> BrowserContext:
+def new_context(browser: Browser, *, drawn: bool = True, bypass_csp: bool = True, **options: Any) -> BrowserContext:
     """Open a browser context. It bypasses the page's policy, which forbids the scripts that playwright evaluates."""
     context = browser.new_context(bypass_csp=bypass_csp, **options)
     context.set_default_timeout(1000 * PATIENCE)
     context.add_init_script(NOTICES_STAY)
+    if not drawn:
+        context.add_init_script(UNDRAWN)
     return context
 
 
@@ -102,7 +106,7 @@ def open_desk(browser: Browser, tabs: Tabs) -> Iterator[OpenDesk]:
         setup: str = "",
         until: str = DRAWN,
         viewport: dict[str, int] = WIDE,
-        slow: bool = False,
+        drawn: bool = True,
         watch: bool = False,
         **context: Any,
     ) -> Desk:
@@ -111,10 +115,10 @@ def open_desk(browser: Browser, tabs: Tabs) -> Iterator[OpenDesk]:
         live = pinik.live(machine, methods, running=running, motion=motion, view=view, port=0, watch=watch)
         views.append(live)
         if context:
-            opened = new_context(browser, viewport=viewport, **context)
+            opened = new_context(browser, drawn=drawn, viewport=viewport, **context)
             faults, page = Faults(opened), opened.new_page()
         else:
-            page, faults = tabs(slow)
+            page, faults = tabs(drawn)
             page.set_viewport_size(viewport)
         faults.begin()
         desk = Desk(page, faults)
@@ -148,5 +152,11 @@ def leave(page: Page) -> None:
 
 @pytest.fixture
 def open_panel(open_desk: OpenDesk) -> OpenDesk:
-    """Like `open_desk`, for tests that need no pictures: the canvas is small and rarely drawn."""
-    return partial(open_desk, viewport=SMALL, slow=True, until="window.pinik?.ready")
+    """Like `open_desk`, for tests of the panel: the canvas is small, nothing is drawn, and shapes may still load."""
+    return partial(open_desk, viewport=SMALL, drawn=False, until="window.pinik?.ready")
+
+
+@pytest.fixture
+def open_stage(open_desk: OpenDesk) -> OpenDesk:
+    """Like `open_desk`, for tests of where things stand: no triangle is drawn."""
+    return partial(open_desk, drawn=False)

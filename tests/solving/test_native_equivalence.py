@@ -107,7 +107,7 @@ def test_states_tell_the_same(problem):
 
 
 WHOLE = ("panda", "ur5", "z1", "arm", "kinova")
-EACH = 40
+EACH = {"ccd": 40, "jt": 12, "pinv": 40, "dls": 40}  # "jt" takes a thousand iterations where the others take ten
 
 
 @pytest.mark.parametrize("name", WHOLE)
@@ -116,8 +116,8 @@ def test_whole_solves_agree_in_their_verdict(method, name):
     """Near and far poses: both answers are checked, and where they differ no step does."""
     counts = compare_solves(name, method)
     print(dict(counts))
-    assert counts["solves"] == EACH
-    assert counts["differing"] <= (2 if method == "jt" else 1)
+    assert counts["solves"] == EACH[method]
+    assert counts["differing"] <= 1
 
 
 def compare_solves(name, method):
@@ -127,7 +127,7 @@ def compare_solves(name, method):
         pinik.prepare(robot, Target(frame, placement=np.eye(4)), method, engine=engine, restarts=4)
         for engine in ("python", "native")
     )
-    for _ in range(EACH):
+    for _ in range(EACH[method]):
         placement = robot.placement(frame, robot.random(rng))
         placement.translation = placement.translation + rng.choice([0.0, 0.0, 0.2]) * rng.normal(size=3)
         q0 = robot.random(rng)

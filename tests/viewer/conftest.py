@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from page_fixtures import browser, open_desk, open_panel, tabs  # noqa: F401
+from page_fixtures import browser, open_desk, open_panel, open_stage, tabs  # noqa: F401
 
 
 @pytest.fixture(scope="session", autouse=True)

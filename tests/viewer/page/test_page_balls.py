@@ -172,8 +172,8 @@ def test_free_axes_are_seen_in_the_picture_and_kept_in_the_address(open_desk):
     assert 0.0005 < changed[1] < changed[2] < 0.2
 
 
-def test_a_ball_with_a_free_axis_is_dragged_like_any_other(open_desk):
-    desk = open_desk(methods=("dls",), running=True)
+def test_a_ball_with_a_free_axis_is_dragged_like_any_other(open_stage):
+    desk = open_stage(methods=("dls",), running=True)
     desk.view.send("free", index=0, axes="y")
     before = ball(desk.until(lambda s: ball(s)["free"] == "y"))["position"]
     desk.settle()

@@ -167,8 +167,8 @@ def test_a_session_that_paused_on_a_miss_says_which_robot_missed(open_panel):
 
 
 @pytest.mark.parametrize("axes", ["ring-local", "ring-world"])
-def test_a_ring_turns_the_orientation_about_its_axis_and_snaps_with_a_key(open_desk, axes):
-    desk = open_desk("panda", methods=("dls",), running=True, view=1)
+def test_a_ring_turns_the_orientation_about_its_axis_and_snaps_with_a_key(open_stage, axes):
+    desk = open_stage("panda", methods=("dls",), running=True, view=1)
     before = np.array([0.3, 0.4, 0.5])
     desk.view.send("orientation", index=0, on=True, rpy=before.tolist())
     desk.until(lambda s: s["balls"][0]["oriented"])
@@ -191,8 +191,8 @@ def test_a_ring_turns_the_orientation_about_its_axis_and_snaps_with_a_key(open_d
     assert turn[2] == pytest.approx(math.radians(30), abs=1e-6), "half a radian is 30° in steps of 15°"
 
 
-def test_a_ball_snaps_to_centimetres_while_the_key_is_held(open_desk):
-    desk = open_desk("arm", methods=("dls",), running=True, view=1)
+def test_a_ball_snaps_to_centimetres_while_the_key_is_held(open_stage):
+    desk = open_stage("arm", methods=("dls",), running=True, view=1)
     x, y = desk.ball_on_screen()
     desk.page.mouse.move(x, y)
     desk.page.mouse.down()

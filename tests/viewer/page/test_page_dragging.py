@@ -43,8 +43,8 @@ def red_spots(picture):
     return [(group.mean(), np.flatnonzero(is_red[:, group].any(axis=1)).mean()) for group in groups if len(group) > 4]
 
 
-def test_all_four_instances_follow_the_ball_that_is_dragged(open_desk):
-    desk = open_desk(methods=METHODS, running=True)
+def test_all_four_instances_follow_the_ball_that_is_dragged(open_stage):
+    desk = open_stage(methods=METHODS, running=True)
     desk.until(desk.is_followed)
     desk.settle()
     begin, seen_from = place(desk.state), camera(desk)
@@ -77,8 +77,8 @@ def test_a_ball_is_where_the_page_says_and_every_instances_copy_can_be_dragged(o
         desk.settle()
 
 
-def test_a_drag_takes_the_ball_from_its_curve(open_desk):
-    desk = open_desk(methods=("dls",), running=True, motion="curve", viewport=HALF)
+def test_a_drag_takes_the_ball_from_its_curve(open_stage):
+    desk = open_stage(methods=("dls",), running=True, motion="curve", viewport=HALF)
     desk.until(lambda s: s["step"] > 20)
     desk.view.send("run", on=False)  # the ball waits for the hand, on its curve
     desk.agree()
@@ -92,8 +92,8 @@ def test_a_drag_takes_the_ball_from_its_curve(open_desk):
     desk.until(desk.is_followed)
 
 
-def test_with_shift_the_ball_keeps_its_height(open_desk):
-    desk = open_desk(methods=("dls",), viewport=HALF)
+def test_with_shift_the_ball_keeps_its_height(open_stage):
+    desk = open_stage(methods=("dls",), viewport=HALF)
     begin = place(desk.state)
     desk.page.keyboard.down("Shift")
     drag(desk, desk.ball_on_screen(), (-50, 25))
@@ -102,8 +102,8 @@ def test_with_shift_the_ball_keeps_its_height(open_desk):
     assert after[2] == pytest.approx(begin[2], abs=1e-5)
 
 
-def test_dragging_beside_the_ball_turns_the_camera_and_moves_nothing(open_desk):
-    desk = open_desk(methods=("dls",), viewport=HALF)
+def test_dragging_beside_the_ball_turns_the_camera_and_moves_nothing(open_stage):
+    desk = open_stage(methods=("dls",), viewport=HALF)
     begin, seen_from = desk.state["balls"], camera(desk)
     box = desk.page.locator("#canvas").bounding_box()
     drag(desk, (box["x"] + 60, box["y"] + box["height"] - 60), (120, -30))
@@ -115,8 +115,8 @@ def test_dragging_beside_the_ball_turns_the_camera_and_moves_nothing(open_desk):
     desk.wait(lambda: np.abs(camera(desk) - seen_from).max() < 1e-2)
 
 
-def test_the_ball_that_is_taken_is_the_one_that_is_dragged_and_selected(open_desk):
-    desk = open_desk("lion", methods=("dls",), viewport=HALF)
+def test_the_ball_that_is_taken_is_the_one_that_is_dragged_and_selected(open_stage):
+    desk = open_stage("lion", methods=("dls",), viewport=HALF)
     desk.view.send("effector", index=4, mode="on")
     desk.agree()
     desk.settle()
@@ -127,8 +127,8 @@ def test_the_ball_that_is_taken_is_the_one_that_is_dragged_and_selected(open_des
     desk.expect("ball-4").to_have_attribute("aria-pressed", "true")
 
 
-def test_a_finger_drags_the_ball_and_turns_the_camera_elsewhere(open_desk):
-    desk = open_desk("arm", methods=("dls",), viewport=PHONE, has_touch=True, is_mobile=True)
+def test_a_finger_drags_the_ball_and_turns_the_camera_elsewhere(open_stage):
+    desk = open_stage("arm", methods=("dls",), viewport=PHONE, has_touch=True, is_mobile=True)
     begin, seen_from = place(desk.state), camera(desk)
     fingers = desk.page.context.new_cdp_session(desk.page)
 

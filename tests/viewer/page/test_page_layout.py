@@ -124,8 +124,8 @@ def test_areas_are_shared_as_they_should():
 
 
 @pytest.mark.parametrize("robot", ["arm", "panda"])
-def test_robots_in_a_row_fill_its_width_and_are_as_near_as_their_outlines_allow(open_desk, robot):
-    desk = open_desk(robot, METHODS, motion="curve")
+def test_robots_in_a_row_fill_its_width_and_are_as_near_as_their_outlines_allow(open_stage, robot):
+    desk = open_stage(robot, METHODS, motion="curve")
     for view in ("iso", "front", "side"):
         picture = look(desk, view)
         outlines = [outline(points) for points in picture["visited"]]
@@ -138,8 +138,8 @@ def test_robots_in_a_row_fill_its_width_and_are_as_near_as_their_outlines_allow(
         assert max(heights) / min(heights) < 1.02, "robots side by side have the same size"
 
 
-def test_two_rows_show_lions_larger_where_one_row_leaves_most_of_the_stage_empty(open_desk):
-    desk = open_desk("lion", METHODS, motion="curve", root="free_flyer")
+def test_two_rows_show_lions_larger_where_one_row_leaves_most_of_the_stage_empty(open_stage):
+    desk = open_stage("lion", METHODS, motion="curve", root="free_flyer")
     for size, before in {"1280": 0.24, "390": 0.13}.items():  # the mean height of an outline in a row [stage's height]
         desk.page.set_viewport_size(SIZES[size])
         picture = look(desk, "side")
@@ -161,8 +161,8 @@ ARRANGED = """async () => {
 }"""
 
 
-def test_flat_squares_stand_in_two_rows_where_the_view_is_from_above_with_captions_beside_them(open_desk):
-    desk = open_desk("two_link", METHODS)
+def test_flat_squares_stand_in_two_rows_where_the_view_is_from_above_with_captions_beside_them(open_stage):
+    desk = open_stage("two_link", METHODS)
     arranged = {name: (captions, rows) for name, captions, rows in desk.page.evaluate(ARRANGED)}
     assert arranged["top"] == ("beside", 2)
 
@@ -172,8 +172,8 @@ def test_flat_squares_stand_in_two_rows_where_the_view_is_from_above_with_captio
     [("arm", list(SIZES)), ("panda", ["1280"]), ("lion", ["1280", "390"])],
     ids=["arm", "panda", "lion"],
 )
-def test_captions_cover_neither_robots_nor_balls_nor_each_other(open_desk, robot, sizes):
-    desk = open_desk(robot, METHODS, motion="curve", root="free_flyer" if robot == "lion" else "fixed")
+def test_captions_cover_neither_robots_nor_balls_nor_each_other(open_stage, robot, sizes):
+    desk = open_stage(robot, METHODS, motion="curve", root="free_flyer" if robot == "lion" else "fixed")
     for size, view in itertools.product(sizes, ("iso", "side", "top")):
         desk.page.set_viewport_size(SIZES[size])
         picture = look(desk, view)
@@ -191,8 +191,8 @@ def test_captions_cover_neither_robots_nor_balls_nor_each_other(open_desk, robot
 TELL = "async (words) => { const { Notices } = await import('pinik/notices.js'); new Notices().error(words); }"
 
 
-def test_notices_cover_neither_captions_nor_robots_nor_balls(open_desk):
-    desk = open_desk("panda", METHODS, motion="curve")
+def test_notices_cover_neither_captions_nor_robots_nor_balls(open_stage):
+    desk = open_stage("panda", METHODS, motion="curve")
     several = [["The tolerance must be 0.001 to 1000 mm."], [LONG, "Too far.", LONG * 2], [(LONG * 4)[:400].strip()]]
     for size, words in itertools.product(SIZES, several):
         desk.page.set_viewport_size(SIZES[size])
@@ -209,8 +209,8 @@ def test_notices_cover_neither_captions_nor_robots_nor_balls(open_desk):
             assert bottom <= shown["height"]
 
 
-def test_captions_move_aside_for_a_notice_where_the_stage_is_alone(open_desk):
-    desk = open_desk("arm", METHODS, motion="curve")
+def test_captions_move_aside_for_a_notice_where_the_stage_is_alone(open_stage):
+    desk = open_stage("arm", METHODS, motion="curve")
     desk.click("present")
     desk.page.evaluate(TELL, LONG)
     picture = look(desk, "iso")

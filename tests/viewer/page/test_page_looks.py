@@ -117,8 +117,8 @@ def test_nothing_is_cut_off(open_desk, size, touch):
     assert cut == []
 
 
-def test_the_labels_do_not_cover_each_other_nor_leave_the_picture(open_desk):
-    desk = open_desk(methods=METHODS)
+def test_the_labels_do_not_cover_each_other_nor_leave_the_picture(open_stage):
+    desk = open_stage(methods=METHODS)
 
     def well_placed():
         stage = desk.page.locator("#canvas").bounding_box()
@@ -173,15 +173,15 @@ def test_everything_that_can_be_operated_has_a_name_to_be_read_aloud(open_panel)
     assert len(testids) == len(set(testids))
 
 
-def test_meshcats_one_command_that_evaluates_text_does_nothing_here(open_desk):
-    desk = open_desk("two_link", ("dls",))
+def test_meshcats_one_command_that_evaluates_text_does_nothing_here(open_stage):
+    desk = open_stage("two_link", ("dls",))
     desk.runs("pinik.viewer.set_control('evil', 'window.evil = 1')")
     assert desk.runs("window.evil === undefined")
 
 
-def test_no_figure_of_the_statistics_is_cut_short(open_desk):
+def test_no_figure_of_the_statistics_is_cut_short(open_stage):
     """With the widest texts that a row can contain, at every width. The iterations are the page's own."""
-    desk = open_desk("two_link", ("two_bone", "ccd", "jt", "dls"), viewport=WIDE)
+    desk = open_stage("two_link", ("two_bone", "ccd", "jt", "dls"), viewport=WIDE)
     desk.expect("status-0").to_be_visible()
     widest = [None, "0.85 mm short", "87.1 µs", None, "98.3 %", "0.099 mm", "44.4°"]
     for width, height in ((2560, 1440), (1920, 1080), (1280, 800), (1110, 800), (900, 800), (762, 800), (390, 800)):

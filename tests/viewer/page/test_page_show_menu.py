@@ -108,8 +108,8 @@ def test_the_camera_comes_back_with_a_ball_that_was_far_away(open_panel):
     desk.shows(f"{radius} < {2 * near}")
 
 
-def test_an_arrow_to_a_ball_covers_no_button(open_desk):
-    desk = open_desk(methods=("dls",))
+def test_an_arrow_to_a_ball_covers_no_button(open_stage):
+    desk = open_stage(methods=("dls",))
     desk.settle()
     box = desk.page.locator("#canvas").bounding_box()
     desk.page.mouse.move(box["x"] + 20, box["y"] + box["height"] - 20)
@@ -166,8 +166,8 @@ def test_what_belongs_to_the_tab_is_in_its_link(open_panel):
     desk.expect("teach-drawer").to_be_hidden()
 
 
-def test_captions_cover_no_ball(open_desk):
-    desk = open_desk("lion", METHODS, root="free_flyer", motion="curve")
+def test_captions_cover_no_ball(open_stage):
+    desk = open_stage("lion", METHODS, root="free_flyer", motion="curve")
     stage = desk.page.locator("#canvas").bounding_box()
     chips = [desk.part(f"label-{i}").bounding_box() for i in range(4)]
     for ball in desk.runs("pinik.show.ballsOnScreen().map(({ at, radius }) => [at.x, at.y, radius])"):

@@ -202,8 +202,8 @@ def test_a_missed_target_names_the_joints_that_sit_at_their_limits(open_panel, a
         desk.expect(f"status-{i}").to_contain_text("short")
 
 
-def test_the_saved_animation_plays_without_a_server(open_panel, tmp_path):
-    desk = open_panel(methods=("dls", "ccd"), motion="curve", running=True)
+def test_the_saved_animation_plays_without_a_server(open_desk, tmp_path):
+    desk = open_desk(methods=("dls", "ccd"), motion="curve", running=True)
     desk.until(lambda s: s["step"] > 90)
     with desk.page.expect_download() as download:
         desk.click("save-animation")

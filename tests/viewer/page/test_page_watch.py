@@ -20,10 +20,10 @@ def arm(length: float, limit: float = 3.0) -> str:
     )  # fmt: skip
 
 
-def test_camera_and_angles_stay_and_a_fault_is_said_over_the_last_good_robot(open_desk, tmp_path):
+def test_camera_and_angles_stay_and_a_fault_is_said_over_the_last_good_robot(open_stage, tmp_path):
     path = tmp_path / "own.urdf"
     path.write_text(arm(0.4))
-    desk = open_desk(path, methods=("dls",), running=True, view=1, watch=True)
+    desk = open_stage(path, methods=("dls",), running=True, view=1, watch=True)
     desk.part("joints").locator("summary").click()
     desk.type("joint-number-turn", 100)
     desk.until(lambda s: s["instances"][0]["angles"]["turn"] == pytest.approx(math.radians(100)))
