@@ -35,6 +35,19 @@ def drag(desk, start, way, *, steps=6, release=True):
         mouse.up()
 
 
+def at_rest(desk):
+    """Wait until the camera has looked twice whether everything is in the picture, and stayed; return where it is."""
+    seen: list = []
+
+    def stays() -> bool:
+        seen.append(camera(desk))
+        desk.page.wait_for_timeout(700)
+        return (camera(desk) == seen[-1]).all()
+
+    desk.wait(stays)
+    return seen[-1]
+
+
 def red_spots(picture):
     """The centres (x, y) of the red spots in a picture, from left to right."""
     is_red = (np.abs(picture - RED) < 60).all(axis=2) & (picture[..., 0] > 2 * picture[..., 1] + 20)
@@ -47,7 +60,7 @@ def test_all_four_instances_follow_the_ball_that_is_dragged(open_stage):
     desk = open_stage(methods=METHODS, running=True)
     desk.until(desk.is_followed)
     desk.settle()
-    begin, seen_from = place(desk.state), camera(desk)
+    begin, seen_from = place(desk.state), at_rest(desk)
     start = desk.ball_on_screen()
     drag(desk, start, (-25, 40), release=False)
     state = desk.until(lambda s: np.linalg.norm(place(s) - begin) > 0.03)
@@ -75,6 +88,18 @@ def test_a_ball_is_where_the_page_says_and_every_instances_copy_can_be_dragged(o
         after = place(desk.until(lambda s, before=before: np.linalg.norm(place(s) - before) > 0.01))
         assert after[2] > before[2]
         desk.settle()
+
+
+def test_a_camera_on_its_way_waits_until_the_ball_is_released(open_stage):
+    desk = open_stage(methods=("dls",))
+    at_rest(desk)
+    desk.runs("{ pinik.show.frameAll(true, 'top'); pinik.show.holdBall(0, pinik.show.balls.places[0].position); }")
+    waits = at_rest(desk)
+    assert looks_along(desk)[2] > -0.95, "it went on"
+    desk.page.wait_for_timeout(700)
+    np.testing.assert_array_equal(camera(desk), waits)
+    desk.runs("pinik.show.letGoOfBall(0)")
+    desk.wait(lambda: looks_along(desk)[2] < -0.99)
 
 
 def test_a_drag_takes_the_ball_from_its_curve(open_stage):

@@ -51,7 +51,7 @@ export class Camera extends EventTarget {
 
     _take() {
         if (this.moved) return;
-        this._glide = null;
+        this.stop();
         this.moved = true;
         this.dispatchEvent(new Event("taken"));
     }
@@ -118,6 +118,11 @@ export class Camera extends EventTarget {
 
     get gliding() {
         return this._glide !== null;
+    }
+
+    /** Stay where it is on its way. */
+    stop() {
+        this._glide = null;
     }
 
     /** The camera's pose in the scene's axes. */

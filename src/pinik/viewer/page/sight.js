@@ -80,10 +80,14 @@ export class Sight {
 
     /**
      * Look at everything again if something left the picture, or came back from far away, unless the user turned the
-     * camera or drags a ball.
+     * camera. While something is dragged the camera stays, even if it was on its way.
      */
     follow(now) {
         const { camera, busy } = this._show;
+        if (busy && camera.gliding) {
+            camera.stop();
+            this.ask();
+        }
         if (busy) return;
         if (this._pending) {
             this.all(true, camera.preset);
