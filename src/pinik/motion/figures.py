@@ -11,7 +11,7 @@ class StepFigures(NamedTuple):
     """The figures of one step of one method.
 
     Attributes:
-        time: Computing time of the solver [s].
+        time: Computing time of the solver [s]; in the live view, processor time.
         iterations: The number of iterations; sweeps for CCD.
         joint_updates: The number of single-joint updates, for CCD.
         reached: Whether every target was within tolerance at the end.

@@ -70,7 +70,7 @@ class Instance:
         solver: Solver,
         home: Array,
         settings: StepSettings,
-        clock: Callable[[], float] = time.perf_counter,
+        clock: Callable[[], float] = time.thread_time,
         contacts: Contacts | None = None,
     ) -> None:
         self.robot = robot

@@ -48,7 +48,7 @@ class Instances(Sequence[Instance]):
             methods: One to four methods; further instances use the remaining ones.
             view: The number of visible instances; enough for `methods` when None.
             home: The pose in which they begin (nq,).
-            clock: A function that returns the time in seconds.
+            clock: A function that returns the time in seconds that solvers have spent.
             contacts: What they touch.
 
         Raises:

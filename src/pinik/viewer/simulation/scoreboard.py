@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Iterable, Sequence
 
 from ...errors import UnknownNameError
 from ...motion.figures import StepFigures
@@ -36,9 +36,14 @@ class Scoreboard:
         window: What the summaries cover: a name in `WINDOWS`.
     """
 
-    def __init__(self, clock: Callable[[], float]) -> None:
+    def __init__(self, every: int) -> None:
+        """Begin with no instances.
+
+        Args:
+            every: After how many steps the summaries are refreshed, so that they can be read.
+        """
         self.window = "last"
-        self._clock = clock
+        self._every = every
         self._terms: Terms | None = None
         self._columns: list[Statistics] = []
         self.begin_anew(0)
@@ -59,13 +64,14 @@ class Scoreboard:
 
         Args:
             instances: The instances, as many as there are columns.
-            at_once: Whether the summaries show this step at once; otherwise they are refreshed once per second.
+            at_once: Whether the summaries show this step at once.
         """
         if any(one.counted for one in instances):
             for column, one in zip(self._columns, instances, strict=True):
                 if one.last is not None and one.status != "REFUSED":
                     column.add(one.last)
-        if at_once or self._clock() - self._refreshed >= 1.0:
+        self._hidden += 1
+        if at_once or self._hidden >= self._every:
             self._refresh()
 
     def cover(self, window: str) -> None:
@@ -90,4 +96,4 @@ class Scoreboard:
 
     def _refresh(self) -> None:
         self._summaries = [column.summary(self.window) for column in self._columns]
-        self._refreshed = self._clock()
+        self._hidden = 0

@@ -58,7 +58,7 @@ class Session:
         scores: The statistics of the visible instances.
         notes: What else changed with the last change of robot, in words.
         seed: The seed of the random positions.
-        clock: A function that returns the time in seconds.
+        clock: A function that returns the time in seconds that solvers have spent.
     """
 
     def __init__(
@@ -68,7 +68,7 @@ class Session:
         *,
         view: int | None = None,
         seed: int = 0,
-        clock: Callable[[], float] = time.perf_counter,
+        clock: Callable[[], float] = time.thread_time,
     ) -> None:
         """Create the instances and the balls.
 
@@ -78,7 +78,8 @@ class Session:
                 in the order of `pinik.SOLVERS`, then of `pinik.CLOSED_FORMS`.
             view: The number of visible instances: 1, 2 or 4; enough for `methods` when None.
             seed: The seed of the random positions.
-            clock: A function that returns the time in seconds, for the statistics and for the time limit of a step.
+            clock: A function that returns the time in seconds that solvers have spent. By default, it is the processor
+                time of the thread: what else the machine does meanwhile is not the method's doing.
 
         Raises:
             UnknownNameError: There is no such method, or its parameters name a joint that the robot does not have.
@@ -97,7 +98,7 @@ class Session:
         self.contacts, self.obstacles = Contacts(robot), Obstacles()
         self.instances = Instances(robot, methods, view, self.home, clock, self.contacts)
         self.balls = Balls(robot)
-        self.scores = Scoreboard(clock)
+        self.scores = Scoreboard(STEPS_PER_SECOND)
 
     @property
     def methods(self) -> dict[str, type[Solver]]:
