@@ -84,6 +84,16 @@ def test_a_foot_with_a_sensor_is_an_end_and_a_torso_that_turns_in_place_is_none(
     assert principal_frames(load_quietly(text)) == ["foot"]
 
 
+def test_the_end_of_an_arm_that_carries_only_a_camera_is_the_link_with_the_name_of_a_tool():
+    arm = joint("raise", "base", "upper") + joint("bend", "upper", "wrist", '<origin xyz="0.4 0 0"/>')
+    fixed = "".join(
+        joint(f"to_{child}", parent, child, '<origin xyz="0.05 0 0"/>', kind="fixed")
+        for parent, child in (("wrist", "flange"), ("flange", "tool0"), ("tool0", "camera"))
+    )
+    text = robot(*map(link, ("base", "upper", "wrist", "flange", "tool0", "camera")), arm, fixed)
+    assert principal_frames(load_quietly(text)) == ["tool0"]
+
+
 def test_a_hand_with_an_unknown_name_goes_before_the_head():
     out = '<origin xyz="0.3 0 0"/>'
     text = robot(

@@ -20,9 +20,10 @@ _NAMES_OF_ENDS = (
     r"^(?!.*head)",
 )
 _NO_ENDS = (
-    r"imu|gyro|acceler|cam|d4\d\d|lidar|mid360|optic|depth|laser|sensor|fsr|rotor|motor_|collision|visual|shape|shoulder"
-    r"|wheel|caster|hole|logo|_itb|_dh_"
+    r"imu|gyro|acceler|cam|d4\d\d|lidar|mid360|optic|depth|laser|sensor|fsr|rotor|motor_|collision|visual|shape"
+    r"|shoulder|wheel|caster|hole|logo|_itb|_dh_"
 )
+_UNKNOWN = len(_NAMES_OF_ENDS) - 1  # the rank of a name that says nothing
 _MOST = 6
 _POINT = 1e-6  # [m]: a shorter chain turns its end in place
 _APART = 0.12  # of the longest chain: ends closer to each other than this belong to one hand
@@ -35,9 +36,9 @@ def principal_frames(robot: Robot) -> list[str]:
     only the one with the best name and the longest chain is listed.
     """
     carriers = {joint.parent for joint in robot.description.joints}
-    ends = [link for link in robot.description.links if link not in carriers]
-    ends = [link for link in ends if _may_be_end(link)] or ends
-    ends += _last_links(robot, ends)
+    leaves = [link for link in robot.description.links if link not in carriers]
+    ends = [link for link in leaves if _may_be_end(link)]
+    ends = [*ends, *_last_links(robot, ends)] or leaves
     q = home_configuration(robot)
     places = {link: robot.placement(link, q).translation for link in ends}
     chains = {link: chain_of(robot.model, robot.joints, robot.frame_id(link)) for link in ends}
@@ -57,11 +58,15 @@ def _may_be_end(link: str) -> bool:
 
 
 def _last_links(robot: Robot, ends: list[str]) -> list[str]:
-    """The links that are moved by the last joint of a branch, where the branch has no end yet."""
+    """The end of each branch that has none yet: of the links on its last joint, the one with the best name."""
     model = robot.model
+    carrying: dict[int, list[str]] = {}
+    for link in sorted(robot.description.links, key=robot.frame_id):
+        carrying.setdefault(model.frames[robot.frame_id(link)].parentJoint, []).append(link)
     ended = {model.frames[robot.frame_id(link)].parentJoint for link in ends}
-    last = [model.names[j] for j in range(1, model.njoints) if not model.children[j] and j not in ended]
-    return [joint.child for joint in robot.description.joints if joint.name in last and _may_be_end(joint.child)]
+    last = [j for j in range(1, model.njoints) if not model.children[j] and j not in ended]
+    found = [[link for link in carrying.get(j, []) if _may_be_end(link)] for j in last]
+    return [min(links, key=lambda link: min(_rank(link), _UNKNOWN)) for links in found if links]
 
 
 def _rank(name: str) -> int:

@@ -76,8 +76,8 @@ def test_more_instances_show_more_robots(open_desk):
     assert dark[1] > dark[0] >= 1
 
 
-def test_the_system_and_the_button_make_it_dark(open_panel):
-    desk = open_panel(methods=("dls",), color_scheme="dark")
+def test_the_system_and_the_button_make_it_dark(open_desk):
+    desk = open_desk(methods=("dls",), color_scheme="dark")
     corner = (slice(0, 40), slice(-60, -10))
     assert luminance(desk.picture()[corner]) < 60
     assert luminance(whole(desk)[:, -10:]) < 60

@@ -559,6 +559,23 @@ def test_what_the_machine_does_meanwhile_is_not_counted_as_the_methods_time(arm)
     assert figures.time < 0.02
 
 
+def test_a_solver_that_waits_for_ever_does_not_hold_up_the_session(arm):
+    class Own(pinik.DampedLeastSquares):
+        name = "own"
+
+        def step(self, at, kinematics):
+            time.sleep(0.2)
+            return 0.01 * super().step(at, kinematics)
+
+    shown = Session(arm, [Own], view=1)
+    shown.running = True
+    shown.move_ball(0, [0.5, 0.4, 0.4])
+    began = time.perf_counter()
+    shown.step()
+    assert time.perf_counter() - began < 1.5
+    assert shown.seen[0].last.cut_off
+
+
 def test_a_session_rests_once_nothing_has_moved_for_a_second_and_a_half(arm):
     shown = session(arm, ["dls"])
     shown.running = True

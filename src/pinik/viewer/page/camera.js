@@ -51,7 +51,7 @@ export class Camera extends EventTarget {
 
     _take() {
         if (this.moved) return;
-        this.stop();
+        this._glide = null;
         this.moved = true;
         this.dispatchEvent(new Event("taken"));
     }
@@ -120,9 +120,11 @@ export class Camera extends EventTarget {
         return this._glide !== null;
     }
 
-    /** Stay where it is on its way. */
+    /** Stay where it is on a smooth way; return whether it was on one. */
     stop() {
+        if (!Number.isFinite(this._glide?.began)) return false;
         this._glide = null;
+        return true;
     }
 
     /** The camera's pose in the scene's axes. */

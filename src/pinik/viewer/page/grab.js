@@ -55,6 +55,7 @@ export class Grab {
         if (!found) return;
         event.stopPropagation();
         event.preventDefault();
+        this._show.hold();
         const start = this._show.ballInWorld(found.k, found.instance);
         this._held = { ...found, pointer: event.pointerId, start, shift: null, position: start.clone() };
         this._dragged(event); // from here on, pointer and ball keep their distance

@@ -88,14 +88,18 @@ export class Obstacles {
         return this.place(k).clone().add(this.offset(instance));
     }
 
+    hold() {
+        this._show.hold();
+    }
+
     holdBall(k, position) {
-        this._show.held = true;
+        this.hold();
         this._held = { k, position: position.clone() };
         this._draw();
     }
 
     letGoOfBall(k) {
-        this._show.held = false;
+        this._show.release();
         this._told = this._told.map((told, j) => (j === k ? { ...told, position: this.place(k).toArray() } : told));
         this._held = null;
     }

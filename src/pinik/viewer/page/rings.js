@@ -130,7 +130,7 @@ export class Rings {
         this._light(found);
         stage.viewer.controls.enabled = false;
         stage.element.setPointerCapture(event.pointerId);
-        this._show.held = true;
+        this._show.hold();
     }
 
     /** The angle of the pointer about the held ring's axis [rad]; along the ring on the screen where that is edge-on. */

@@ -31,7 +31,7 @@ export class Show {
         this._pointers = new Pointers(labels, this);
         this.look = new Look(labels, this);
         this._selected = 0;
-        this._near = null;
+        [this._near, this._busy] = [null, false];
         this._sight = new Sight(this);
         this.drawn = "";
         theme.addEventListener("change", () => this._paint());
@@ -220,9 +220,18 @@ export class Show {
         return BALL * this.robot.size;
     }
 
-    /** Whether something is being dragged; the camera stays then. */
+    /** Whether something is being dragged; the camera stays then, even if it was on its way. */
     get busy() {
-        return Boolean(this.held);
+        return this._busy;
+    }
+
+    hold() {
+        this._busy = true;
+        this._sight.wait();
+    }
+
+    release() {
+        this._busy = false;
     }
 
     /** Whether the camera has come to rest. */
@@ -254,13 +263,13 @@ export class Show {
     }
 
     holdBall(k, position) {
-        this.held = true;
+        this.hold();
         this.balls.hold(k, position);
         if (this._frame) this._draw(this._frame);
     }
 
     letGoOfBall(k) {
-        this.held = false;
+        this.release();
         this.balls.letGo(k);
     }
 

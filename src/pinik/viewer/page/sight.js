@@ -51,6 +51,11 @@ export class Sight {
         this._pending = true;
     }
 
+    /** Break off the camera's way, and look at everything once nothing is dragged any more. */
+    wait() {
+        if (this._show.camera.stop()) this.ask();
+    }
+
     /** The outermost points that robots have visited, and the balls' curves, in an instance's own world. */
     get visited() {
         const { state } = this._show;
@@ -80,14 +85,10 @@ export class Sight {
 
     /**
      * Look at everything again if something left the picture, or came back from far away, unless the user turned the
-     * camera. While something is dragged the camera stays, even if it was on its way.
+     * camera or drags a ball.
      */
     follow(now) {
         const { camera, busy } = this._show;
-        if (busy && camera.gliding) {
-            camera.stop();
-            this.ask();
-        }
         if (busy) return;
         if (this._pending) {
             this.all(true, camera.preset);

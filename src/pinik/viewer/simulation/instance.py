@@ -40,6 +40,8 @@ _NOWHERE = 1e-10
 """The largest change of a joint in a step [rad or m] from which the next one would begin in the same place."""
 _GIVEN_UP = 2
 """How many steps in a row stall in one place before the method is asked no more."""
+_LONGEST = 0.5
+"""How long a step may last in all [s], even if the solver does not compute meanwhile but waits for something."""
 _NO_TARGETS = "there are no targets"
 
 
@@ -127,7 +129,7 @@ class Instance:
         self._paused = False
 
     def step(self, targets: Sequence[Target], seconds: float = math.inf) -> None:
-        """Follow the targets for one simulation step, for about `seconds` at most.
+        """Follow the targets for one simulation step, in which the solver computes for about `seconds` at most.
 
         A step does not count if none of the targets has moved and all are reached already, or the method has stalled
         without getting anywhere twice, nor if the method cannot solve for these targets.
@@ -199,7 +201,8 @@ class Instance:
             state = self._pursuit.state
         else:
             state = self._pursuit.aim_at(targets)
-        while state.status is None and self._clock() < deadline:
+        latest = time.perf_counter() + _LONGEST
+        while state.status is None and self._clock() < deadline and time.perf_counter() < latest:
             state = self._pursuit.advance(self._pursuit.at_once)
         return state
 

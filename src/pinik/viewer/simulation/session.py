@@ -32,7 +32,7 @@ from .stillness import Stillness
 __all__ = ["STEPS_PER_SECOND", "Session"]
 
 STEPS_PER_SECOND = 60
-# The share of a step's time that the solvers may take; the rest is for drawing and for messages from the page.
+# The share of a step's time that the solvers may compute for; the rest is for drawing and for messages from the page.
 _SOLVERS_SHARE = 0.7
 _SECONDS_OF_ONE_STEP = 0.25  # of all solvers together, if somebody asks for a single step, which nothing hurries
 _DEFAULT_METHODS = ("ccd", "jt", "pinv", "dls")
@@ -127,7 +127,7 @@ class Session:
 
     @property
     def summaries(self) -> list[Summary]:
-        """The statistics of the visible instances, refreshed once per second, and empty once their terms changed."""
+        """The statistics of the visible instances, refreshed every 60 steps, and empty once their terms changed."""
         self._agree_on_terms()
         return self.scores.summaries
 

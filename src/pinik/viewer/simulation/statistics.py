@@ -22,7 +22,7 @@ class Summary(NamedTuple):
 
     Attributes:
         steps: The number of steps covered.
-        mean_time: Solver time per step [s].
+        mean_time: Processor time of the solver per step [s].
         mean_iterations, mean_joint_updates: Iterations and joint updates per step.
         efficiency: The share of steps that ended with every target reached, from 0 to 1.
         mean_error: Position error at the end of a step [m].
