@@ -10,7 +10,7 @@ import string
 from urllib.parse import parse_qs, quote
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 import pinik
@@ -122,8 +122,13 @@ def session_after(messages, robot=ARM):
     return shown
 
 
+LEAD = {"type": "angles", "instance": 1, "angles": {"joint1": 0.0}}
+
+
 @settings(max_examples=120)
 @given(st.lists(MESSAGES, max_size=14), st.lists(MESSAGES, max_size=8))
+@example([LEAD, {"type": "motion", "motion": "curve"}], [])
+@example([LEAD, {"type": "view", "count": 1}], [])
 def test_a_set_up_makes_any_session_the_same_again(messages, others):
     text = write_setup(session_after(messages))
     for other in (session_after([]), session_after(others)):

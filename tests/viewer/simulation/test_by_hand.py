@@ -67,7 +67,7 @@ def test_one_leads_and_the_others_chase_its_ball(arm):
         lambda shown: shown.balls[0].release("x"),
         lambda shown: shown.set_mode(0, "off"),
         lambda shown: shown.add_ball("bone2"),
-        lambda shown: (shown.set_motion("curve"), shown.step()),
+        lambda shown: shown.set_motion("curve"),
         lambda shown: shown.reset(),
         lambda shown: shown.leading.hold((), ()),
     ],

@@ -25,6 +25,10 @@ class Leading:
         """Let these instances lead, once the balls have followed them and ask for these targets."""
         self._held, self._targets = frozenset(indices), tuple(targets)
 
+    def show(self, count: int) -> None:
+        """Let go of all but the first `count` instances."""
+        self._held = self._held & frozenset(range(count))
+
     def among(self, targets: Sequence[Target]) -> frozenset[int]:
         """The instances that lead while the balls ask for these targets, the same objects as when they began to."""
         if self._held and not same_objects(targets, self._targets):

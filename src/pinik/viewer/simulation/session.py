@@ -177,8 +177,9 @@ class Session:
         self.scores.begin_anew(self.view)
 
     def set_view(self, count: int) -> None:
-        """Show 1, 2 or 4 instances."""
+        """Show 1, 2 or 4 instances. Those that are hidden lead no more."""
         self.instances.show(count)
+        self.leading.show(count)
 
     def set_method(self, index: int, method: str, **parameters: Any) -> None:
         """Change the method of an instance, as `Instances.set_method` does."""
@@ -197,9 +198,11 @@ class Session:
         self.apply_settings(dataclasses.replace(self.settings, **changes))
 
     def set_motion(self, kind: str) -> None:
-        """Set how the balls move: "hand", "curve" or "random"."""
+        """Set how the balls move: "hand", "curve" or "random". Balls that move by themselves lead."""
         if kind not in MOTIONS:
             raise UnknownNameError("motion", kind, MOTIONS)
+        if kind != "hand":
+            self.leading.hold((), ())
         if kind != self.motion.kind:
             self.motion.kind = kind
             self.motion.restart()
