@@ -559,6 +559,23 @@ def test_what_the_machine_does_meanwhile_is_not_counted_as_the_methods_time(arm)
     assert figures.time < 0.02
 
 
+def test_the_preparation_of_a_run_cuts_no_method_off(arm):
+    """As on a slow machine, where the first step of a run prepares for longer than a step lasts."""
+
+    class Clock:
+        reading = 0
+
+        def __call__(self):
+            self.reading += 1
+            return 0.0 if self.reading == 1 else 100.0
+
+    shown = session(arm, ["dls"], Clock(), view=1)
+    shown.running = True
+    shown.move_ball(0, [0.5, 0.4, 0.4])
+    shown.step()
+    assert shown.seen[0].last.reached
+
+
 def test_a_solver_that_waits_for_ever_does_not_hold_up_the_session(arm):
     class Own(pinik.DampedLeastSquares):
         name = "own"
