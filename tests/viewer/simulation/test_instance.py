@@ -281,14 +281,14 @@ def test_a_missed_orientation_is_no_proof(panda):
 
 
 def test_time_that_runs_out_stops_a_step(arm):
-    """Every reading of the clock takes a second: one at the start, one before each iteration, one at the end."""
+    """Every reading of the clock takes a second: two at the start, one before each iteration, one at the end."""
     Tenth.calls.clear()
     one = instance(arm, Tenth, clock=Clock(each=1.0))
     target = pinik.Target("tip", REACHABLE)
     one.step([target], seconds=4.0)
     assert (one.status, one.verdict().status) == ("TIME_LIMIT", "TIME_LIMIT")
     assert len(Tenth.calls) == 3
-    assert (one.last.iterations, one.last.time, one.last.reached, one.last.cut_off) == (3, 5.0, False, True)
+    assert (one.last.iterations, one.last.time, one.last.reached, one.last.cut_off) == (3, 6.0, False, True)
     one.step([target], seconds=4.0)  # goes on where it was, with one iteration whatever the clock says
     assert (len(Tenth.calls), one.last.iterations) == (7, 4)
     one.step([target], seconds=0.0)
