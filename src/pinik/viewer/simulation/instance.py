@@ -156,7 +156,7 @@ class Instance:
         self._paused, self._blocked = False, ""
         began, before, former = self._clock(), self.q, self._state if self._pursuit else None
         try:
-            state = self._run(asked, seconds)
+            state = self._run(asked, began, seconds)
             if avoided is not None and self._question is not None and self.contacts.touches(state.q):
                 self._pursuit = None  # the next step begins where this one ends
                 state, self._blocked = self._detours.around(state, asked, before, self._question.options, avoided)
@@ -195,13 +195,13 @@ class Instance:
         self.counted = False
         self._paused = self.status == Status.TIME_LIMIT.name
 
-    def _run(self, targets: tuple[Target, ...], seconds: float) -> State:
+    def _run(self, targets: tuple[Target, ...], began: float, seconds: float) -> State:
         if self._pursuit is None:
             self._pursuit = self._begin(targets)
-            state = self._pursuit.state
+            state, began = self._pursuit.state, self._clock()  # the solver's time begins once it is prepared
         else:
             state = self._pursuit.aim_at(targets)
-        deadline, latest = self._clock() + seconds, time.perf_counter() + _LONGEST  # without the beginning of a run
+        deadline, latest = began + seconds, time.perf_counter() + _LONGEST
         while state.status is None and self._clock() < deadline and time.perf_counter() < latest:
             state = self._pursuit.advance(self._pursuit.at_once)
         return state
