@@ -143,6 +143,11 @@ class RobotModel(NamedModel):
                 warnings.warn(f"{self.name}: {words}", UrdfWarning, stacklevel=2)
         return poses
 
+    @property
+    def bodies(self) -> dict[str, int]:
+        """For pinik itself: link → the joint of Pinocchio's model that carries it; those of one joint are one body."""
+        return {link: self.model.frames[self.frame_id(link)].parentJoint for link in self.description.links}
+
     @cached_property
     def srdf_poses(self) -> Poses:
         """For pinik itself: what `poses` gives, without its warnings and without what `strict` makes of them."""

@@ -59,14 +59,12 @@ def _may_be_end(link: str) -> bool:
 
 def _last_links(robot: Robot, ends: list[str]) -> list[str]:
     """The end of each branch that has none yet: of the links on its last joint, the one with the best name."""
-    model = robot.model
-    carrying: dict[int, list[str]] = {}
-    for link in sorted(robot.description.links, key=robot.frame_id):
-        carrying.setdefault(model.frames[robot.frame_id(link)].parentJoint, []).append(link)
-    ended = {model.frames[robot.frame_id(link)].parentJoint for link in ends}
+    model, bodies = robot.model, robot.bodies
+    ended = {bodies[link] for link in ends}
     last = [j for j in range(1, model.njoints) if not model.children[j] and j not in ended]
-    found = [[link for link in carrying.get(j, []) if _may_be_end(link)] for j in last]
-    return [min(links, key=lambda link: min(_rank(link), _UNKNOWN)) for links in found if links]
+    links = sorted(filter(_may_be_end, bodies), key=robot.frame_id)
+    found = [[link for link in links if bodies[link] == j] for j in last]
+    return [min(some, key=lambda link: min(_rank(link), _UNKNOWN)) for some in found if some]
 
 
 def _rank(name: str) -> int:

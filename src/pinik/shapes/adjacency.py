@@ -12,7 +12,7 @@ __all__ = ["adjacent_pairs", "rigid_pairs"]
 
 def rigid_pairs(robot: RobotModel, links: Collection[str]) -> set[LinkPair]:
     """The pairs of these links that are fixed to each other, and so never move apart or together."""
-    bodies = _bodies(robot)
+    bodies = robot.bodies
     names = list(links)
     return {link_pair(a, b) for k, a in enumerate(names) for b in names[k + 1 :] if bodies[a] == bodies[b] and a != b}
 
@@ -27,7 +27,7 @@ def adjacent_pairs(robot: RobotModel, links: Collection[str]) -> set[LinkPair]:
         robot: The robot.
         links: The links that have collision shapes.
     """
-    bodies = _bodies(robot)
+    bodies = robot.bodies
     solid = {bodies[name] for name in links}
     heavy = {
         bodies[link.name]
@@ -42,8 +42,3 @@ def adjacent_pairs(robot: RobotModel, links: Collection[str]) -> set[LinkPair]:
             above = parents[above]
         pairs |= {link_pair(a, b) for a in links if bodies[a] == body for b in links if bodies[b] == above}
     return pairs
-
-
-def _bodies(robot: RobotModel) -> dict[str, int]:
-    """Link → the joint of Pinocchio's model to which it is fixed; links of the same one are one body."""
-    return {name: robot.model.frames[robot.frame_id(name)].parentJoint for name in robot.description.links}

@@ -93,7 +93,7 @@ def test_a_ball_is_where_the_page_says_and_every_instances_copy_can_be_dragged(o
 def test_a_camera_on_its_way_waits_until_the_ball_is_released(open_stage):
     desk = open_stage(methods=("dls",))
     at_rest(desk)
-    desk.runs("{ pinik.show.frameAll(true, 'top'); pinik.show.holdBall(0, pinik.show.balls.places[0].position); }")
+    desk.runs("{ pinik.show.frameAll(true, 'top'); pinik.show.hold(); }")
     at_rest(desk)
     assert looks_along(desk)[2] > -0.5, "it went on"
     desk.runs("pinik.show.letGoOfBall(0)")

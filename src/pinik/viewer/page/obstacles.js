@@ -93,7 +93,6 @@ export class Obstacles {
     }
 
     holdBall(k, position) {
-        this.hold();
         this._held = { k, position: position.clone() };
         this._draw();
     }

@@ -263,7 +263,6 @@ export class Show {
     }
 
     holdBall(k, position) {
-        this.hold();
         this.balls.hold(k, position);
         if (this._frame) this._draw(this._frame);
     }
