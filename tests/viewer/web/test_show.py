@@ -255,6 +255,24 @@ def test_a_ball_that_is_dragged_moves_in_every_frame(two_link):
     assert tab.kinds.count("state") <= 1
 
 
+def test_a_status_is_never_that_of_another_ball_and_tabs_see_no_flicker(two_link):
+    stage = Stage(two_link, ("dls",), motion="hand")
+    stage.later.do_all()
+    late = stage.join()
+    stage.tick(20)
+    for k in range(20):
+        stage.says(late, "ball", index=0, position=[0.3, 0.0, 0.2 + 0.01 * k])
+        (between,) = stage.show.state()["instances"]
+        assert between["status"] == "IDLE"
+        stage.draw(late)
+        stage.tick()
+        (then,) = stage.show.state()["instances"]
+        assert then["status"] != "IDLE"
+    seen = [state["instances"][0]["status"] for state in late.of("state")]
+    assert len(seen) > 2
+    assert "IDLE" not in seen[1:]
+
+
 def test_the_pace_is_that_of_the_clock(stage):
     stage.later.do_all()
     assert stage.show.state()["steps_per_second"] is None

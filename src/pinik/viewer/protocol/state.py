@@ -107,8 +107,7 @@ def session_state(session: Session) -> dict[str, Any]:
 
 
 def _instance_state(session: Session, index: int, instance: Instance, summary: Summary) -> dict[str, Any]:
-    # While the session runs, a step is never due for longer than 1/60 s, and captions should not flicker meanwhile.
-    verdict = instance.verdict(None if session.running else session.balls.targets)
+    verdict = instance.verdict(session.balls.targets)
     swings = swinging(instance.solver, session.scores.newest(index, LOOKED_AT))
     return {
         "method": instance.solver.name,

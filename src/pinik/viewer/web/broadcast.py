@@ -22,6 +22,7 @@ class Broadcast:
     Attributes:
         recording: The frames of the last seconds.
         frame: The newest frame.
+        state: The state that was sent last, just after a step while the session runs.
         frame_due: Whether something has changed that only another frame shows.
         state_due: Whether the next state is sent as soon as possible.
     """
@@ -29,6 +30,7 @@ class Broadcast:
     def __init__(self, seats: Seats, clock: Callable[[], float]) -> None:
         self.recording = Recording()
         self.frame: Message = b""
+        self.state: Message = ""
         self.frame_due = self.state_due = True
         self._seats, self._clock = seats, clock
         self._recorded_step, self._state_sent = -1, clock()
@@ -73,4 +75,5 @@ class Broadcast:
         self.state_due = False
         self._state_sent = self._clock()
         if self._seats:
-            self._seats.offer_state(json.dumps(state()))
+            self.state = json.dumps(state())
+            self._seats.offer_state(self.state)

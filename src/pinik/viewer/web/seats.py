@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection
+from collections.abc import Collection
 from typing import Protocol
 
 from .outbox import Message
@@ -78,16 +78,16 @@ class Seats:
         for tab, seat in self._seats.items():
             _offer_state(tab, seat, state)
 
-    def drawn(self, tab: Tab, frame: Callable[[], Message], state: Callable[[], Message]) -> None:
+    def drawn(self, tab: Tab, frame: Message, state: Message) -> None:
         """Note that a tab has drawn a frame, and send it the newest state and frame if it was kept waiting for them."""
         seat = self._seats.get(tab)
         if seat is None or seat.under_way == 0:
             return
         seat.under_way -= 1
         if seat.state_waits:
-            _offer_state(tab, seat, state())
+            _offer_state(tab, seat, state)
         if seat.frame_waits:
-            _offer_frame(tab, seat, frame())
+            _offer_frame(tab, seat, frame)
 
 
 def _offer_frame(tab: Tab, seat: _Seat, frame: Message) -> None:

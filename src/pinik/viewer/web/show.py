@@ -118,7 +118,7 @@ class Show:
             message = parse(message_text)
             if message["type"] == "drawn":
                 checked("drawn", message, {"step": whole_number})
-                self._seats.drawn(tab, lambda: self._broadcast.frame, lambda: json.dumps(self.state()))
+                self._seats.drawn(tab, self._broadcast.frame, self._broadcast.state)
                 self._readers.catch_up(tab, self.session, self._exhibit.generation)
             elif self._lectern.receive(tab, message, self.session):
                 self._broadcast.state_due = True
