@@ -82,7 +82,7 @@ docs: export NO_MKDOCS_2_WARNING = 1
 docs: $(VENV)/installed-dev
 	@$(python) tools/write_reference.py
 	@$(python) -m mkdocs build --quiet
-	@echo "The site is in build/site; '$(python) -m http.server -d build/site' shows it, search included"
+	@echo "The site is in build/site; open build/site/index.html in a browser"
 
 clean:
 	@rm -rf $(VENV) build dist .mypy_cache .pytest_cache .ruff_cache .hypothesis .benchmarks

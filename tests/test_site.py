@@ -303,6 +303,23 @@ def address(site) -> Iterator[str]:
     thread.join()
 
 
+def test_a_site_that_is_read_from_disk_can_be_searched(site, tmp_path):
+    folder = tmp_path / "a site & 'more' #1"
+    folder.symlink_to(site, target_is_directory=True)
+    with need_browser().sync_playwright() as playwright:
+        browser = playwright.chromium.launch(executable_path=CHROMIUM, args=FLAGS)
+        context = browser.new_context(viewport={"width": 1280, "height": 800})
+        faults = Faults(context)
+        page = context.new_page()
+        page.goto((folder / "howto" / "index.html").as_uri())
+        page.keyboard.press("/")
+        page.keyboard.type("did you mean")
+        page.locator(".md-search-result__link[href*='/errors.html']").first.click()
+        page.wait_for_url("**/errors.html*")
+        browser.close()
+    assert faults.left == []
+
+
 @pytest.mark.parametrize("scheme", ["light", "dark"])
 def test_a_reader_searches_and_follows_without_another_host(address, scheme):
     with need_browser().sync_playwright() as playwright:
