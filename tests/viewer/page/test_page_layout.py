@@ -26,9 +26,9 @@ CHORDS = """async (points) => {
 }"""
 # All in pixels of the stage: what robots have visited, what they cover now, captions, balls, and the stage itself.
 PICTURE = """() => {
-    const { show } = pinik, { stage, instances } = show;
+    const { show } = pinik, { stage, cast } = show, { instances } = cast;
     const seen = (points) =>
-        instances.map((_, i) => points(i).map((p) => stage.project(p.clone().add(show.offset(i))))
+        instances.map((_, i) => points(i).map((p) => stage.project(p.clone().add(cast.offset(i))))
             .map(({ x, y }) => [x, y]));
     const { left, top, width, height } = stage.element.getBoundingClientRect();
     const rectangles = (found) => [...document.querySelectorAll(found)].map((e) => e.getBoundingClientRect())

@@ -15,7 +15,7 @@ from pinik.viewer.web import exhibit
 from urdf_texts import joint, link, robot
 
 MENU = [name for name in LOOKS if name != "overlay"]
-PLACES = "pinik.show.instances.map(({ group }) => group.position.toArray())"
+PLACES = "pinik.show.cast.instances.map(({ group }) => group.position.toArray())"
 
 
 def test_each_look_of_the_menu_is_kept_by_the_session_and_the_link(open_panel):
@@ -45,14 +45,14 @@ def test_robots_in_one_place_share_the_ball_and_have_a_legend(open_panel):
     desk.until(lambda s: s["looks"] == ["overlay"])
     desk.wait(lambda: len({tuple(place) for place in desk.runs(PLACES)}) == 1)
     assert desk.runs("pinik.show.ballsOnScreen().length") == 1
-    assert desk.runs("pinik.show.instances.map(i => i._targets.visible)") == [True, False, False, False]
-    colors = desk.runs("pinik.show.instances.map(i => i.robot._parts[0].fine.color.getHexString())")
+    assert desk.runs("pinik.show.cast.instances.map(i => i._targets.visible)") == [True, False, False, False]
+    colors = desk.runs("pinik.show.cast.instances.map(i => i.robot._parts[0].fine.color.getHexString())")
     assert len(set(colors)) == 4, "the ghosts have one colour"
     desk.wait(lambda: len({desk.part(f"label-{i}").bounding_box()["x"] for i in range(4)}) == 1)
     desk.click("overlay")
     desk.until(lambda s: s["looks"] == [])
     desk.wait(lambda: len({tuple(place) for place in desk.runs(PLACES)}) == 4)
-    assert desk.runs("pinik.show.instances.every(i => i._targets.visible)")
+    assert desk.runs("pinik.show.cast.instances.every(i => i._targets.visible)")
     desk.click("view-1")
     desk.expect("overlay").to_be_disabled()
 
@@ -61,7 +61,7 @@ def test_robots_in_one_place_share_the_ball_and_have_a_legend(open_panel):
 def test_the_singular_values_are_those_of_pinocchios_jacobian(open_panel, name, root):
     desk = open_panel(name, ("dls",), root=root, setup=f"robot={name}&root={root}&looks=ellipsoid")
     machine = desk.view.robot
-    desk.shows("pinik.show.instances[0].note !== ''")
+    desk.shows("pinik.show.cast.instances[0].note !== ''")
     state = desk.agree()
     angles = {joint: a for joint, a in state["instances"][0]["angles"].items() if joint not in machine.mimics}
     frame, q = machine.frame_id(state["balls"][0]["frame"]), machine.configuration(angles)
@@ -70,7 +70,7 @@ def test_the_singular_values_are_those_of_pinocchios_jacobian(open_panel, name, 
     )[:3]
     kept = [joint for joint in machine.joints if joint.has_one_axis and joint.leader is None]
     wanted = np.linalg.svd(J[:, [joint.idx_v for joint in kept]], compute_uv=False)
-    found = [float(text) for text in re.findall(r"[\d.]+", desk.runs("pinik.show.instances[0].note"))]
+    found = [float(text) for text in re.findall(r"[\d.]+", desk.runs("pinik.show.cast.instances[0].note"))]
     np.testing.assert_allclose(found, wanted, atol=1e-3, rtol=5e-3)
 
 
@@ -230,7 +230,7 @@ def test_a_robot_that_is_all_black_is_drawn_in_greys_and_a_notice_says_so(open_p
     desk = open_panel(file, ("dls",))
     desk.expect(desk.toasts).to_contain_text("black")
     desk.expect("warnings").to_be_visible()
-    assert desk.runs("pinik.show.instances[0].robot._parts.every(({ fine }) => fine.color.r > 0.1)")
+    assert desk.runs("pinik.show.cast.instances[0].robot._parts.every(({ fine }) => fine.color.r > 0.1)")
 
 
 def test_a_lost_connection_says_how_to_start_again(open_panel):

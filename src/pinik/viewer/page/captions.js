@@ -48,12 +48,13 @@ export class Captions {
 
     /** @param results [status, position error, orientation error] of each instance, errors null or NaN if not asked for */
     _write(state, results) {
-        const { awaiting, instances } = this._show;
+        const { awaiting, cast } = this._show;
         const texts = results.map(([status, position, orientation], i) => {
             const { title, method } = state.instances[i];
             const led = state.led?.includes(i);
             const words = led ? "moved by hand" : verdict(status, position ?? NaN, orientation ?? NaN, state);
-            return { title, method, words: awaiting ? AWAITING : words, tone: tone(status), note: instances[i]?.note ?? "" };
+            const note = cast.instances[i]?.note ?? "";
+            return { title, method, words: awaiting ? AWAITING : words, tone: tone(status), note };
         });
         this._labels.set(texts);
         this.place();
@@ -66,10 +67,10 @@ export class Captions {
     }
 
     place() {
-        const { stage, instances } = this._show;
+        const { cast, stage } = this._show;
         const room = { width: stage.width, height: stage.height };
-        const spots = instances.map((_, i) => this._spot(i)).filter(Boolean);
-        if (spots.length !== instances.length) return;
+        const spots = cast.instances.map((_, i) => this._spot(i)).filter(Boolean);
+        if (spots.length !== cast.instances.length) return;
         if (this._show.overlaid) {
             this._labels.stack(spots, room);
             return;
@@ -83,10 +84,10 @@ export class Captions {
 
     /** The rectangle that an instance has covered so far, and the middle of what it stands on [px]. */
     _spot(i) {
-        const { stage, visited, base } = this._show;
-        const offset = this._show.offset(i);
+        const { cast, stage, visited } = this._show;
+        const offset = cast.offset(i);
         const seen = visited.map((point) => stage.project(point.clone().add(offset)));
-        const standing = base.map((point) => stage.project(point.clone().add(offset)));
+        const standing = cast.base.map((point) => stage.project(point.clone().add(offset)));
         if (!seen.length || !standing.length) return null;
         const box = around(seen);
         const { x, y, w, h } = around(standing);

@@ -17,13 +17,13 @@ export class Ghosts {
     /** @param placements for each ghost the placements of all joints, in one array of numbers */
     set(placements, instance = 0) {
         this.clear();
-        const parent = this._show.instances[instance];
+        const parent = this._show.cast.instances[instance];
         if (!parent) return;
         const { robot } = this._show;
         const still = new Float32Array(robot.joints.length);
         this._opacity = Math.min(OPACITY, TOGETHER / placements.length);
         this._ghosts = placements.map((numbers) => {
-            const ghost = new Robot(robot, this._show.parts, "#8d98a5");
+            const ghost = new Robot(robot, this._show.cast.parts, "#8d98a5");
             ghost.update({ placements: () => numbers, sides: () => still }, 0, new Set());
             ghost.fade(this._opacity);
             parent.group.add(ghost.group);

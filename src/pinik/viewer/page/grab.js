@@ -79,7 +79,7 @@ export class Grab {
         const position = this._dragged(event);
         if (!position) return;
         this._held.position = position;
-        const inRobot = snapPosition(position.clone().sub(this._show.offset(this._held.instance)), event);
+        const inRobot = snapPosition(position.clone().sub(this._show.cast.offset(this._held.instance)), event);
         this._show.holdBall(this._held.k, inRobot);
         this._handlers.onMove(this._held.k, inRobot.toArray());
     }

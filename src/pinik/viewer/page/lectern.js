@@ -96,7 +96,7 @@ export class Lectern {
     }
 
     _showTurn(instance, turn, part) {
-        const group = this._page.show.instances[instance]?.group;
+        const group = this._page.show.cast.instances[instance]?.group;
         if (turn === null || !group) this._marks.hide();
         else {
             group.add(this._marks.group);

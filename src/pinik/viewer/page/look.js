@@ -37,7 +37,7 @@ export class Look {
 
     /** Show all instances as the looks ask for. */
     apply() {
-        for (const instance of this._show.instances) {
+        for (const instance of this._show.cast.instances) {
             instance.setLook(this.on, this._extras, this._show.overlaid);
         }
         this._show.stage.touch();

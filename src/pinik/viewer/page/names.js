@@ -29,15 +29,15 @@ export class Names {
 
     /** The names that do not overlap others, the ends of chains first. */
     _shown() {
-        const { instances, robot, stage } = this._show;
+        const { cast, robot, stage } = this._show;
         const rank = new Map(robot.frames.map((name, k) => [name, k]));
         const links = [...robot.links].sort((a, b) => (rank.get(a.name) ?? 1e6) - (rank.get(b.name) ?? 1e6));
         const shown = [];
-        instances.forEach((instance, i) => {
+        cast.instances.forEach((instance, i) => {
             for (const { name, joint, placement } of links) {
                 const at = new THREE.Vector3().fromArray(placement);
                 const { position, quaternion } = instance.robot.joints[joint];
-                at.applyQuaternion(quaternion).add(position).add(this._show.offset(i));
+                at.applyQuaternion(quaternion).add(position).add(cast.offset(i));
                 const { x, y, behind } = stage.project(at);
                 const mine = { name, x: x + 6, y: y - 6, w: ROOM.w * name.length };
                 const hits = (other) =>

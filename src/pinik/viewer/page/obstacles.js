@@ -30,11 +30,11 @@ export class Obstacles {
 
     _draw() {
         for (const [instance, group] of this._groups) {
-            if (this._show.instances.includes(instance)) continue;
+            if (this._show.cast.instances.includes(instance)) continue;
             group.clear();
             this._groups.delete(instance);
         }
-        this._show.instances.forEach((instance, i) => {
+        this._show.cast.instances.forEach((instance, i) => {
             const group = this._groups.get(instance) ?? this._addGroup(instance);
             while (group.children.length > this._told.length) group.remove(group.children.at(-1));
             this._told.forEach(({ kind, size }, k) => {
@@ -67,7 +67,7 @@ export class Obstacles {
 
     /** Draw the obstacles of instances that have appeared since the last state. */
     _follow() {
-        if (this._told.length && this._show.instances.some((instance) => !this._groups.has(instance))) this._draw();
+        if (this._told.length && this._show.cast.instances.some((instance) => !this._groups.has(instance))) this._draw();
     }
 
     // What Grab asks of the things that it drags
@@ -81,7 +81,7 @@ export class Obstacles {
     }
 
     offset(i) {
-        return this._show.offset(i);
+        return this._show.cast.offset(i);
     }
 
     ballInWorld(k, instance) {
@@ -108,7 +108,7 @@ export class Obstacles {
         const { camera, controls } = this.stage.viewer;
         const away = camera.position.distanceTo(controls.target);
         const pixel = (2 * away * Math.tan((camera.fov * Math.PI) / 360)) / this.stage.height;
-        return this._show.instances.flatMap((_, instance) =>
+        return this._show.cast.instances.flatMap((_, instance) =>
             this._told.map(({ size }, k) => {
                 const radius = (0.5 * Math.min(...size)) / pixel - 12;
                 return { k, instance, radius, at: this.stage.project(this.ballInWorld(k, instance)) };

@@ -6,9 +6,9 @@ export function ballsOnScreen(show) {
     const { camera, controls } = show.stage.viewer;
     const pixel =
         (2 * camera.position.distanceTo(controls.target) * Math.tan((camera.fov * Math.PI) / 360)) / show.stage.height;
-    const radius = show.ballRadius / pixel;
-    const copies = show.overlaid ? 1 : show.instances.length; // robots in one place share one
-    return Array.from({ length: Math.min(copies, show.instances.length) }, (_, instance) => instance).flatMap(
+    const radius = show.cast.ballRadius / pixel;
+    const copies = show.overlaid ? 1 : show.cast.instances.length; // robots in one place share one
+    return Array.from({ length: Math.min(copies, show.cast.instances.length) }, (_, instance) => instance).flatMap(
         (instance) =>
             show.balls.places.flatMap((_place, k) => {
                 if (show.state.balls[k]?.mode === "off") return [];

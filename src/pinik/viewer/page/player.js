@@ -54,7 +54,7 @@ class Player {
     /** Go to a frame, and rebuild the trails from the frames before it. */
     _seek(at) {
         this._at = at;
-        this._show.clearTrails();
+        this._show.cast.clearTrails();
         for (let k = Math.max(0, at - TAIL); k < at; k++) this._show.addToTrails(this._frame(k));
         this._shown = -1;
     }
@@ -78,7 +78,7 @@ class Player {
             this._at += (passed / 1000) * this._rate * Number(byId("rate").value);
             if (this._at >= this._count) {
                 this._at = 0;
-                this._show.clearTrails();
+                this._show.cast.clearTrails();
             }
         }
         this._before = now;

@@ -40,14 +40,14 @@ export class Rings {
 
     /** Lay the rings around every copy of the selected ball. */
     _place() {
-        const { instances, stage } = this._show;
+        const { cast, stage } = this._show;
         const ball = this._ball;
-        const wanted = ball ? instances.length : 0;
+        const wanted = ball ? cast.instances.length : 0;
         while (this._sets.length > wanted) stage.scene.remove(this._sets.pop());
         while (this._sets.length < wanted) this._sets.push(this._make());
         if (!ball) return;
         const turn = this._held?.frame ?? (this._handlers.local() ? ball.quaternion : new THREE.Quaternion());
-        this._radius = Math.max(SIZE * this._show.ballRadius, LEAST * this._show.pixel);
+        this._radius = Math.max(SIZE * cast.ballRadius, LEAST * this._show.pixel);
         this._sets.forEach((set, i) => {
             set.position.copy(this._show.ballInWorld(ball.k, i));
             set.quaternion.copy(turn);
@@ -78,7 +78,7 @@ export class Rings {
         let found = null;
         this._sets.forEach((set, instance) => {
             const middle = this._show.stage.project(set.position);
-            if (Math.hypot(middle.x - x, middle.y - y) < 1.4 * (this._show.ballRadius / this._show.pixel)) return;
+            if (Math.hypot(middle.x - x, middle.y - y) < 1.4 * (this._show.cast.ballRadius / this._show.pixel)) return;
             set.children.forEach((ring, axis) => {
                 for (let j = 0; j < POINTS; j++) {
                     const at = this._project(set, ring, (2 * Math.PI * j) / POINTS);

@@ -30,17 +30,17 @@ export class Sight {
     }
 
     _visit() {
-        this._extent.add(this._show.instances.flatMap((instance) => instance.robot.corners()));
+        this._extent.add(this._show.cast.instances.flatMap((instance) => instance.robot.corners()));
     }
 
     /** The outermost points of the balls and their rings, in an instance's own world. */
     _balls() {
-        const { balls, state, ballRadius } = this._show;
+        const { balls, cast, state } = this._show;
         return state.balls.flatMap(({ mode }, k) => {
             const position = balls.places[k]?.position;
             if (mode === "off" || !position) return [];
             return Array.from({ length: 6 }, (_, way) => {
-                const out = (way < 3 ? 1 : -1) * HALO * ballRadius;
+                const out = (way < 3 ? 1 : -1) * HALO * cast.ballRadius;
                 return position.clone().setComponent(way % 3, position.getComponent(way % 3) + out);
             });
         });
@@ -73,14 +73,14 @@ export class Sight {
 
     /** Look at everything, smoothly or at once. */
     all(smoothly, preset) {
-        const { camera, stage, instances, ground, robot } = this._show;
+        const { camera, cast, stage } = this._show;
         this._pending = false;
         [camera.caption, camera.buttons] = this._show.taken;
         const points = this._points();
         this._framed = sizeOf(points);
-        camera.frame(points, instances.length, preset, smoothly);
+        camera.frame(points, cast.instances.length, preset, smoothly);
         const { center, radius } = camera.sphere;
-        stage.ground.lay(ground, center.x, center.y, radius, robot.size);
+        stage.ground.lay(cast.ground, center.x, center.y, radius, cast.robot.size);
     }
 
     /**
@@ -101,10 +101,10 @@ export class Sight {
     }
 
     _someLeft(points) {
-        const { stage, instances, camera } = this._show;
-        if (instances.length > 1 && camera.isCrowded(points)) return true;
-        return instances.some((_, i) =>
-            points.some((point) => camera.isOutside(stage.project(point.clone().add(this._show.offset(i))))),
+        const { camera, cast, stage } = this._show;
+        if (cast.instances.length > 1 && camera.isCrowded(points)) return true;
+        return cast.instances.some((_, i) =>
+            points.some((point) => camera.isOutside(stage.project(point.clone().add(cast.offset(i))))),
         );
     }
 
