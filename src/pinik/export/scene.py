@@ -197,8 +197,8 @@ def _times(own: Array | None, given: ArrayLike | None, count: int) -> Array:
 
 
 def _cast(recording: LiveRecording) -> tuple[Actor, ...]:
-    cast = zip(recording.names, recording.solvers, itertools.cycle(TINTS), recording.q, strict=False)
-    return tuple(Actor(name, solver.title, color, q) for name, solver, color, q in cast)
+    cast = zip(recording.names, recording.titles, itertools.cycle(TINTS), recording.q, strict=False)
+    return tuple(Actor(*one) for one in cast)
 
 
 def check_suffix(path: str | os.PathLike[str], suffix: str) -> Path:

@@ -142,6 +142,59 @@ def test_lessons_are_links_that_open_their_scenes(open_panel):
     desk.until(lambda s: s["robot"] == "two_link" and s["running"])
 
 
+def test_robots_with_one_method_are_told_apart_everywhere(open_panel):
+    desk = open_panel(methods=("dls",))
+    desk.click("teach")
+    desk.click("tab-lessons")
+    desk.click("lesson-damping")
+    names = [f"dls, λ\u00a0=\u00a0{damping}" for damping in ("0.001", "0.05", "0.3", "2")]
+    for k, name in enumerate(names):
+        desk.expect(f"label-{k}").to_contain_text(name)
+        desk.expect(desk.part(f"instance-{k}").locator(".method-name")).to_have_text(name)
+        desk.expect(desk.page.locator("#table th[scope=row]").nth(k)).to_contain_text(name)
+    desk.click("tab-race")
+    desk.click("race-ten")
+    desk.expect("race-card").to_contain_text("dls, λ = 0.001")
+    assert desk.page.locator("[data-testid=race-table] thead th").all_inner_texts() == ["", *names]
+    assert_whole(desk, "[data-testid=race-table] :is(th, td)")
+    desk.click("tab-explain")
+    assert [desk.text(f"explain-{k}") for k in range(4)] == names
+    assert_whole(desk, "[data-testid^=explain-]")
+    desk.choose("method-1", "ccd")
+    desk.expect(desk.part("instance-1").locator(".method-name")).to_have_text("Cyclic coordinate descent")
+
+
+@pytest.mark.parametrize("width", [1280, 1920, 2560])
+def test_nothing_is_cut_beside_the_drawer(open_panel, width):
+    desk = open_panel(viewport={"width": width, "height": width * 9 // 16})
+    desk.click("teach")
+    desk.expect("tab-explain").to_be_visible()
+    assert_whole(desk, ".panel label > span, .method-name, .legend li, [role=tab], .views button")
+    sizes = desk.runs("[...document.querySelectorAll('.panel h2, [role=tab]')].map((e) => e.offsetHeight * "
+                      "(e.currentCSSZoom ?? 1))")  # fmt: skip
+    assert min(sizes) > 15 * width / 1600, "it can be read from the back of a room"
+
+
+def assert_whole(desk, found):
+    """Each of these elements is as wide as its text, and nothing that does not scroll cuts it."""
+    cut = desk.page.evaluate(
+        """found => [...document.querySelectorAll(found)].filter((e) => e.checkVisibility()).filter((e) => {
+            if (!e.children.length && e.scrollWidth > e.parentElement.clientWidth + 1) return true;
+            const box = e.getBoundingClientRect();
+            for (let around = e.parentElement; around !== document.body; around = around.parentElement) {
+                const { overflowX, overflowY } = getComputedStyle(around);
+                const { left, right, top, bottom } = around.getBoundingClientRect();
+                if (overflowX !== "visible" && (box.left < left - 1 || box.right > right + 1)) return true;
+                if (/auto|scroll/.test(overflowY)) return false;
+                if (overflowY !== "visible" && (box.top < top - 1 || box.bottom > bottom + 1)) return true;
+            }
+            return false;
+        }).map((e) => e.textContent)""",
+        found,
+    )
+    assert cut == []
+
+
 def test_table_4_1_fills_while_a_comparison_runs(open_panel):
     desk = open_panel(methods=("dls",))
     desk.click("teach")

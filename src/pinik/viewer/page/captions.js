@@ -1,7 +1,7 @@
 /** The texts of the captions, and what they must not cover. */
 
 import { Labels } from "pinik/labels.js";
-import { tone, verdict } from "pinik/words.js";
+import { called, tone, verdict } from "pinik/words.js";
 
 const AWAITING = "loading its shapes …";
 const BESIDE = 10; // [px] between the buttons and robots
@@ -50,11 +50,13 @@ export class Captions {
     _write(state, results) {
         const { awaiting, cast } = this._show;
         const texts = results.map(([status, position, orientation], i) => {
-            const { title, method } = state.instances[i];
+            const instance = state.instances[i];
             const led = state.led?.includes(i);
             const words = led ? "moved by hand" : verdict(status, position ?? NaN, orientation ?? NaN, state);
             const note = cast.instances[i]?.note ?? "";
-            return { title, method, words: awaiting ? AWAITING : words, tone: tone(status), note };
+            const name = called(instance);
+            const title = instance.distinction ? name : instance.title;
+            return { title, name, words: awaiting ? AWAITING : words, tone: tone(status), note };
         });
         this._labels.set(texts);
         this.place();

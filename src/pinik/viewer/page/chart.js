@@ -10,14 +10,13 @@ const WIDTHS = [6, 4.4, 2.9, 1.2]; // [px] of the four lines: where they coincid
 export class Chart {
     /** @param options value(sample) in the chart's unit, words(value) with its unit, decades (the fewest on the axis) */
     constructor(canvas, theme, { value, words, decades }) {
-        Object.assign(this, { _canvas: canvas, _theme: theme, _value: value, _decades: decades, _names: [] });
+        Object.assign(this, { _canvas: canvas, _theme: theme, _value: value, _decades: decades });
         this._readout = new ChartReadout(canvas, theme, (sample) => words(value(sample)));
     }
 
     /** Name the instances in the legend. */
     setState({ instances }) {
-        this._names = instances.map(({ method }) => method);
-        this._readout.setNames(this._names);
+        this._readout.setNames(instances);
     }
 
     /** @param mark the value of a dashed line, or null */

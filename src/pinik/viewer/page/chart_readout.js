@@ -1,6 +1,7 @@
 /** What stands around a chart: its legend with the values at the pointer, and the button that enlarges it. */
 
 import { icon, make, say } from "pinik/elements.js";
+import { called } from "pinik/words.js";
 
 export class ChartReadout {
     /** @param words a sample's value with its unit */
@@ -41,12 +42,15 @@ export class ChartReadout {
         if (grown) this._grow.focus({ preventScroll: true });
     }
 
-    setNames(names) {
-        if (this._names === names.join()) return;
-        this._names = names.join();
-        this._entries = names.map((name, i) => {
+    /** Name the series; what tells methods of one name apart shows in an enlarged chart. */
+    setNames(instances) {
+        const names = instances.map(called).join();
+        if (this._names === names) return;
+        this._names = names;
+        this._entries = instances.map(({ method, distinction }, i) => {
             const value = make("b");
-            const entry = make("li", {}, make("span", { className: "dot" }), name, value);
+            const own = make("span", { className: "distinction" }, distinction ? `, ${distinction}` : "");
+            const entry = make("li", {}, make("span", { className: "dot" }), method, own, value);
             entry.style.setProperty("--own", `var(--instance-${i})`);
             return { entry, value };
         });

@@ -6,7 +6,7 @@ import { formulas } from "pinik/formulas.js";
 import { GainCurve } from "pinik/gain_curve.js";
 import { HeatMap } from "pinik/heat_map.js";
 import { TurnList } from "pinik/turn_list.js";
-import { degrees, length } from "pinik/words.js";
+import { called, degrees, length } from "pinik/words.js";
 
 const VALUES = {
     jt: ["α", "the step length that leaves the smallest linear residual"],
@@ -52,7 +52,7 @@ export class Explain {
     }
 
     setState(state) {
-        const names = state.instances.map(({ method }) => method);
+        const names = state.instances.map(called);
         if (this.index >= names.length) this.choose(0);
         if (this._names === names.join()) return;
         this._names = names.join();

@@ -31,7 +31,7 @@ export class Labels {
         this.size = { w: beside * this.scale, h: tallest };
     }
 
-    /** @param texts {title, method, words, note, tone} of each instance */
+    /** @param texts {title, name, words, note, tone} of each instance; the name is short */
     set(texts) {
         while (this._chips.length < texts.length) this._chips.push(this._make(this._chips.length));
         while (this._chips.length > texts.length) this._chips.pop().chip.remove();
@@ -40,9 +40,9 @@ export class Labels {
     }
 
     _write() {
-        this._texts.forEach(({ title, method, words, note, tone }, i) => {
+        this._texts.forEach(({ title, name: short, words, note, tone }, i) => {
             const { name, state, extra } = this._chips[i];
-            say(name, this._narrow ? method : title);
+            say(name, this._narrow ? short : title);
             say(state, words);
             say(extra, note);
             state.dataset.tone = tone;

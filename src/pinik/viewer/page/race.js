@@ -3,7 +3,7 @@
 import { contest } from "pinik/contest.js";
 import { make, say } from "pinik/elements.js";
 import { Copy } from "pinik/copy.js";
-import { length, microseconds } from "pinik/words.js";
+import { called, length, microseconds } from "pinik/words.js";
 
 const RULES =
     "Every method solves from the same pose, for the same targets, with the same tolerance and limits. " +
@@ -75,13 +75,13 @@ export class RaceTab {
     _sentence({ runners, places }) {
         const [best] = [...runners].sort((a, b) => b.wins - a.wins);
         if (!best?.wins) return "Nobody arrived.";
-        if (places.length === 1) return `${best.method} arrived first.`;
-        return `${best.method} arrived first at ${best.wins} of ${places.length} targets.`;
+        if (places.length === 1) return `${called(best)} arrived first.`;
+        return `${called(best)} arrived first at ${best.wins} of ${places.length} targets.`;
     }
 
     /** One row for each target: who arrived after how many iterations and which time. */
     _fill({ runners, places }) {
-        const head = make("tr", {}, make("th", { scope: "col" }, ""), ...runners.map(({ method }) => make("th", { scope: "col" }, method)));
+        const head = make("tr", {}, make("th", { scope: "col" }, ""), ...runners.map((runner) => make("th", { scope: "col" }, called(runner))));
         const rows = places.map((_, k) => {
             const there = runners.filter(({ finishes }) => finishes[k]?.reached);
             const first = Math.min(...there.map(({ finishes }) => finishes[k].time));
@@ -95,7 +95,7 @@ export class RaceTab {
 
     _cell(finish, first, refusal) {
         if (!finish) return make("td", { title: refusal, className: "missed" }, "–");
-        if (!finish.reached) return make("td", { className: "missed", title: `${finish.iterations} iterations` }, `${length(finish.error)} short`);
+        if (!finish.reached) return make("td", { className: "missed", title: `still so far away after ${finish.iterations} iterations` }, `✗ ${length(finish.error)}`);
         const cell = make("td", { className: finish.time === first ? "first" : "" }, microseconds(finish.time), make("small", {}, ` ${finish.iterations}`));
         cell.title = `${finish.iterations} iterations${finish.time === first ? ", the first to arrive" : ""}`;
         return cell;
@@ -121,7 +121,7 @@ export class RaceTab {
 
     _arrived(k, taken) {
         const there = this._race.runners.filter(({ finishes }) => finishes[k]?.reached && finishes[k].iterations <= taken);
-        return there.length ? `${there.map(({ method }) => method).join(", ")} arrived.` : "nobody has arrived yet.";
+        return there.length ? `${there.map(called).join("; ")} arrived.` : "nobody has arrived yet.";
     }
 
     stop() {

@@ -2,7 +2,7 @@
 
 import { byId, make, say } from "pinik/elements.js";
 import { offer, write } from "pinik/hands.js";
-import { count, degrees, duration, length, percent, tone, verdict } from "pinik/words.js";
+import { called, count, degrees, duration, length, percent, tone, verdict } from "pinik/words.js";
 
 const ENGINES = { native: "Stepped by the compiled engine", python: "Stepped by the engine in Python" };
 const COLUMNS = [
@@ -44,7 +44,7 @@ export class Table {
     /** Say where the clock ended steps, so that nobody takes that for the method's own doing. */
     _showCutOff(instances, steps) {
         const ended = instances.filter(({ statistics }) => statistics.cut_off > 0);
-        const counts = ended.map(({ method, statistics }) => `${method} in ${statistics.cut_off}`);
+        const counts = ended.map((one) => `${called(one)} in ${one.statistics.cut_off}`);
         byId("cut-off").hidden = ended.length === 0;
         const whose = "That is this machine's doing, not the method's.";
         say(byId("cut-off"), `* The clock cut off ${counts.join(", ")} of ${steps} steps. ${whose}`);
@@ -66,7 +66,7 @@ export class Table {
     _show(row, instance, state) {
         const { statistics: mean, status, position_error, orientation_error, message, engine } = instance;
         const orNaN = (value) => value ?? NaN;
-        say(row.title, instance.method);
+        say(row.title, called(instance));
         row.title.title = instance.title;
         say(row.engine, engine);
         row.engine.title = ENGINES[engine];

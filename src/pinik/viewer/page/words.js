@@ -68,6 +68,11 @@ function tightest({ balls, tolerance }) {
     };
 }
 
+/** What an instance, or a runner, is called: short, with what tells it from others of its method. */
+export function called({ method, distinction }) {
+    return distinction ? `${method}, ${distinction.replaceAll(" = ", "\u00a0=\u00a0")}` : method;
+}
+
 /** How a result is marked, whatever its method's colour: "good", "missed" or "idle". */
 export function tone(status) {
     return status === "CONVERGED" ? "good" : status === "IDLE" ? "idle" : "missed";

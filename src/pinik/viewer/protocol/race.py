@@ -23,6 +23,7 @@ def race_message(race: Race, seed: int) -> dict[str, Any]:
         "runners": [
             {
                 "method": runner.method,
+                "distinction": runner.distinction,
                 "engine": runner.engine,
                 "wins": runner.wins,
                 "shortest": runner.shortest,

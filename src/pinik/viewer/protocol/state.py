@@ -8,6 +8,7 @@ from typing import Any
 from ...description.catalog import catalog
 from ...motion.curves import CURVES
 from ...solvers.base import Solver
+from ...solvers.distinctions import distinctions
 from ..simulation.instance import Instance
 from ..simulation.instances import VIEWS
 from ..simulation.looks import LOOKS
@@ -112,6 +113,7 @@ def _instance_state(session: Session, index: int, instance: Instance, summary: S
     return {
         "method": instance.solver.name,
         "title": instance.solver.title,
+        "distinction": distinctions([one.solver for one in session.seen])[index],
         "parameters": describe_parameters(instance.solver),
         "engine": instance.engine,
         **verdict._asdict(),

@@ -14,6 +14,7 @@ from ...motion.tracks import random_configuration
 from ...problem.targets import Target
 from ...robot import Robot
 from ...solvers.base import Solver
+from ...solvers.distinctions import distinctions
 from ...solving.options import Options
 from ...solving.prepared import Prepared
 from .ball import Ball
@@ -75,6 +76,7 @@ class Runner(NamedTuple):
 
     Attributes:
         method: Its short name.
+        distinction: What tells it from others of that name, such as "λ = 0.05", or "".
         engine: "native" or "python".
         finishes: One for each place; none if the method cannot solve for these targets.
         refusal: The reason why it cannot, or "".
@@ -83,11 +85,17 @@ class Runner(NamedTuple):
     """
 
     method: str
+    distinction: str
     engine: str
     finishes: tuple[Finish, ...]
     refusal: str
     wins: int
     shortest: int
+
+    @property
+    def called(self) -> str:
+        """Its name, with what tells it from others of that name."""
+        return f"{self.method}, {self.distinction}" if self.distinction else self.method
 
     @property
     def arrived(self) -> tuple[Finish, ...]:
@@ -176,11 +184,13 @@ def run_race(entry: Entry, rounds: int = _ROUNDS) -> Race:
             for k in there:
                 shortest[k] += _sure(heat[k]).iterations == least
     runners = []
+    told_apart = distinctions(entry.solvers)
     for k, (solver, own) in enumerate(zip(entry.solvers, prepared, strict=True)):
         refused = isinstance(own, str)
         runners.append(
             Runner(
                 solver.name,
+                told_apart[k],
                 "" if isinstance(own, str) else own.engine,
                 () if refused else tuple(_sure(heat[k]) for heat in heats),
                 own if isinstance(own, str) else "",

@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 import statistics
+import textwrap
 from collections.abc import Sequence
 
 from ...problem.tolerance import Tolerance
 from .race import Race, Runner
 
 __all__ = ["card"]
+
+_WIDTH = 54  # characters that the page has room for
 
 
 def card(race: Race) -> str:
@@ -19,7 +22,7 @@ def card(race: Race) -> str:
     rules = [
         f"tolerance {_tolerance(settings.tolerance)}",
         f"limits {'on' if settings.limits else 'off'}",
-        f"at most {race.most} iterations",
+        f"at most {race.most} iteration{'s' * (race.most != 1)}",
         "no restarts",
     ]
     head = ("method", "first", "reached", "iterations", "time", "error")
@@ -30,23 +33,18 @@ def card(race: Race) -> str:
         cells = [row[0].ljust(widths[0]), *(cell.rjust(width) for cell, width in zip(row[1:], widths[1:], strict=True))]
         return "  ".join(cells).rstrip()
 
-    refused = [f"{runner.method}: {runner.refusal}" for runner in race.runners if runner.refusal]
-    return "\n".join(
-        [
-            f"pinik race: {entry.robot.name}, {entry.frame}, {what}",
-            ", ".join(rules),
-            *map(line, (head, *rows)),
-            "first: how often it arrived first; iterations and time: medians over what it reached",
-            *refused,
-        ]
-    )
+    refused = [f"{runner.called}: {runner.refusal}" for runner in race.runners if runner.refusal]
+    words = [f"pinik race: {entry.robot.name}, {entry.frame}, {what}", ", ".join(rules)]
+    meaning = "first: how often it arrived first; iterations and time: medians over what it reached"
+    paragraphs = [textwrap.fill(one, _WIDTH) for one in (*words, meaning, *refused)]
+    return "\n".join([*paragraphs[:2], *map(line, (head, *rows)), *paragraphs[2:]])
 
 
 def _row(runner: Runner, count: int) -> tuple[str, ...]:
     arrived = runner.arrived
     errors = [finish.error for finish in runner.finishes if finish.error is not None and not finish.reached]
     return (
-        runner.method,
+        runner.called,
         str(runner.wins),
         f"{len(arrived)}/{count}",
         f"{statistics.median(finish.iterations for finish in arrived):g}" if arrived else "-",
