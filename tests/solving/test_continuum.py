@@ -273,3 +273,14 @@ def test_what_the_time_limit_left_unknown_is_said(engine):
     told = branches.to_dict()
     assert told["redundancy"] is None
     assert all(branch["dimension"] is None for branch in told["branches"])
+
+
+@every_engine
+def test_a_robot_whose_limits_leave_no_joint_free_has_one_answer(engine):
+    """Its arm hangs straight, so that its Jacobian is singular."""
+    robot = load_quietly("double_pendulum_simple")
+    assert all(joint.lower == joint.upper for joint in robot.joints)
+    q = robot.neutral()
+    branches = robot.solve_all("link3", position=robot.placement("link3", q).translation, q0=q, engine=engine)
+    np.testing.assert_array_equal(branches.q, [q])
+    assert (branches.dimension.tolist(), branches.redundancy) == ([0], 0)

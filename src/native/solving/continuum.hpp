@@ -29,6 +29,7 @@ class Continuum {
 
   // An answer made as exact as Newton steps can: beside a double place errors of 1e-9 are far from it.
   Vector settled(const Vector& q) {
+    if (free_.empty()) return q;
     Vector best = q;
     double last = infinity;
     here_ = q;
