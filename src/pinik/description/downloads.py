@@ -5,7 +5,6 @@ from __future__ import annotations
 import builtins
 import importlib.util
 import os
-import warnings
 from collections.abc import Mapping
 from dataclasses import dataclass
 from importlib.machinery import ModuleSpec
@@ -105,6 +104,8 @@ def _description(name: str) -> dict[str, Any]:
     def imported(module: str, names: Any = None, local: Any = None, wanted: Any = (), level: int = 0) -> Any:
         if module == "_cache" and level == 1:
             return SimpleNamespace(clone_to_cache=cached)
+        if module == "warnings":  # that some names will mean another robot one day
+            return SimpleNamespace(warn=lambda *_, **__: None)
         return __import__(module, names, local, wanted, level)
 
     full = f"{_PACKAGE}.{name}"
@@ -118,9 +119,7 @@ def _description(name: str) -> dict[str, Any]:
         "__package__": _PACKAGE,
     }
     try:
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore", FutureWarning)  # some names will mean another robot one day
-            exec(code, variables)
+        exec(code, variables)
     except _NotCachedError:
         raise
     except Exception as error:  # some modules read the files that they expect in the cache

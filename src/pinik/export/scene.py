@@ -5,7 +5,6 @@ from __future__ import annotations
 import itertools
 import os
 import warnings
-import weakref
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
@@ -15,14 +14,13 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..checks import as_vector
-from ..description.flaw import Flaw
 from ..errors import InputError, UrdfWarning
-from ..extras import needed_by
 from ..model.home import robot_size
 from ..picture.arguments import as_configurations
 from ..picture.draw import ball_radius
 from ..picture.poses import TINTS
 from ..robot import Robot
+from ..shapes.known import known_shapes
 from ..solving.self_motion import SelfMotion
 from ..solving.solution import Solution
 from ..solving.track import Track
@@ -90,7 +88,7 @@ class Scene:
             InputError: There are none.
             MissingExtraError: trimesh is not installed.
         """
-        shapes, _ = _shapes_of(self.robot)
+        shapes, _ = known_shapes(self.robot)
         if not shapes:
             raise InputError(f"{self.robot.name} has no visual shapes that can be read", argument="shown")
         return shapes
@@ -101,7 +99,7 @@ class Scene:
         Warns:
             UrdfWarning: For each of them.
         """
-        for fault in _shapes_of(self.robot)[1]:
+        for fault in known_shapes(self.robot)[1]:
             warnings.warn(f"{self.robot.name}: {fault}", UrdfWarning, stacklevel=3)
 
     @cached_property
@@ -145,19 +143,6 @@ class Scene:
             where = self.robot.placements(shape.link, q)
             corners.append((where[:, :3, :3] @ own + where[:, :3, 3:]).swapaxes(1, 2).reshape(-1, 3))
         return np.vstack(corners)
-
-
-_SHAPES: weakref.WeakKeyDictionary[Robot, tuple[list[Shape], list[Flaw]]] = weakref.WeakKeyDictionary()
-
-
-def _shapes_of(robot: Robot) -> tuple[list[Shape], list[Flaw]]:
-    """A robot's shapes, read once, and what could not be read."""
-    if robot not in _SHAPES:
-        with needed_by("the shapes of a robot", "pictures"):
-            from ..shapes.meshes import load_shapes  # over a second to import
-
-        _SHAPES[robot] = load_shapes(robot)
-    return _SHAPES[robot]
 
 
 def scene_of(shown: Shown, q: ArrayLike | None, times: ArrayLike | None) -> Scene:

@@ -10,13 +10,14 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from ..description.flaw import Flaw
 from ..errors import UrdfWarning
-from ..extras import needed_by
 from ..model.home import robot_size
 from ..robot import Robot
+from ..shapes.known import known_shapes
 from .solids import Solid, ball, rod
 
-__all__ = ["Body", "bodies_of"]
+__all__ = ["Body", "bodies_of", "read_parts"]
 
 Array = NDArray[np.float64]
 
@@ -69,7 +70,9 @@ def bodies_of(robot: Robot, q: Array) -> list[Body]:
     Warns:
         UrdfWarning: Some shapes could not be read. Given once for each robot.
     """
-    parts = _parts(robot)
+    for fault in read_parts(robot):
+        warnings.warn(f"{robot.name}: {fault}", UrdfWarning, stacklevel=4)
+    parts = _PARTS[robot]
     if not parts:
         return list(_skeleton(robot, q))
     places = {part.link: robot.placement(part.link, q) for part in parts}
@@ -84,25 +87,21 @@ def bodies_of(robot: Robot, q: Array) -> list[Body]:
     ]
 
 
-def _parts(robot: Robot) -> list[_Part]:
-    """A robot's shapes, read once; a large robot takes seconds."""
-    if robot not in _PARTS:
-        with needed_by("a picture", "pictures"):
-            from ..shapes.meshes import load_shapes  # over a second to import
-
-        shapes, faults = load_shapes(robot)
-        for fault in faults:
-            warnings.warn(f"{robot.name}: {fault}", UrdfWarning, stacklevel=5)
-        _PARTS[robot] = [
-            _Part(
-                shape.link,
-                Solid.of(shape.mesh).moved(shape.placement[:3, :3], shape.placement[:3, 3]),
-                np.clip(shape.color[:3], 0.0, 1.0),
-                float(np.clip(shape.color[3], 0.0, 1.0)),
-            )
-            for shape in shapes
-        ]
-    return _PARTS[robot]
+def read_parts(robot: Robot) -> list[Flaw]:
+    """Read a robot's shapes, and return what could not be read; nothing if they are read already."""
+    if robot in _PARTS:
+        return []
+    shapes, faults = known_shapes(robot)
+    _PARTS[robot] = [
+        _Part(
+            shape.link,
+            Solid.of(shape.mesh).moved(shape.placement[:3, :3], shape.placement[:3, 3]),
+            np.clip(shape.color[:3], 0.0, 1.0),
+            float(np.clip(shape.color[3], 0.0, 1.0)),
+        )
+        for shape in shapes
+    ]
+    return faults
 
 
 def _skeleton(robot: Robot, q: Array) -> Iterable[Body]:

@@ -8,10 +8,8 @@ from __future__ import annotations
 
 import io
 import logging
-import warnings
 from collections import defaultdict
-from collections.abc import Iterator, Mapping, Sequence
-from contextlib import contextmanager
+from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
@@ -23,6 +21,7 @@ from numpy.typing import NDArray
 
 from ..echoes import shortened
 from ..model.robot_model import RobotModel
+from .quiet import quiet
 
 __all__ = ["SecondOpinion", "ask_yourdfpy"]
 
@@ -98,7 +97,7 @@ def ask_yourdfpy(robot: RobotModel, file: str | Path | bytes) -> SecondOpinion:
         *(_with_neutral_placements(robot, robot.random(rng)) for _ in range(RANDOM_CONFIGURATIONS)),
     ]
     try:
-        with _silenced():
+        with quiet(logging.getLogger("yourdfpy.urdf")):
             reader, mimics = _read(file if isinstance(file, bytes) else Path(file).read_bytes())
             theirs = [_their_links(reader, mimics, robot, q) for q in configurations]
     except Exception as fault:  # yourdfpy raises KeyError, TypeError, AttributeError, …
@@ -121,19 +120,6 @@ def _with_neutral_placements(robot: RobotModel, q: Array) -> Array:
     """The configuration with the angles of `q`, and with neutral floating and planar joints."""
     angles = robot.angles(q)
     return robot.configuration({name: angles[name] for name in robot.joint_names})
-
-
-@contextmanager
-def _silenced() -> Iterator[None]:
-    """Suppress what yourdfpy logs and warns about."""
-    logger = logging.getLogger("yourdfpy.urdf")
-    disabled, logger.disabled = logger.disabled, True
-    try:
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore")
-            yield
-    finally:
-        logger.disabled = disabled
 
 
 def _read(document: bytes) -> tuple[yourdfpy.URDF, dict[str, Any]]:

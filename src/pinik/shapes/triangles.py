@@ -4,9 +4,7 @@ from __future__ import annotations
 
 import functools
 import io
-import warnings
-from collections.abc import Iterable, Iterator
-from contextlib import contextmanager
+from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
 
@@ -20,6 +18,7 @@ from ..echoes import shortened
 from ..files import FileError, read_within
 from .mesh_checks import MOST_BYTES, NOT_FINITE, MeshError, checked
 from .neighbours import Neighbours
+from .quiet import quiet
 
 __all__ = ["Part", "box", "capsule", "creased", "cylinder", "read_file", "scaled", "sphere"]
 
@@ -125,7 +124,7 @@ def _meshes(data: bytes, kind: str, neighbours: Neighbours) -> list[trimesh.Trim
     materials: dict[str, Any] = {"skip_materials": True} if kind == "ply" else {}
     reader: Any = mesh_loaders[kind]
     try:
-        with _silenced():
+        with quiet(trimesh.util.log):
             read = reader(file_obj=io.BytesIO(data), file_type=kind, resolver=neighbours, **materials)
             for arrays in read.get("geometry", {"": read}).values():
                 # First, because trimesh drops what is not finite.
@@ -160,18 +159,6 @@ def _check_size(scene: trimesh.Scene) -> None:
     count = sum(counts[scene.graph[node][1]] for node in scene.graph.nodes_geometry)
     if count > MOST_TRIANGLES:
         raise MeshError(f"it has {count:,} triangles, and pinik draws at most {MOST_TRIANGLES:,}", "mesh-too-large")
-
-
-@contextmanager
-def _silenced() -> Iterator[None]:
-    """Suppress what the mesh readers log and warn about; what matters becomes an error."""
-    disabled, trimesh.util.log.disabled = trimesh.util.log.disabled, True
-    try:
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore")
-            yield
-    finally:
-        trimesh.util.log.disabled = disabled
 
 
 def _own_color(mesh: trimesh.Trimesh) -> Color | None:

@@ -53,7 +53,8 @@ def test_many_joints_can_be_searched(open_panel):
     open_joints(desk)
     rows = desk.part("joints").locator("li:visible")
     assert rows.count() > 30
-    desk.part("joint-search").fill("gripper_left")
+    desk.part("joint-search").press_sequentially("gripper_left")  # with letters that are shortcuts elsewhere
+    assert desk.part("joint-search").input_value() == "gripper_left"
     assert 0 < rows.count() < 10
     desk.part("joint-search").fill("nothing like it")
     desk.expect("joints").to_contain_text("No joint has this in its name.")

@@ -128,6 +128,20 @@ def test_the_help_lists_every_key_and_opens_and_closes_by_keys(desk):
     assert desk.state["limits"] is True, "a key behind the open help did something"
 
 
+def test_no_key_does_anything_behind_an_open_dialog(desk):
+    desk.view.send("step")
+    step = desk.until(lambda s: s["step"] > 0)["step"]
+    desk.click("picture")
+    desk.expect("picture-dialog").to_be_visible()
+    desk.part("picture-dialog").get_by_role("button").first.focus()
+    for key in ("r", "l"):
+        desk.page.keyboard.press(key)
+    desk.page.keyboard.press("Escape")
+    desk.expect("picture-dialog").to_be_hidden()
+    assert changes(desk, "1", lambda s: s["view"]) == (2, 1)
+    assert (desk.state["step"], desk.state["limits"]) == (step, True)
+
+
 def test_what_is_typed_into_an_input_is_no_command(desk):
     before = desk.agree()
     desk.part("target-x").focus()

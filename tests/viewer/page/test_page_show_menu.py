@@ -74,6 +74,15 @@ def test_the_singular_values_are_those_of_pinocchios_jacobian(open_panel, name, 
     np.testing.assert_allclose(found, wanted, atol=1e-3, rtol=5e-3)
 
 
+def test_a_removed_balls_ellipsoid_is_removed_too(open_panel):
+    desk = open_panel("lion", ("dls",), view=1, setup="robot=lion&looks=ellipsoid")
+    seen = "pinik.show.cast.instances[0]._decor._ellipsoids.group.children.length"
+    count = len(desk.state["balls"])
+    desk.shows(f"{seen} === {count}")
+    desk.view.send("remove_effector", index=0)
+    desk.shows(f"{seen} === {count - 1}")
+
+
 def test_a_click_keeps_automatic_framing_and_a_drag_ends_it(open_panel):
     desk = open_panel("arm", ("dls",))
     box = desk.page.locator("#canvas").bounding_box()

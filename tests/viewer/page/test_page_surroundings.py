@@ -31,6 +31,27 @@ def test_an_obstacle_is_put_down_resized_moved_and_removed(desk):
     desk.expect("obstacle-0-radius").to_have_count(1)
 
 
+@pytest.mark.parametrize("kind", ["box", "sphere"])
+def test_an_obstacle_is_grabbed_wherever_it_is_seen(open_stage, kind):
+    desk = open_stage("two_link", methods=("dls",), view=1)
+    size = [0.4, 0.4, 0.4] if kind == "box" else [0.2]
+    desk.view.send("add_obstacle", kind=kind, size=size, position=[1.5, 1.5, 0.5])
+    desk.shows("pinik.state.obstacles.length === 1")
+    desk.click("frame-all")
+    desk.settle()
+    at = desk.runs("pinik.show.stage.project(new pinik.show.camera.sphere.center.constructor(1.5, 1.5, 0.5))")
+    box = desk.page.locator("#canvas").bounding_box()
+    x, y = box["x"] + at["x"], box["y"] + at["y"]
+    aside = 0.8 * 0.2 / desk.runs("pinik.show.stage.pixel")
+    assert aside > 15
+    desk.page.mouse.move(x + aside, y)
+    desk.page.mouse.down()
+    desk.page.mouse.move(x + aside, y - 40, steps=4)
+    desk.page.mouse.up()
+    state = desk.until(lambda s: s["obstacles"][0]["position"] != [1.5, 1.5, 0.5])
+    assert state["obstacles"][0]["position"][2] > 0.5
+
+
 def test_what_touches_is_named_and_then_avoided(desk):
     ball = desk.state["balls"][0]["position"]
     desk.click("add-sphere")

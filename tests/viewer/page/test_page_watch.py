@@ -53,6 +53,17 @@ def test_camera_and_angles_stay_and_a_fault_is_said_over_the_last_good_robot(ope
     assert desk.runs(where) == pytest.approx(camera)
 
 
+def test_captions_of_a_robot_without_shapes_stay_with_it(open_stage, tmp_path):
+    path = tmp_path / "bare.urdf"
+    path.write_text(arm(0.4).replace(BAR, ""))
+    desk = open_stage(path, methods=("dls",), view=1, watch=True, until="window.pinik?.drawn && pinik.still")
+    path.write_text(arm(0.3).replace(BAR, ""))
+    generation = desk.state["generation"]
+    desk.until(lambda s: s["generation"] == generation + 1)
+    desk.shows(f"pinik.state.generation === {generation + 1} && pinik.show.cast.instances.length === 1")
+    assert desk.runs("pinik.show.cast.base.length") > 0, "captions stand below what a robot stands on"
+
+
 def test_a_fault_says_whether_the_robot_or_another_one_is_seen_meanwhile(open_panel, tmp_path):
     path = tmp_path / "own.urdf"
     path.write_text(arm(0.4))

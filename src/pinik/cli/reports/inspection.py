@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import logging
-import warnings
 from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
@@ -202,13 +200,7 @@ def _shapes(robot: Robot) -> tuple[int, list[Flaw]]:
         from ...shapes.meshes import load_shapes
         from ...shapes.sizes import size_flaws
 
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore")  # from the mesh readers; the flaws say what cannot be read
-        logging.disable()
-        try:
-            shapes, flaws = load_shapes(robot)
-        finally:
-            logging.disable(logging.NOTSET)
+    shapes, flaws = load_shapes(robot)
     corners = ((shape.link, shape.name, shape.mesh.vertices) for shape in shapes)
     return len(shapes), [*flaws, *size_flaws(robot, corners)]
 

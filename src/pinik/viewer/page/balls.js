@@ -10,10 +10,6 @@ export class Balls {
         this._held = new Map();
     }
 
-    get count() {
-        return this._places.length;
-    }
-
     /** Take the positions from a frame, except those of balls being dragged. */
     take(frame) {
         while (this._places.length < frame.balls) {

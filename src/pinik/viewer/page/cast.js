@@ -9,21 +9,17 @@ const BASE = 0.12; // as a fraction of the robot's size: the robot stands on wha
 
 export class Cast {
     constructor(stage, camera, theme) {
-        Object.assign(this, { _stage: stage, _camera: camera, _theme: theme, ground: null });
-        this._begin(null);
+        Object.assign(this, { _stage: stage, _camera: camera, _theme: theme });
+        Object.assign(this, { robot: null, parts: null, instances: [], ground: null, base: [] });
         camera.addEventListener("offsets", () => this._move());
         stage.onRefine = (fine) => this.instances.forEach(({ robot }) => robot.refine(fine));
-    }
-
-    _begin(robot) {
-        Object.assign(this, { robot, parts: null, instances: [], base: [] });
     }
 
     /** Show another robot, or the same one as its file has changed, which keeps its ground. */
     setRobot(robot) {
         for (const instance of this.instances) instance.dispose();
-        this._begin(robot);
-        if (!robot.keeps_view) this.ground = null;
+        Object.assign(this, { robot, parts: null, instances: [] });
+        if (!robot.keeps_view) Object.assign(this, { ground: null, base: [] });
         this._stage.recast();
     }
 

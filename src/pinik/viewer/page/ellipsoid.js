@@ -26,7 +26,7 @@ export class Ellipsoids {
     /** @param balls those of the state; `points` are the effectors' places, three numbers each */
     update(joints, balls, points) {
         while (this._meshes.length < balls.length) this._add();
-        this._meshes.length = balls.length;
+        while (this._meshes.length > balls.length) this.group.remove(this._meshes.pop());
         this.note = "";
         balls.forEach(({ frame, mode }, k) => {
             const mesh = this._meshes[k];

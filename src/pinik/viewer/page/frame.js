@@ -32,21 +32,8 @@ export class Frame {
     }
 
     figures(instance) {
-        const [status, positionError, orientationError, seconds, iterations, jointUpdates, jump, counted] = this._part(
-            instance,
-            0,
-            FIGURES,
-        );
-        return {
-            status,
-            positionError,
-            orientationError,
-            seconds,
-            iterations,
-            jointUpdates,
-            jump,
-            counted: counted > 0,
-        };
+        const [status, positionError, orientationError, seconds, , , , counted] = this._part(instance, 0, FIGURES);
+        return { status, positionError, orientationError, seconds, counted: counted > 0 };
     }
 
     /** The joints' world placements, seven numbers each. */

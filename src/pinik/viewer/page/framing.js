@@ -14,12 +14,12 @@ export function axesOf({ azimuth, elevation }) {
 }
 
 /**
- * The nearest camera position from which all points are in the picture.
+ * The nearest camera from which all points are in the picture.
  *
  * @param points Vector3s
  * @param view azimuth and elevation [rad]
  * @param lens tangents of the half angles that the points may fill: left, right, top, bottom
- * @returns position, target (at the middle depth of the points), and the distance between them
+ * @returns target (at the middle depth of the points), and the distance to it
  */
 export function fit(points, view, lens) {
     const { right, up, ahead } = axesOf(view);
@@ -40,5 +40,5 @@ export function fit(points, view, lens) {
     const place = (depth) =>
         new THREE.Vector3().addScaledVector(right, x).addScaledVector(up, y).addScaledVector(ahead, depth);
     const middle = between(near, far);
-    return { position: place(back), target: place(middle), distance: middle - back };
+    return { target: place(middle), distance: middle - back };
 }

@@ -25,8 +25,8 @@ export class GainCurve {
         this.element = make("div", { className: "gain" }, this._svg);
     }
 
-    /** @param explained the `explanation` message; returns whether the method has a gain */
-    show({ method, sigma, gains, value, columns }) {
+    /** @param explained the `explanation` message */
+    show({ method, sigma, gains, value }) {
         const gain = GAINS[method];
         this.element.hidden = !gain || !sigma.length;
         if (this.element.hidden) return;
@@ -45,7 +45,6 @@ export class GainCurve {
             ...sigma.map((s, i) => this._dot(i, s, gains[i], x, y, top)),
         ];
         this._svg.replaceChildren(...parts);
-        this._svg.dataset.columns = columns.length;
     }
 
     _top(method, sigma, gains, value) {

@@ -28,13 +28,9 @@ export class Grab {
         element.addEventListener("pointerleave", () => this._hover(null));
     }
 
-    get holding() {
-        return this._held !== null;
-    }
-
     /** The nearest copy of a ball within reach of a pointer: {k, instance}, or null. */
     _find(event) {
-        const { x, y } = this._local(event);
+        const { x, y } = this._show.stage.pointer(event);
         let found = null;
         for (const { k, instance, at, radius } of this._show.ballsOnScreen()) {
             const away = Math.hypot(at.x - x, at.y - y);
@@ -42,11 +38,6 @@ export class Grab {
             if (!at.behind && away < reach && (!found || away < found.away)) found = { k, instance, away };
         }
         return found;
-    }
-
-    _local(event) {
-        const box = this._show.stage.element.getBoundingClientRect();
-        return { x: event.clientX - box.left, y: event.clientY - box.top, width: box.width, height: box.height };
     }
 
     _down(event) {
@@ -87,23 +78,20 @@ export class Grab {
     /** Where the pointer's ray meets the plane in which the ball is dragged; in the scene's axes, z up. */
     _dragged(event) {
         const held = this._held;
-        const { camera, scene } = this._show.stage.viewer;
-        const { x, y, width, height } = this._local(event);
-        const pointer = new THREE.Vector2((2 * x) / width - 1, 1 - (2 * y) / height);
-        const inverse = scene.matrixWorld.clone().invert();
+        const { stage } = this._show;
+        const pointer = stage.pointer(event);
         if (held.shift !== event.shiftKey) {
             // The plane passes through the ball, and the ray keeps its distance from it, so nothing jumps.
             held.shift = event.shiftKey;
-            const at = this._show.stage.project(held.position);
-            held.slip = new THREE.Vector2((2 * at.x) / width - 1, 1 - (2 * at.y) / height).sub(pointer);
+            const at = stage.project(held.position);
+            held.slip = { x: at.x - pointer.x, y: at.y - pointer.y };
             const normal = event.shiftKey
                 ? new THREE.Vector3(0, 0, 1)
-                : camera.getWorldDirection(new THREE.Vector3()).transformDirection(inverse);
+                : stage.ray({ x: stage.width / 2, y: stage.height / 2 }).direction;
             held.plane = new THREE.Plane().setFromNormalAndCoplanarPoint(normal, held.position);
         }
-        const caster = new THREE.Raycaster();
-        caster.setFromCamera(pointer.add(held.slip), camera);
-        const met = caster.ray.applyMatrix4(inverse).intersectPlane(held.plane, new THREE.Vector3());
+        const through = stage.ray({ x: pointer.x + held.slip.x, y: pointer.y + held.slip.y });
+        const met = through.intersectPlane(held.plane, new THREE.Vector3());
         const limit = 4 * this._show.camera.sphere.radius;
         return met && met.distanceTo(this._show.camera.sphere.center) < limit ? met : null;
     }

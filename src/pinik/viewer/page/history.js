@@ -8,10 +8,6 @@ export class History {
         this.now = 0;
     }
 
-    clear() {
-        this.series = [];
-    }
-
     /** @param time [s] of the frame's step in the session */
     add(frame, time) {
         if (this.series.length !== frame.instances || time < this.now || frame.generation !== this._generation) {
@@ -20,10 +16,10 @@ export class History {
         }
         this.now = time;
         this.series.forEach((samples, i) => {
-            const { positionError, orientationError, seconds, counted } = frame.figures(i);
+            const { positionError, seconds, counted } = frame.figures(i);
             const last = samples[samples.length - 1];
             if (!last || last.time < time)
-                samples.push({ time, error: positionError, turn: orientationError, seconds: counted ? seconds : NaN });
+                samples.push({ time, error: positionError, seconds: counted ? seconds : NaN });
             while (samples[0].time < time - SECONDS) samples.shift();
         });
     }

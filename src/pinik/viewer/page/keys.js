@@ -15,7 +15,8 @@ export class Keys {
     }
 
     _press(event) {
-        if (event.ctrlKey || event.metaKey || event.altKey || event.isComposing || byId("help").open) return;
+        if (event.ctrlKey || event.metaKey || event.altKey || event.isComposing) return;
+        if (document.querySelector("dialog[open]")) return;
         if (isUsedBy(event.target, event.key)) return;
         const act = this._acts.get(event.key) ?? this._acts.get(event.key.toLowerCase());
         if (!act) return;
@@ -26,7 +27,7 @@ export class Keys {
 
 /** Whether the focused element needs this key itself. */
 function isUsedBy(element, key) {
-    if (element.matches("select, input[type=number], input[type=text], textarea")) return true;
+    if (element.matches("select, textarea, input:is([type=number], [type=text], [type=search])")) return true;
     if (element.matches("input[type=range]")) return key.startsWith("Arrow") || key.startsWith("Page");
     return key === " " && element.matches("button, a, summary, input");
 }

@@ -17,7 +17,7 @@ export class Look {
     /** Forget what belongs to the last robot. */
     forget() {
         this._hulls.clear();
-        for (const { geometry } of this._extras?.reach ?? []) geometry.dispose();
+        for (const { geometry } of this._clouds?.values() ?? []) geometry.dispose();
         this._clouds = new Map();
         this._extras = { collisions: null, reach: null };
     }

@@ -31,12 +31,12 @@ export class Obstacles {
     _draw() {
         for (const [instance, group] of this._groups) {
             if (this._show.cast.instances.includes(instance)) continue;
-            group.clear();
+            this._keep(group, 0);
             this._groups.delete(instance);
         }
         this._show.cast.instances.forEach((instance, i) => {
             const group = this._groups.get(instance) ?? this._addGroup(instance);
-            while (group.children.length > this._told.length) group.remove(group.children.at(-1));
+            this._keep(group, this._told.length);
             this._told.forEach(({ kind, size }, k) => {
                 const mesh = group.children[k] ?? this._addMesh(group);
                 mesh.geometry = kind === "box" ? BOX : SPHERE;
@@ -55,6 +55,14 @@ export class Obstacles {
         instance.group.add(group);
         this._groups.set(instance, group);
         return group;
+    }
+
+    /** Remove all but the first meshes of a group. */
+    _keep(group, count) {
+        for (const mesh of group.children.slice(count)) {
+            group.remove(mesh);
+            mesh.material.dispose();
+        }
     }
 
     _addMesh(group) {
@@ -80,12 +88,12 @@ export class Obstacles {
         return this._show.camera;
     }
 
-    offset(i) {
-        return this._show.cast.offset(i);
+    get cast() {
+        return this._show.cast;
     }
 
     ballInWorld(k, instance) {
-        return this.place(k).clone().add(this.offset(instance));
+        return this.place(k).clone().add(this.cast.offset(instance));
     }
 
     hold() {
@@ -105,12 +113,10 @@ export class Obstacles {
 
     ballsOnScreen() {
         if (this._show.busy) return [];
-        const { camera, controls } = this.stage.viewer;
-        const away = camera.position.distanceTo(controls.target);
-        const pixel = (2 * away * Math.tan((camera.fov * Math.PI) / 360)) / this.stage.height;
+        const { pixel } = this.stage;
         return this._show.cast.instances.flatMap((_, instance) =>
-            this._told.map(({ size }, k) => {
-                const radius = (0.5 * Math.min(...size)) / pixel - 12;
+            this._told.map(({ kind, size }, k) => {
+                const radius = (kind === "box" ? 0.5 * Math.min(...size) : size[0]) / pixel - 12;
                 return { k, instance, radius, at: this.stage.project(this.ballInWorld(k, instance)) };
             }),
         );

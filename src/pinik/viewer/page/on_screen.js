@@ -3,10 +3,7 @@
 /** Every visible copy of every ball: {k, instance, at, radius}, in pixels of the canvas. */
 export function ballsOnScreen(show) {
     if (!show.state || !show.robot) return [];
-    const { camera, controls } = show.stage.viewer;
-    const pixel =
-        (2 * camera.position.distanceTo(controls.target) * Math.tan((camera.fov * Math.PI) / 360)) / show.stage.height;
-    const radius = show.cast.ballRadius / pixel;
+    const radius = show.cast.ballRadius / show.stage.pixel;
     const copies = show.overlaid ? 1 : show.cast.instances.length; // robots in one place share one
     return Array.from({ length: Math.min(copies, show.cast.instances.length) }, (_, instance) => instance).flatMap(
         (instance) =>

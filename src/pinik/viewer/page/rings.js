@@ -43,16 +43,21 @@ export class Rings {
         const { cast, stage } = this._show;
         const ball = this._ball;
         const wanted = ball ? cast.instances.length : 0;
-        while (this._sets.length > wanted) stage.scene.remove(this._sets.pop());
+        while (this._sets.length > wanted) this._remove(this._sets.pop());
         while (this._sets.length < wanted) this._sets.push(this._make());
         if (!ball) return;
         const turn = this._held?.frame ?? (this._handlers.local() ? ball.quaternion : new THREE.Quaternion());
-        this._radius = Math.max(SIZE * cast.ballRadius, LEAST * this._show.pixel);
+        this._radius = Math.max(SIZE * cast.ballRadius, LEAST * stage.pixel);
         this._sets.forEach((set, i) => {
             set.position.copy(this._show.ballInWorld(ball.k, i));
             set.quaternion.copy(turn);
             set.scale.setScalar(this._radius);
         });
+    }
+
+    _remove(set) {
+        this._show.stage.scene.remove(set);
+        for (const { material } of set.children) material.dispose();
     }
 
     _make() {
@@ -73,12 +78,12 @@ export class Rings {
     /** The ring within reach of a pointer: {axis, instance}, or null. */
     _find(event) {
         if (!this._sets.length) return null;
-        const { x, y } = this._local(event);
+        const { x, y } = this._show.stage.pointer(event);
         const reach = REACH[event.pointerType] ?? REACH.mouse;
         let found = null;
         this._sets.forEach((set, instance) => {
             const middle = this._show.stage.project(set.position);
-            if (Math.hypot(middle.x - x, middle.y - y) < 1.4 * (this._show.cast.ballRadius / this._show.pixel)) return;
+            if (Math.hypot(middle.x - x, middle.y - y) < 1.4 * (this._show.cast.ballRadius / this._show.stage.pixel)) return;
             set.children.forEach((ring, axis) => {
                 for (let j = 0; j < POINTS; j++) {
                     const at = this._project(set, ring, (2 * Math.PI * j) / POINTS);
@@ -101,11 +106,6 @@ export class Rings {
         const box = this._show.stage.element.getBoundingClientRect();
         const { x, y } = this._project(this._sets[0], this._sets[0].children[axis], angle);
         return { x: box.left + x, y: box.top + y };
-    }
-
-    _local(event) {
-        const box = this._show.stage.element.getBoundingClientRect();
-        return { x: event.clientX - box.left, y: event.clientY - box.top, width: box.width, height: box.height };
     }
 
     _down(event) {
@@ -137,12 +137,8 @@ export class Rings {
     _angle(event) {
         const { center, normal } = this._held;
         const { stage } = this._show;
-        const { camera, scene } = stage.viewer;
-        const { x, y, width, height } = this._local(event);
-        const inverse = scene.matrixWorld.clone().invert();
-        const caster = new THREE.Raycaster();
-        caster.setFromCamera(new THREE.Vector2((2 * x) / width - 1, 1 - (2 * y) / height), camera);
-        const ray = caster.ray.applyMatrix4(inverse);
+        const { x, y } = stage.pointer(event);
+        const ray = stage.ray({ x, y });
         const first = new THREE.Vector3(...(Math.abs(normal.z) > 0.9 ? [1, 0, 0] : [0, 0, 1])).cross(normal).normalize();
         const second = normal.clone().cross(first);
         if (Math.abs(ray.direction.dot(normal)) > FLAT) {
@@ -194,7 +190,7 @@ export class Rings {
 }
 
 /** Fixed-axis roll, pitch and yaw [rad] of a quaternion: R = Rz(yaw) Ry(pitch) Rx(roll). */
-export function rollPitchYaw(quaternion) {
+function rollPitchYaw(quaternion) {
     const { x, y, z } = new THREE.Euler().setFromQuaternion(quaternion, "ZYX");
     return [x, y, z];
 }

@@ -12,11 +12,14 @@ export class Shapes {
     constructor(viewer, kind) {
         this._viewer = viewer;
         this._path = [ROOT, kind];
+        this._coarse = [];
     }
 
     /** Remove the shapes of the last robot. */
     clear() {
         this._viewer.delete_path(this._path);
+        for (const geometry of this._coarse) geometry.dispose();
+        this._coarse = [];
     }
 
     /** Execute one of meshcat's commands, a Uint8Array. */
@@ -33,7 +36,10 @@ export class Shapes {
         return message.parts.flatMap(({ link, path }) => {
             const found = [];
             this._viewer.scene_tree.find(path.split("/").filter(Boolean)).object.traverse((object) => {
-                if (object.isMesh) found.push({ link, ...levels(object.geometry), material: suited(object.material) });
+                if (!object.isMesh) return;
+                const { fine, coarse, first } = levels(object.geometry);
+                if (coarse !== fine) this._coarse.push(coarse);
+                found.push({ link, fine, coarse, first, material: suited(object.material) });
             });
             return found;
         });

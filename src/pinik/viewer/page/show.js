@@ -245,13 +245,6 @@ export class Show {
         return this.balls.places[k].position.clone().add(this.cast.offset(instance));
     }
 
-    /** The size of a pixel at what the camera looks at [m]. */
-    get pixel() {
-        const { camera, controls } = this.stage.viewer;
-        const distance = camera.position.distanceTo(controls.target);
-        return (2 * distance * Math.tan((camera.fov * Math.PI) / 360)) / this.stage.height;
-    }
-
     /** Every visible copy of every ball, as `ballsOnScreen` finds them. */
     ballsOnScreen() {
         return ballsOnScreen(this);

@@ -153,6 +153,27 @@ export class Stage {
         this.onRefine?.(fine);
     }
 
+    /** The size of a pixel at what the camera looks at [m]. */
+    get pixel() {
+        const { camera, controls } = this.viewer;
+        const distance = camera.position.distanceTo(controls.target);
+        return (2 * distance * Math.tan((camera.fov * Math.PI) / 360)) / this.height;
+    }
+
+    /** Where a pointer event is on the canvas [CSS px]. */
+    pointer({ clientX, clientY }) {
+        const { left, top } = this.element.getBoundingClientRect();
+        return { x: clientX - left, y: clientY - top };
+    }
+
+    /** The ray through a point of the canvas [CSS px], in the scene (z up). */
+    ray({ x, y }) {
+        const { camera, scene } = this.viewer;
+        const caster = new THREE.Raycaster();
+        caster.setFromCamera(new THREE.Vector2((2 * x) / this.width - 1, 1 - (2 * y) / this.height), camera);
+        return caster.ray.applyMatrix4(scene.matrixWorld.clone().invert());
+    }
+
     /** The position of a point of the scene (z up) on the canvas [CSS px]; `behind` if it is behind the camera. */
     project(point) {
         const { camera, scene } = this.viewer;

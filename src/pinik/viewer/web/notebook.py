@@ -6,16 +6,14 @@ import base64
 import html
 import json
 import secrets
-import warnings
 from collections.abc import Sequence
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ...errors import UrdfWarning
 from ...model.home import home_configuration
 from ...picture.arguments import checked_size, view_direction
-from ...picture.bodies import bodies_of
+from ...picture.bodies import bodies_of, read_parts
 from ...picture.camera import Camera, facing, look_from
 from ...picture.draw import BALL, PINNED, ball_radius, draw
 from ...picture.picture import Picture
@@ -69,25 +67,24 @@ def draw_beside(
     right = (view.axes if isinstance(view, Camera) else facing(view_direction(view)))[0]
     points = np.array([position for position, _ in balls]).reshape(-1, 3)
     radius = ball_radius(robot)
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", UrdfWarning)  # the page shows these warnings
-        one = [_vertices(robot, q) for q in configurations]
-        reach = np.vstack([*one, points - radius, points + radius])
-        offsets = np.arange(len(one))[:, None] * ((1.0 + _GAP) * np.ptp(reach @ right)) * right
-        if not isinstance(view, Camera):
-            everything = np.vstack([reach + offset for offset in offsets])
-            direction, lens = view_direction(view), _LENS / len(one)
-            view = look_from(direction, everything, aspect=width / height, lens=lens, filled=_FILLED)
-        return draw(
-            robot,
-            list(configurations),
-            offset=offsets,
-            balls=(offsets[:, None] + points).reshape(-1, 3),
-            ball_color=[PINNED if pinned else BALL for _ in configurations for _, pinned in balls],
-            view=view,
-            size=size,
-            ground=float(_vertices(robot, home_configuration(robot))[:, 2].min()),
-        )
+    read_parts(robot)  # without warnings, as the page shows what could not be read
+    one = [_vertices(robot, q) for q in configurations]
+    reach = np.vstack([*one, points - radius, points + radius])
+    offsets = np.arange(len(one))[:, None] * ((1.0 + _GAP) * np.ptp(reach @ right)) * right
+    if not isinstance(view, Camera):
+        everything = np.vstack([reach + offset for offset in offsets])
+        direction, lens = view_direction(view), _LENS / len(one)
+        view = look_from(direction, everything, aspect=width / height, lens=lens, filled=_FILLED)
+    return draw(
+        robot,
+        list(configurations),
+        offset=offsets,
+        balls=(offsets[:, None] + points).reshape(-1, 3),
+        ball_color=[PINNED if pinned else BALL for _ in configurations for _, pinned in balls],
+        view=view,
+        size=size,
+        ground=float(_vertices(robot, home_configuration(robot))[:, 2].min()),
+    )
 
 
 def _vertices(robot: Robot, q: Array) -> Array:
