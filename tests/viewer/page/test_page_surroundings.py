@@ -67,6 +67,26 @@ def test_what_touches_is_named_and_then_avoided(desk):
     assert desk.until(desk.is_followed)["balls"][0]["position"] == ball
 
 
+def test_answers_stay_although_the_ball_moved_when_they_were_asked_for(open_panel):
+    desk = open_panel("ur5", methods=("dls",), running=True, motion="curve", setup="robot=ur5&motion=curve")
+    desk.page.locator("#answers-block > summary").click()
+    desk.until(lambda s: s["step"] > 30)
+    desk.click("find-answers")
+    desk.expect("answers-words").to_contain_text("answer")
+    step = desk.state["step"]
+    desk.shows(f"pinik.state.step > {step + 30}")
+    desk.expect("answers-words").to_contain_text("answer")
+    assert desk.part("answers-list").locator("button").count() > 0
+
+
+def test_a_set_of_answers_with_more_dimensions_says_what_to_ask_for(open_panel):
+    desk = open_panel("panda", methods=("dls",))
+    desk.page.locator("#answers-block > summary").click()
+    desk.click("find-self-motion")
+    desk.expect("answers-words").to_contain_text("such as an orientation")
+    desk.expect("self-motion-slider").to_be_hidden()
+
+
 def test_an_answer_is_taken_by_its_number(desk):
     before = desk.state["instances"][0]["angles"]
     desk.click("find-answers")

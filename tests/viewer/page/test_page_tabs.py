@@ -94,6 +94,19 @@ def test_the_page_comes_back_by_itself_when_the_server_does(open_panel, two_link
     assert desk.address().startswith("robot=two_link")
 
 
+def test_a_server_that_is_started_again_with_the_same_robot_gets_the_set_up_back(open_panel):
+    desk = open_panel("two_link", methods=("dls",), running=True)
+    desk.faults.excuse("WebSocket")
+    before, address, port = settings(changed(desk)), desk.address(), desk.view.port
+    desk.view.close()
+    desk.expect("banner").to_be_visible()
+    desk.view = pinik.live(desk.view.robot, ["ccd"], port=port)
+    desk.expect("banner").to_be_hidden()
+    after = desk.until(lambda s: s["speed"] == 2 and not s["limits"])
+    assert {**settings(after), "generation": 0} == {**before, "generation": 0}
+    assert desk.address() == address
+
+
 def test_the_address_carries_everything_to_another_server(open_panel, two_link):
     desk = open_panel("lion", METHODS, root="free_flyer", view=2)
     desk.choose("method-0", "dls")

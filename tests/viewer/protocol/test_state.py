@@ -42,7 +42,7 @@ def strict(message):
 
 
 def test_hello_is_what_the_documentation_shows():
-    hello = strict(hello_message("1.2", dict(pinik.SOLVERS), ["own"]))
+    hello = strict(hello_message("1.2", dict(pinik.SOLVERS), ["own"], "5f"))
     assert keys(hello) == keys(documented("hello"))
     assert hello["robots"] == ["own", *catalog()]
     assert [m["name"] for m in hello["methods"]] == ["ccd", "jt", "pinv", "dls"]

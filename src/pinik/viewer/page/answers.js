@@ -56,7 +56,6 @@ export class Answers {
 
     /** Clear the ghosts once a ball has moved away from the place that they belong to. */
     setState(state) {
-        this._state = state;
         if (!this._asked) return;
         const there = state.balls.map(({ mode, position }) => ({ mode, position }));
         const moved =
@@ -69,9 +68,9 @@ export class Answers {
     }
 
     /** Take an `answers` message. */
-    showAll({ message, placements, distance }) {
+    showAll({ message, balls, placements, distance }) {
         this.clear();
-        this._remember(message);
+        this._remember(message, balls);
         this._ghosts.set(placements);
         const buttons = placements.map((_, index) => {
             const turn = `${Math.round((180 * distance[index]) / Math.PI)}°`;
@@ -91,9 +90,9 @@ export class Answers {
     }
 
     /** Take a `self_motion` message. */
-    showMotion({ message, placements, instance }) {
+    showMotion({ message, balls, placements, instance }) {
         this.clear();
-        this._remember(message);
+        this._remember(message, balls);
         this._ghosts.set(
             placements.filter((_, k) => k % 6 === 0),
             instance,
@@ -103,8 +102,8 @@ export class Answers {
         this._slider.value = 0;
     }
 
-    _remember(message) {
+    _remember(message, balls) {
         say(this._words, message.slice(0, 1).toUpperCase() + message.slice(1));
-        this._asked = this._state.balls.map(({ mode, position }) => ({ mode, position }));
+        this._asked = balls;
     }
 }

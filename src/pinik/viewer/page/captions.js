@@ -1,9 +1,8 @@
 /** The texts of the captions, and what they must not cover. */
 
 import { Labels } from "pinik/labels.js";
-import { called, tone, verdict } from "pinik/words.js";
+import { called, standing, tone } from "pinik/words.js";
 
-const AWAITING = "loading its shapes …";
 const BESIDE = 10; // [px] between the buttons and robots
 const WORDS = 120; // [ms] between two changes of the texts
 
@@ -51,12 +50,11 @@ export class Captions {
         const { awaiting, cast } = this._show;
         const texts = results.map(([status, position, orientation], i) => {
             const instance = state.instances[i];
-            const led = state.led?.includes(i);
-            const words = led ? "moved by hand" : verdict(status, position ?? NaN, orientation ?? NaN, state);
+            const words = standing(state, i, [status, position, orientation], awaiting);
             const note = cast.instances[i]?.note ?? "";
             const name = called(instance);
             const title = instance.distinction ? name : instance.title;
-            return { title, name, words: awaiting ? AWAITING : words, tone: tone(status), note };
+            return { title, name, words, tone: tone(status), note };
         });
         this._labels.set(texts);
         this.place();
@@ -77,9 +75,9 @@ export class Captions {
             this._labels.stack(spots, room);
             return;
         }
-        const balls = this._show.ballsOnScreen().map(({ at, radius }) => ({
-            ...{ x: at.x - radius, y: at.y - radius },
-            ...{ w: 2 * radius, h: 2 * radius },
+        const balls = this._show.ballsOnScreen().map(({ at, room: reach }) => ({
+            ...{ x: at.x - reach, y: at.y - reach },
+            ...{ w: 2 * reach, h: 2 * reach },
         }));
         this._labels.place(spots, balls, room, this._taken(), this._show.camera.captions === "beside");
     }

@@ -8,7 +8,8 @@ const AXLE = new THREE.CylinderGeometry(0.05, 0.05, 2, 12);
 const UP = new THREE.Vector3(0, 1, 0);
 const COLORS = ["#e5484d", "#3d9a50", "#3b7ddd"].map(plain);
 const [TURNS, SLIDES] = ["#f0a000", "#8a63d2"].map(plain);
-const HULL = plain("#00a3a3", { transparent: true, opacity: 0.4, depthWrite: false });
+const NEARER = { polygonOffset: true, polygonOffsetFactor: -1, polygonOffsetUnits: -4 }; // than a surface in the same place
+const HULL = plain("#00a3a3", { transparent: true, opacity: 0.4, depthWrite: false, ...NEARER });
 const WAYS = [
     [1, 0, 0],
     [0, 1, 0],

@@ -39,7 +39,7 @@ export class Explain {
         this._turns = new TurnList((turn, part) => showTurn(this.index, turn, part));
         const change = (value) => (Math.abs(value) < 1e-9 ? "0" : degrees(value));
         this._values = new Bars({ title: "Singular values: what is left of the error along each", signed: false, words: percentage });
-        this._gradient = new Bars({ title: "Gradient Jᵀe", signed: true, words: (v) => v.toPrecision(2) });
+        this._gradient = new Bars({ title: "Gradient Jᵀe", signed: true, words: (v) => (Math.abs(v) < 1e-9 ? "0" : v.toPrecision(2)) });
         this._steps = new Bars({ title: "This step", signed: true, words: change });
         this._freedom = new Bars({ title: "", signed: false, words: (v) => `${Math.round(100 * v)} %` });
         this._values.element.classList.add("with-notes");
@@ -59,7 +59,7 @@ export class Explain {
         this._pick.replaceChildren(...names.map((name, i) => {
             const button = make("button", { type: "button", dataset: { testid: `explain-${i}` } }, make("span", { className: "dot" }), name);
             button.style.setProperty("--own", `var(--instance-${i})`);
-            button.addEventListener("click", () => this.choose(i));
+            button.addEventListener("click", () => i === this.index || this.choose(i));
             return button;
         }));
         this._markPick();
@@ -107,7 +107,7 @@ export class Explain {
         }
         const [name, meaning] = VALUES[method] ?? [];
         this._value.hidden = !name || value === null;
-        this._value.replaceChildren(make("b", {}, `${name} = ${Number((value ?? 0).toPrecision(3))}${method === "jt" ? "" : " m"}`), ` ${meaning}`);
+        this._value.replaceChildren(make("b", {}, `${name} = ${rounded(value ?? 0)}${method === "jt" ? "" : " m"}`), ` ${meaning}`);
         const most = Math.max(0, ...asked.map(Math.abs));
         const clamped = largest !== null && most > largest ? ` The step is shortened: ${degrees(most)} asked, ${degrees(largest)} allowed.` : "";
         const promise = turns.length ? "" : ` (the linear model promises ${length(predicted)})`;
@@ -135,6 +135,10 @@ export class Explain {
     replay() {
         this._turns.replay();
     }
+}
+
+function rounded(value) {
+    return value > 0 && value < 1e-4 ? value.toExponential(2) : String(Number(value.toPrecision(3)));
 }
 
 function percentage(part) {

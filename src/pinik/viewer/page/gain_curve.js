@@ -43,6 +43,7 @@ export class GainCurve {
             svg("path", { d: path((s) => gain(s, value)), class: "curve" }),
             ...this._mark(method, value, x, far),
             ...sigma.map((s, i) => this._dot(i, s, gains[i], x, y, top)),
+            text(WIDTH - RIGHT, TOP + 6, "gain [1/m]", "end"),
         ];
         this._svg.replaceChildren(...parts);
     }
@@ -60,7 +61,7 @@ export class GainCurve {
         const words = ticks.map(([axis, v]) => axis === "x"
             ? text(x(v), HEIGHT - BOTTOM + 12, plain(v), "middle")
             : text(LEFT - 4, y(v) + 3.5, plain(v), "end"));
-        return [...lines, ...words, text(WIDTH - RIGHT, HEIGHT - 2, "σ [m]", "end"), text(WIDTH - RIGHT, TOP + 6, "gain [1/m]", "end")];
+        return [...lines, ...words, text(WIDTH - RIGHT, HEIGHT - 2, "σ [m]", "end")];
     }
 
     _mark(method, value, x, far) {

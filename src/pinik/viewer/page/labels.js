@@ -10,7 +10,7 @@ const SMALL = 620; // [px] and so it does in a picture that is less wide than th
 const WIDEST = 230; // [px]
 const [HEIGHT, NARROW_HEIGHT] = [44, 34]; // [px]
 const LEAST = 84; // [px]
-const WEIGHTS = { caption: 1000, ball: 4 }; // of covering other captions and balls, compared with robots
+const WEIGHTS = { caption: 1000, ball: 20 }; // of covering other captions and balls, compared with robots
 
 export class Labels {
     constructor(element) {

@@ -83,6 +83,7 @@ class Page {
     /** The handlers of the session's messages. */
     _on = {
         hello: (hello) => {
+            this._lost = this.hello && this.hello.server !== hello.server ? this.state : null;
             this.hello = hello;
             for (const part of [this.show, this.controls, this.cards, this.table, this.lookMenu, this.lectern]) part.setHello(hello);
         },
@@ -90,9 +91,11 @@ class Page {
             this.show.setRobot(robot);
             for (const part of [this.targets, this.joints, this.undo, this.surroundings]) part.setRobot(robot);
             this.answers.clear();
+            this.notices.clear();
             this.lectern.setRobot();
             this.notices.warnings(robot.warnings);
             this.robot = robot;
+            this._restore();
             this._showLoading();
         },
         state: (state) => {
@@ -100,8 +103,9 @@ class Page {
             this.undo.setState(state);
             document.title = `${state.robot} – pinik`;
             this._showSettings(state);
-            for (const part of [this.table, this.charts]) part.setState(state);
+            this.charts.setState(state);
             this.show.setState(state);
+            this.table.setState(state, this.show.awaiting);
             this.handles.setState(state);
             this.answers.setState(state);
             this._showLoading();
@@ -111,6 +115,7 @@ class Page {
         },
         shapes: (shapes) => {
             const notes = this.show.setShapes(shapes);
+            if (this.state) this.table.setState(this.state, this.show.awaiting);
             this.controls.setShapes(shapes);
             if (shapes.generation === this.robot.generation)
                 this.notices.warnings([...this.robot.warnings, ...shapes.warnings, ...notes]);
@@ -132,6 +137,12 @@ class Page {
             this.answers.fail();
         },
     };
+
+    /** Give a server that was started again, with the same robot, the set-up that the last one had. */
+    _restore() {
+        if (this._lost?.robot === this.robot.name) this.connection.send({ type: "setup", setup: this._lost.setup });
+        this._lost = null;
+    }
 
     _showSettings(state) {
         const parts = [this.controls, this.cards, this.targets, this.joints, this.surroundings, this.lookMenu];

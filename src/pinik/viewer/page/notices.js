@@ -24,6 +24,11 @@ export class Notices {
         while (toasts.children.length > (heightOf(toasts) > room ? 1 : MOST)) toasts.firstChild.remove();
     }
 
+    /** Remove the errors, which are about the last robot. */
+    clear() {
+        byId("toasts").replaceChildren();
+    }
+
     /** @param command the command that shows the present robot, or null if it was not read from a file */
     setCommand(command) {
         this._command = command;

@@ -34,7 +34,8 @@ export class PictureDialog {
 
     _tell() {
         const { width, height } = this._size;
-        say(byId("picture-size"), `${width} × ${height} pixels`);
+        const cut = Number(byId("picture-width").value) > width;
+        say(byId("picture-size"), `${width} × ${height} pixels${cut ? ", the largest that is possible" : ""}`);
     }
 
     async _save() {

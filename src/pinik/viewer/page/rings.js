@@ -1,10 +1,9 @@
 /** Three rings around the selected ball that turn the orientation that it asks for, about its own axes or the world's. */
 
 import { snapAngle } from "pinik/snap.js";
+import { ringRadius } from "pinik/on_screen.js";
 import { THREE } from "pinik/three.js";
 
-const SIZE = 5; // radius, in radii of the ball
-const LEAST = 46; // [px] radius on the screen
 const REACH = { mouse: 9, pen: 12, touch: 20 }; // [px] from a ring
 const FLAT = 0.2; // a plane seen at a smaller sine than this is edge-on
 const POINTS = 48;
@@ -47,7 +46,7 @@ export class Rings {
         while (this._sets.length < wanted) this._sets.push(this._make());
         if (!ball) return;
         const turn = this._held?.frame ?? (this._handlers.local() ? ball.quaternion : new THREE.Quaternion());
-        this._radius = Math.max(SIZE * cast.ballRadius, LEAST * stage.pixel);
+        this._radius = ringRadius(this._show);
         this._sets.forEach((set, i) => {
             set.position.copy(this._show.ballInWorld(ball.k, i));
             set.quaternion.copy(turn);

@@ -25,7 +25,7 @@ export class Show {
         this._captions = new Captions(labels, this);
         this._pointers = new Pointers(labels, this);
         this.look = new Look(labels, this);
-        this._selected = 0;
+        this.selected = 0;
         [this._near, this._busy] = [null, false];
         this._sight = new Sight(this);
         this.drawn = "";
@@ -87,7 +87,7 @@ export class Show {
     setState(state) {
         const before = this.state;
         this.state = state;
-        this._selected = Math.min(this._selected, Math.max(0, state.balls.length - 1));
+        this.selected = Math.min(this.selected, Math.max(0, state.balls.length - 1));
         this.camera.together = this.overlaid;
         this._showBalls();
         this.look.setState(state);
@@ -108,7 +108,7 @@ export class Show {
 
     _showBalls() {
         if (!this.state || !this.robot) return;
-        this.cast.setState(this.state, this._selected, this._near);
+        this.cast.setState(this.state, this.selected, this._near);
         this.stage.touch();
     }
 
@@ -205,7 +205,7 @@ export class Show {
     }
 
     select(k) {
-        this._selected = k;
+        this.selected = k;
         this._showBalls();
     }
 

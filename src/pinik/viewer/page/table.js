@@ -2,7 +2,7 @@
 
 import { byId, make, say } from "pinik/elements.js";
 import { offer, write } from "pinik/hands.js";
-import { called, count, degrees, duration, length, percent, tone, verdict } from "pinik/words.js";
+import { called, count, degrees, duration, length, percent, standing, tone } from "pinik/words.js";
 
 const ENGINES = { native: "Stepped by the compiled engine", python: "Stepped by the engine in Python" };
 const COLUMNS = [
@@ -30,11 +30,12 @@ export class Table {
         );
     }
 
-    setState(state) {
+    /** @param awaiting whether the robot's shapes are still being loaded */
+    setState(state, awaiting) {
         const { instances } = state;
         while (this._rows.length > instances.length) this._rows.pop().row.remove();
         while (this._rows.length < instances.length) this._rows.push(this._make(this._rows.length));
-        instances.forEach((instance, i) => this._show(this._rows[i], instance, state));
+        instances.forEach((instance, i) => this._show(i, instance, state, awaiting));
         write(byId("window"), state.window);
         const steps = Math.max(...instances.map(({ statistics }) => statistics.steps));
         say(byId("counted"), `${steps} step${steps === 1 ? "" : "s"}`);
@@ -63,14 +64,14 @@ export class Table {
         return { row, title, engine, ...cells };
     }
 
-    _show(row, instance, state) {
+    _show(i, instance, state, awaiting) {
+        const row = this._rows[i];
         const { statistics: mean, status, position_error, orientation_error, message, engine } = instance;
-        const orNaN = (value) => value ?? NaN;
         say(row.title, called(instance));
         row.title.title = instance.title;
         say(row.engine, engine);
         row.engine.title = ENGINES[engine];
-        say(row.status, verdict(status, orNaN(position_error), orNaN(orientation_error), state));
+        say(row.status, standing(state, i, [status, position_error, orientation_error], awaiting));
         row.status.title = message;
         row.status.dataset.tone = tone(status);
         row.row.title = `Over ${mean.steps} steps; in ${mean.busy} of them the method had something to do`;

@@ -22,7 +22,8 @@ export function degrees(radians) {
     if (radians === null || !Number.isFinite(radians)) return NOTHING;
     const value = (radians * 180) / Math.PI;
     const size = Math.abs(value);
-    return `${value.toFixed(size >= 100 ? 0 : size >= 10 ? 1 : 2)}°`;
+    const words = value.toFixed(size >= 100 ? 0 : size >= 10 ? 1 : 2);
+    return `${Number(words) === 0 ? words.replace("-", "") : words}°`;
 }
 
 /** A time [s] in a suitable unit. */
@@ -73,6 +74,13 @@ export function called({ method, distinction }) {
     return distinction ? `${method}, ${distinction.replaceAll(" = ", "\u00a0=\u00a0")}` : method;
 }
 
+/** What instance `i` does or has reached, in a few words; errors in m and rad, null or NaN if not asked for. */
+export function standing(state, i, [status, positionError, orientationError], awaiting) {
+    if (awaiting) return "loading its shapes …";
+    if (state.led?.includes(i)) return "moved by hand";
+    return verdict(status, positionError ?? NaN, orientationError ?? NaN, state);
+}
+
 /** How a result is marked, whatever its method's colour: "good", "missed" or "idle". */
 export function tone(status) {
     return status === "CONVERGED" ? "good" : status === "IDLE" ? "idle" : "missed";
@@ -90,7 +98,7 @@ function shortAngle(radians) {
 }
 
 /** An instance's result, such as "4.1 cm short"; errors in m and rad, not finite if not asked for. */
-export function verdict(status, positionError, orientationError, state) {
+function verdict(status, positionError, orientationError, state) {
     if (status === "FAILED") return "solver failed";
     if (status === "REFUSED") return "cannot do this";
     if (status === "IDLE") return Number.isFinite(positionError) ? `${shortLength(positionError)} away` : "idle";

@@ -27,18 +27,20 @@ from .thesis_walk import published_table
 __all__ = ["hello_message", "session_state"]
 
 
-def hello_message(version: str, methods: dict[str, type[Solver]], own_robots: list[str]) -> dict[str, Any]:
+def hello_message(version: str, methods: dict[str, type[Solver]], own_robots: list[str], server: str) -> dict[str, Any]:
     """Return the `hello` message: everything that a page can choose.
 
     Args:
         version: pinik's version.
         methods: Short name → class of every method.
         own_robots: Names of robots that are not in the catalogue.
+        server: A word by which pages tell this server from one that is started after it.
     """
     return {
         "type": "hello",
         "schema": 1,
         "version": version,
+        "server": server,
         "robots": [*own_robots, *catalog()],
         "roots": list(ROOTS),
         "methods": [{"name": name, "title": cls.title, "help": cls.about} for name, cls in methods.items()],

@@ -93,7 +93,7 @@ class Answers:
             self._found = list(found.q[:_MOST])
             more = f"; the nearest {_MOST} are shown" if len(found) > _MOST else ""
             words = {"message": found.message + more, "distance": found.distance[:_MOST].tolist()}
-            self._say("answers", generation, robot, self._found, words)
+            self._say("answers", generation, session, self._found, words)
 
         self._begin(session, targets, work, take)
 
@@ -120,8 +120,11 @@ class Answers:
         def take(found: SelfMotion | str) -> None:
             curve = None if isinstance(found, str) or found.dimension != 1 else found
             self._along, self._instance = list(curve.q) if curve else [], instance
-            words = {"message": str(found), "instance": instance, "closed": curve is not None and curve.closed}
-            self._say("self_motion", generation, robot, self._along, words)
+            text = str(found)
+            if not isinstance(found, str) and found.dimension > 1:
+                text += ". A set of more than one dimension has no slider: ask for more, such as an orientation"
+            words = {"message": text, "instance": instance, "closed": curve is not None and curve.closed}
+            self._say("self_motion", generation, session, self._along, words)
 
         self._begin(session, targets, work, take)
 
@@ -169,11 +172,13 @@ class Answers:
         self._later(work, given)
 
     def _say(
-        self, kind: str, generation: int, robot: Robot, found: list[NDArray[np.float64]], words: dict[str, Any]
+        self, kind: str, generation: int, session: Session, found: list[NDArray[np.float64]], words: dict[str, Any]
     ) -> None:
-        placements = JointPlacements(robot)
+        placements = JointPlacements(session.robot)
         places = [np.round(placements.at(q), _DIGITS).ravel().tolist() for q in found]
-        self._tell(json.dumps({"type": kind, "generation": generation, **words, "placements": places}))
+        balls = [{"mode": ball.mode, "position": ball.position.tolist()} for ball in session.balls]
+        message = {"type": kind, "generation": generation, **words, "balls": balls, "placements": places}
+        self._tell(json.dumps(message))
 
 
 def _put(session: Session, instance: int, known: list[NDArray[np.float64]], index: int, what: str) -> None:

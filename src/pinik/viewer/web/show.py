@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import secrets
 import time
 from collections.abc import Callable
 from typing import Any
@@ -54,7 +55,8 @@ class Show:
         self._broadcast = Broadcast(self._seats, clock)
         self._readers = Readers(self._seats.is_late)
         self._lectern = Lectern(self._readers, later, _notice)
-        self._hello = hello_message(version, session.methods, self._robots.own_names)
+        server = secrets.token_hex(8)
+        self._hello = hello_message(version, session.methods, self._robots.own_names, server)
         self._pace = Pace(clock)
         self._answers = Answers(later, self._seats.send)
         self._exhibit = Exhibit(session, 1, False, self._seats, later)
