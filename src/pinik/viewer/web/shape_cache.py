@@ -34,6 +34,7 @@ _MAKERS = [
         ("shapes", "mesh_files.py"),
         ("shapes", "meshes.py"),
         ("shapes", "neighbours.py"),
+        ("shapes", "quiet.py"),
         ("shapes", "simplified.py"),
         ("shapes", "triangles.py"),
         ("viewer/web", "scene.py"),
