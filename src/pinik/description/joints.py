@@ -189,10 +189,10 @@ def _read_limits(joint: Part, limit: Part | None, kind: str) -> tuple[float | No
     low, high = lower or 0.0, upper or 0.0
     if low > high:
         note = f" (no {absent[0]} is given, which is read as 0)" if absent else ""
-        cause = (
+        raise limit.fault(
             f"lower limit {low:g} is above upper limit {high:g}{note}; either the two are swapped, and the range is "
+            f"{high:g}..{low:g}, or one of them is wrong"
         )
-        raise limit.fault(f"{cause}{high:g}..{low:g}, or one of them is wrong")
     return lower, upper
 
 

@@ -97,8 +97,8 @@ def resolved_mimics(joints: Sequence[JointTag], flaws: list[Flaw]) -> list[Joint
         flaws.append(Flaw(f"joint {joint.name!r}", cause, code="mimic-ignored", line=joint.line, common=common))
     circle = _cycle({name: mimic.leader for name, mimic in followers.items()})
     if circle:
-        cause = "it mimics itself" if len(circle) == 1 else f"joints mimic in a circle: {_listed(circle)}"
-        raise DocumentError(cause, owner=f"joint {circle[0]!r}", line=by_name[circle[0]].line)
+        fault = "it mimics itself" if len(circle) == 1 else f"joints mimic in a circle: {_listed(circle)}"
+        raise DocumentError(fault, owner=f"joint {circle[0]!r}", line=by_name[circle[0]].line)
     resolved = _ultimate_leaders(followers, {joint.name: joint.line for joint in joints})
     return [replace(joint, mimic=resolved.get(joint.name)) for joint in joints]
 
