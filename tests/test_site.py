@@ -14,6 +14,7 @@ from collections.abc import Iterator
 from functools import partial
 from html.parser import HTMLParser
 from pathlib import Path
+from urllib.parse import quote
 
 import nbformat
 import numpy as np
@@ -419,6 +420,48 @@ def test_a_reader_searches_and_follows_without_another_host(address, scheme):
         assert page.locator("math").count() > 5
         browser.close()
     assert faults.left == []
+
+
+PASTED = [
+    "restarts must be a whole number of at least 0; got -1",
+    "r.urdf: joint 'elbow': unknown type 'prismatc'; did you mean 'prismatic'? (line 4)",
+    "joint 'elbow': lower limit 1 is above upper limit -1; either the two are swapped",
+    "joint 'j': a revolute joint needs a <limit> element (line 3)",
+    "mesh 'package://foo/a.stl': not found: no package 'foo' was found; kinematics works without it",
+    "robot.urdf: there is no such file (URDF text would begin with '<')",
+    "its child link 'hand' is not defined",
+    "collision checks need coal: pip install 'pinik[collisions]'",
+]
+ASKED = {
+    "elbow up": "howto/answers",
+    "tool is 10 cm long": "howto/targets",
+    "where can my robot reach": "howto/robots",
+    "a million targets": "howto/motion",
+    "choose_weights": "howto/answers",
+}
+
+
+def found(page, address: str, words: str) -> list[str]:
+    """The addresses that a search finds, those of one page together, best page first."""
+    page.goto(f"http://{address}/index.html?q={quote(words)}")
+    page.locator(".md-search-result__link").first.wait_for()
+    return [link.get_attribute("href") for link in page.locator(".md-search-result__link").all()]
+
+
+def test_a_pasted_message_finds_its_place_and_a_question_its_answer(address):
+    with need_browser().sync_playwright() as playwright:
+        browser = playwright.chromium.launch(executable_path=CHROMIUM, args=FLAGS)
+        page = browser.new_context(viewport={"width": 1280, "height": 800}).new_page()
+        for message in PASTED:
+            pages = list(dict.fromkeys(link.partition("?")[0] for link in found(page, address, message)))
+            assert f"http://{address}/errors.html" in pages[:3], (message, pages)
+        for question, answer in ASKED.items():
+            assert f"/{answer}.html" in found(page, address, question)[0], question
+        links = found(page, address, "a revolute joint needs a <limit> element")
+        page.goto(next(link for link in links if link.endswith("#message-a-joint-needs-a-limit-element")))
+        page.locator("#message-a-joint-needs-a-limit-element:visible").wait_for()
+        assert page.locator("h6").count() == 0
+        browser.close()
 
 
 # Animations in the site

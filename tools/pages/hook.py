@@ -10,6 +10,7 @@ from formulas import with_formulas
 from links import with_links_of_the_site
 from lists import with_wide_lists
 from live_pictures import PLAYED, filmed, with_animations
+from messages_found import as_list_again, with_messages_as_sections
 from mkdocs.config.defaults import MkDocsConfig
 from mkdocs.structure.files import File, Files
 from mkdocs.structure.pages import Page
@@ -61,5 +62,11 @@ def on_page_markdown(markdown: str, page: Page, config: MkDocsConfig, files: Fil
     return with_wide_lists(text)
 
 
-def on_page_content(html: str, **_: Any) -> str:
+def on_page_content(html: str, page: Page, **_: Any) -> str:
+    if page.file.src_uri == "errors.md":
+        html = with_messages_as_sections(html)
     return with_animations(with_formulas(html))
+
+
+def on_post_page(output: str, page: Page, **_: Any) -> str:
+    return as_list_again(output) if page.file.src_uri == "errors.md" else output
