@@ -284,6 +284,15 @@ def test_the_page_of_errors_has_the_messages_that_a_user_meets():
     assert "`no frame '…'; available:" in page
 
 
+def test_the_page_of_commands_shows_choices_as_they_are_typed_and_links_to_pages(site):
+    page = (site / "command-line.html").read_text("utf-8")
+    assert "<code>fixed|free_flyer|planar</code>" in html.unescape(page)
+    assert "\\|" not in html.unescape(page)
+    assert "docs/" not in re.sub(r"<[^>]+>", "", page)
+    for other in ("json", "scale", "tracks", "solve_all"):
+        assert re.search(rf'<(td|p)>[^<]*<a href="{other}\.html">', page), other
+
+
 def robot_of(joint: str, link: str = "") -> str:
     return f'<robot name="r"><link name="a">{link}</link><link name="b"/>{joint}</robot>'
 

@@ -4,12 +4,15 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator
+from pathlib import Path
 from typing import Any
 
 import typer
 
 from pinik.cli.app import _application
 from pinik.cli.terminal.exits import ExitStatus
+
+DOCS = Path(__file__).parents[2] / "docs"
 
 INTRODUCTION = """\
 # Command line
@@ -73,9 +76,11 @@ def _row(parameter: Any, context: Any) -> str:
     names = ", ".join(f"`{name}`" for name in [*parameter.opts, *parameter.secondary_opts] if name.startswith("-"))
     is_flag = getattr(parameter, "is_flag", False)
     metavar = parameter.metavar or ("" if is_flag else parameter.display_type(context).upper())
-    shown = f"{names} `{metavar}`" if names and not is_flag else names or f"`{metavar}`"
+    # Markdown's readers do not agree how a bar is written in a table's code.
+    value = f"<code>{metavar.replace('|', '&#124;')}</code>" if "|" in metavar else f"`{metavar}`"
+    shown = f"{names} {value}" if names and not is_flag else names or value
     words = re.sub(r"([\[\]|])", r"\\\1", _plain(getattr(parameter, "help", None) or "")).replace("\n", " ")
-    return f"| {shown.replace('|', chr(92) + '|')} | {words}{_default(parameter, is_flag)} |\n"
+    return f"| {shown} | {_linked(words)}{_default(parameter, is_flag)} |\n"
 
 
 def _default(parameter: Any, is_flag: bool) -> str:
@@ -98,7 +103,16 @@ def _paragraphs(text: str) -> Iterator[str]:
             lines = "\n".join(line.removeprefix("  ") for line in paragraph.splitlines())
             yield f"```sh\n{lines}\n```"
         else:
-            yield paragraph.strip()
+            yield _linked(paragraph.strip())
+
+
+def _linked(words: str) -> str:
+    """Links, by their titles, to the pages that help texts name by their files."""
+    return re.sub(r"docs/(\w+\.md)", lambda page: f"[{_title(page[1])}]({page[1]})", words)
+
+
+def _title(page: str) -> str:
+    return (DOCS / page).read_text("utf-8").partition("\n")[0].removeprefix("# ")
 
 
 def _plain(text: str) -> str:
