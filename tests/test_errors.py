@@ -32,6 +32,12 @@ def test_an_error_is_the_same_after_pickling_and_copying(case):
         assert (type(other), str(other), vars(other)) == (type(error), str(error), vars(error))
 
 
+def test_a_load_error_keeps_those_of_other_joints_after_pickling():
+    error = pinik.RobotLoadError("no type", element="joint 'a'", others=[ERRORS["a file"]])
+    (other,) = pickle.loads(pickle.dumps(error)).others
+    assert vars(other) == vars(ERRORS["a file"])
+
+
 def test_a_load_error_knows_its_cause():
     error = ERRORS["a file"]
     assert (error.source, error.element, error.cause) == ("a: b.urdf", "joint 'c: d'", "no root: there are two")

@@ -37,17 +37,27 @@ class RobotLoadError(PinikError, ValueError):
         source: The file (or "<text>") that was read.
         element: The faulty element, such as "joint 'elbow'", or None if the whole document is at fault.
         cause: What is wrong, without source and element.
+        others: The errors for the other joints that are faulty, too.
     """
 
-    def __init__(self, message: str, *, source: str = "<text>", element: str | None = None) -> None:
+    def __init__(
+        self,
+        message: str,
+        *,
+        source: str = "<text>",
+        element: str | None = None,
+        others: Iterable[RobotLoadError] = (),
+    ) -> None:
         self.source = source
+        self.others = tuple(others)
         self.element = None if element is None else bounded(element)
         self.cause = bounded(message)
         where = f"{source}: {element}" if element else source
         super().__init__(f"{where}: {message}")
 
     def __reduce__(self) -> tuple[Any, ...]:
-        return partial(type(self), source=self.source, element=self.element), (self.cause,)
+        given: dict[str, Any] = {"source": self.source, "element": self.element, "others": self.others}
+        return partial(type(self), **given), (self.cause,)
 
 
 class InputError(PinikError, ValueError):

@@ -17,7 +17,7 @@ WHAT_TO_DO = {
     "has its name.",
     "UnknownNameError": "Take one of the names that the message suggests; `error.valid` has all of them. If no name is "
     "similar, the message has the form `no frame '…'; available: '…', '…'`, or ends with `there are none`.",
-    "RobotLoadError": "The message names the element and its line. `pinik check FILE` shows all that is wrong at once, "
+    "RobotLoadError": "The message names the element and its line. `pinik check FILE` shows all faulty joints at once, "
     "and `pinik check FILE --fix OUT.urdf` mends what has one answer.",
     "SolveError": "The target was missed; `error.solution` has the best configuration and says why. "
     "[Missed targets](howto/answers.md#why-was-my-target-missed) has the usual causes.",
@@ -80,7 +80,7 @@ def error_page() -> str:
         text += f"\n## {name}\n\n{_meaning(name)}\n\n**What to do:** {advice}\n" + _table(found.get(name, set()))
         if name == "UrdfWarning":
             text += _flaws()
-    text += "\n## pinik check\n\n[`pinik check`](check.md) alone tells these; they keep no robot from being loaded:\n"
+    text += "\n## pinik check\n\n[`pinik check`](check.md) alone tells these:\n"
     text += _table(found[BY_CHECK])
     text += "\n## The command line\n\nA command prints its error on stderr and ends with a [status](command-line.md"
     text += "#exit-statuses) other than 0. It has all messages above, and these:\n" + _table(found[COMMAND_LINE])

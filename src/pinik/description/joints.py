@@ -14,7 +14,7 @@ from .slips import meant, misspelt
 from .vocabulary import BOUNDED_KINDS, URDF
 from .xml import DocumentError, Element
 
-__all__ = ["ENDLESS", "ONE_AXIS_KINDS", "JointTag", "Mimic", "read_joint"]
+__all__ = ["ENDLESS", "JOINT_KINDS", "ONE_AXIS_KINDS", "JointTag", "Mimic", "read_joint"]
 
 # [rad or m]: how SDF and Gazebo write that there is no limit; larger ones are read as infinite.
 ENDLESS = 1e16

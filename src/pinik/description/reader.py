@@ -7,7 +7,7 @@ shapes, so that Pinocchio reads exactly that.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Container, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -22,7 +22,7 @@ from .links import LinkTag, read_link
 from .materials import named_colors
 from .slips import meant, misspelt
 from .source import RobotSource, Source
-from .tree import check_unique, resolved_mimics, root_link
+from .tree import check_links, check_unique, resolved_mimics, root_link
 from .unknown import unknown_in_joints
 from .vocabulary import URDF
 from .writer import written
@@ -107,10 +107,15 @@ def read_content(content: bytes, source: Source) -> Description:
     try:
         return _described(read_document(content), source)
     except DocumentError as fault:
-        # The message of broken XML names line and column itself.
-        of = " of the expanded file" if source.expanded else ""
-        line = f" (line {fault.line}{of})" if fault.line and not isinstance(fault, BrokenXMLError) else ""
-        raise RobotLoadError(fault.message + line, source=source.label, element=fault.owner) from None
+        raise _load_error(fault, source) from None
+
+
+def _load_error(fault: DocumentError, source: Source) -> RobotLoadError:
+    # The message of broken XML names line and column itself.
+    of = " of the expanded file" if source.expanded else ""
+    line = f" (line {fault.line}{of})" if fault.line and not isinstance(fault, BrokenXMLError) else ""
+    others = [_load_error(other, source) for other in fault.others]
+    return RobotLoadError(fault.message + line, source=source.label, element=fault.owner, others=others)
 
 
 def _described(document: Document, source: Source) -> Description:
@@ -123,8 +128,9 @@ def _described(document: Document, source: Source) -> Description:
     check_unique(robot)
     colors = named_colors(robot, flaws, document.content)
     links = [read_link(element, colors, flaws, document.content) for element in robot.named("link")]
-    joints = [read_joint(element, flaws, document.content) for element in robot.named("joint")]
-    root = _root({element.attributes["name"]: element.line for element in robot.named("link")}, joints, robot)
+    lines = {element.attributes["name"]: element.line for element in robot.named("link")}
+    joints = _read_joints(robot, lines, flaws, document.content)
+    root = _root(lines, joints, robot)
     joints = resolved_mimics(joints, flaws)
     flaws.extend(unknown_in_joints(robot))
     name = robot.attributes.get("name")
@@ -147,24 +153,45 @@ def _described(document: Document, source: Source) -> Description:
     )
 
 
+def _read_joints(robot: Element, links: Container[str], flaws: list[Flaw], document: bytes) -> list[JointTag]:
+    """All joints; if any of them are faulty, one error that has the first fault of each."""
+    joints, faults = [], []
+    for element in robot.named("joint"):
+        try:
+            joints.append(read_joint(element, flaws, document))
+        except DocumentError as fault:
+            faults.append(fault)
+    for joint in joints:
+        try:
+            check_links(joint, links)
+        except DocumentError as fault:
+            faults.append(_with_lost_tags(fault, robot))
+    if faults:
+        first, *others = faults
+        raise DocumentError(first.message, owner=first.owner, line=first.line, others=others)
+    return joints
+
+
 def _root(links: Mapping[str, int], joints: Sequence[JointTag], robot: Element) -> str:
-    """The root link. A fault in the tree may come from a link or joint whose tag is misspelt, which is named then."""
     try:
         return root_link(links, joints)
     except DocumentError as fault:
-        known = URDF["robot"].children
-        lost = [
-            f"<{shortened(child.tag, QUOTED)}> on line {child.line}"
-            for child in robot.children
-            if child.tag not in known and meant(child.tag, known) in ("link", "joint")
-        ]
-        if not lost:
-            raise
-        more = f" and {len(lost) - _MOST_SHOWN} more" if len(lost) > _MOST_SHOWN else ""
-        cause = (
-            f"{fault.message}; URDF does not know {', '.join(lost[:_MOST_SHOWN])}{more}, and writes <link> and <joint>"
-        )
-        raise DocumentError(cause, owner=fault.owner, line=fault.line) from None
+        raise _with_lost_tags(fault, robot) from None
+
+
+def _with_lost_tags(fault: DocumentError, robot: Element) -> DocumentError:
+    """A fault in the tree, which may come from a link or joint whose tag is misspelt; that one is named then."""
+    known = URDF["robot"].children
+    lost = [
+        f"<{shortened(child.tag, QUOTED)}> on line {child.line}"
+        for child in robot.children
+        if child.tag not in known and meant(child.tag, known) in ("link", "joint")
+    ]
+    if not lost:
+        return fault
+    more = f" and {len(lost) - _MOST_SHOWN} more" if len(lost) > _MOST_SHOWN else ""
+    cause = f"{fault.message}; URDF does not know {', '.join(lost[:_MOST_SHOWN])}{more}, and writes <link> and <joint>"
+    return DocumentError(cause, owner=fault.owner, line=fault.line)
 
 
 def _nameless(robot: Element, name: str, document: bytes) -> Flaw:

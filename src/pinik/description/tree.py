@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Container, Iterable, Mapping, Sequence
 from dataclasses import replace
 
 from .flaw import Flaw
@@ -11,7 +11,7 @@ from .numbers import FARTHEST
 from .part import required_name
 from .xml import DocumentError, Element
 
-__all__ = ["check_unique", "resolved_mimics", "root_link"]
+__all__ = ["check_links", "check_unique", "resolved_mimics", "root_link"]
 
 
 def check_unique(robot: Element) -> None:
@@ -30,23 +30,31 @@ def check_unique(robot: Element) -> None:
             first[name] = element.line
 
 
+def check_links(joint: JointTag, links: Container[str]) -> None:
+    """Check that the two links of a joint are defined.
+
+    Raises:
+        DocumentError: One of them is not.
+    """
+    for role, link in (("parent", joint.parent), ("child", joint.child)):
+        if link not in links:
+            raise DocumentError(
+                f"its {role} link {link!r} is not defined", owner=f"joint {joint.name!r}", line=joint.line
+            )
+
+
 def root_link(links: Mapping[str, int], joints: Iterable[JointTag]) -> str:
     """The root: the only link without a parent.
 
     Args:
         links: The line of each link.
-        joints: The joints.
+        joints: The joints, whose links are defined.
 
     Raises:
-        DocumentError: A joint names a link that is not defined, a link has two parents, links form a cycle, or there
-            are several roots.
+        DocumentError: A link has two parents, links form a cycle, or there are several roots.
     """
     joint_above: dict[str, JointTag] = {}
     for joint in joints:
-        for role, link in (("parent", joint.parent), ("child", joint.child)):
-            if link not in links:
-                cause = f"its {role} link {link!r} is not defined"
-                raise DocumentError(cause, owner=f"joint {joint.name!r}", line=joint.line)
         other = joint_above.setdefault(joint.child, joint)
         if other is not joint:
             raise DocumentError(

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from xml.parsers import expat
 
@@ -28,12 +28,21 @@ class DocumentError(Exception):
         message: The cause.
         owner: The faulty element, such as "joint 'elbow'", or None if the whole document is at fault.
         line: Its line, from 1.
+        others: The other faults that were found.
     """
 
-    def __init__(self, message: str, *, owner: str | None = None, line: int | None = None) -> None:
+    def __init__(
+        self,
+        message: str,
+        *,
+        owner: str | None = None,
+        line: int | None = None,
+        others: Sequence[DocumentError] = (),
+    ) -> None:
         self.message = message
         self.owner = owner
         self.line = line
+        self.others = tuple(others)
         super().__init__(message)
 
 

@@ -2,6 +2,7 @@ from __future__ import annotations
 
 import pytest
 
+import pinik
 from pinik.shapes import second_opinion
 from pinik.shapes.second_opinion import ask_yourdfpy
 
@@ -57,6 +58,37 @@ def test_a_fault_names_element_and_cause_and_is_status_3(run, urdf):
     person = run("check", file)
     assert person.status == 3
     assert f"fault: joint 'j': {fault['message']}" in person.out.splitlines()
+
+
+def test_all_faulty_joints_are_named_and_loading_raises_the_first(run, urdf):
+    links = "".join(f'<link name="{name}"/>' for name in "abcd")
+    ends = '<parent link="a"/><child link="{}"/>'
+    file = urdf(
+        f'{links}<joint name="i" type="fixed">{ends.format("lost")}</joint>\n'
+        f'<joint name="j" type="prismatc">{ends.format("b")}</joint>\n'
+        f'<joint name="k" type="revolut">{ends.format("c")}</joint>\n'
+        f'<joint name="l" type="fixed">{ends.format("d")}</joint>'
+    )
+    faults = run("check", file, "--json").json["faults"]
+    assert {(fault["element"], fault["message"].partition(";")[0]) for fault in faults} == {
+        ("joint 'j'", "unknown type 'prismatc'"),
+        ("joint 'k'", "unknown type 'revolut'"),
+        ("joint 'i'", "its child link 'lost' is not defined (line 1)"),
+    }
+    with pytest.raises(pinik.RobotLoadError) as error:
+        pinik.load(file)
+    assert [(one.element, one.cause) for one in (error.value, *error.value.others)] == [
+        (fault["element"], fault["message"]) for fault in faults
+    ]
+    assert sum(line.startswith("fault: ") for line in run("check", file).out.splitlines()) == 3
+
+
+def test_many_faulty_joints_are_counted_in_a_terminal(run, urdf):
+    joints = "".join(f'<joint name="j{number}" type="fix"/>' for number in range(1100))
+    lines = run("check", urdf(LINKS + joints)).out.splitlines()
+    assert sum(line.startswith("fault: ") for line in lines) == 20
+    assert "and 1,080 more faults" in lines
+    assert len(run("check", urdf(LINKS + joints), "--json").json["faults"]) == 1000
 
 
 def test_one_of_a_kind_is_singular(run, urdf):

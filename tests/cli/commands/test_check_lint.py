@@ -132,6 +132,24 @@ class TestFix:
         assert "  mended unknown-attribute: joint 'j' (line 1)" in lines
         assert any(line.startswith("  left limit-in-degrees: it has more than one answer") for line in lines)
 
+    def test_slips_in_the_types_of_joints_are_mended(self, run, write, tmp_path):
+        joints = [
+            joint("j", "a", "b", kind="revolut"),
+            joint("k", "b", "c", kind="Continuous"),
+            joint("l", "c", "d", kind=" prismatc"),
+        ]
+        target = tmp_path / "out.urdf"
+        file = write(robot(*map(link, "abcd"), *joints))
+        answer = run("check", file, "--fix", target, "--json")
+        assert [flaw["code"] for flaw in answer.json["fix"]["mended"]] == ["loose-type"] * 3
+        kinds = {one.name: one.kind for one in pinik.load(target).description.joints}
+        assert kinds == {"j": "revolute", "k": "continuous", "l": "prismatic"}
+
+    def test_a_type_that_is_no_slip_is_left(self, run, write, tmp_path):
+        answer = run("check", write(pair(kind="ball")), "--fix", tmp_path / "out.urdf", "--json")
+        assert answer.json["fix"]["mended"] == []
+        assert answer.json["counts"] == {}
+
     def test_commas_become_spaces_and_the_copy_loads_strictly(self, run, write, tmp_path):
         loose = pair('<origin xyz="0.1, 0, 0.3" rpy="1.57, 0 0"/>', limit=LIMIT)
         target = tmp_path / "out.urdf"

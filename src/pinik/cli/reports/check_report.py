@@ -17,6 +17,7 @@ from .inspection import Inspection
 __all__ = ["emit_flaws", "emit_inspection"]
 
 _MOST_NAMED = 6
+_MOST_FAULTS = 20
 _LONGEST_NAME = 80
 _LONGEST_CAUSE = 400
 
@@ -29,9 +30,11 @@ def emit_inspection(found: Inspection) -> None:
     kinds = f" of {len(sorts)} sorts" if len(sorts) > 1 else ""
     color = "red" if not found.loads else "yellow" if found.warnings else "green"
     output.emit(output.painted(f"{found.file}: {verdict}{amount}{kinds}", color))
-    for fault in found.faults:
+    for fault in found.faults[:_MOST_FAULTS]:
         where = f"{shortened(fault.element, _LONGEST_NAME)}: " if fault.element else ""
         output.emit(output.painted("fault: ", "red") + where + shortened(fault.message, _LONGEST_CAUSE))
+    if len(found.faults) > _MOST_FAULTS:
+        output.emit(f"and {len(found.faults) - _MOST_FAULTS:,} more faults")
     if found.expanded and found.flaws:
         output.emit("the lines below are those of the URDF that xacro makes of the file")
     emit_flaws(found.flaws)

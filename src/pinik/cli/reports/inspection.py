@@ -106,7 +106,7 @@ class Inspection:
             "robot": None if self.robot is None else shortened(self.robot),
             "faults": [
                 {"element": fault.element and shortened(fault.element), "message": shortened(fault.message)}
-                for fault in self.faults
+                for fault in self.faults[:MOST_LISTED]
             ],
             "flaws": rows,
             "counts": dict(sorted(counts.items())),
@@ -145,7 +145,7 @@ def inspect(
         robot = Robot(description, package_dirs=folders, srdf=srdf, allow_outside=allow_outside)
     except RobotLoadError as error:
         label, path = (STDIN, None) if isinstance(source, bytes) else (error.source, Path(error.source))
-        faults = (Fault(error.element, error.cause),)
+        faults = tuple(Fault(one.element, one.cause) for one in (error, *error.others))
         if fetched is None:
             return Inspection(label, path, faults=faults)
         flaws, expanded = lint(fetched.document), fetched.remarks is not None

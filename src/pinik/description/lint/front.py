@@ -1,13 +1,16 @@
-"""`lint`: all flaws of a robot description that do not keep it from being read."""
+"""`lint`: all flaws of a robot description that do not keep it from being read, and slips in the types of joints."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
 
-from ..edits import renamed_element
+from ...echoes import QUOTED, shortened
+from ..edits import new_value, renamed_element
 from ..encodings import as_utf_8
 from ..flaw import Flaw
+from ..joints import JOINT_KINDS
 from ..reader import Description
+from ..slips import is_sure, meant
 from ..unknown import unknown_parts
 from ..xml import DocumentError, Element, parse
 from .inertias import inertias
@@ -48,6 +51,7 @@ def lint(document: bytes, description: Description | None = None) -> tuple[Flaw,
         *similar_names(robot),
         *materials(robot, content),
         *_second_shapes(robot),
+        *_misspelt_types(robot, content),
     ]
     if description is not None:
         flaws.extend(followers(description.joints, robot))
@@ -85,3 +89,19 @@ def _second_shapes(robot: Element) -> Iterator[Flaw]:
                         why=f"A {part.tag} has one shape; other programs take another one of them.",
                         mend=f"Write a <{part.tag}> of its own for each shape.",
                     )
+
+
+def _misspelt_types(robot: Element, content: bytes) -> Iterator[Flaw]:
+    for joint in robot.named("joint"):
+        kind = joint.attributes.get("type", "").strip()
+        near = None if kind in JOINT_KINDS else meant(kind, JOINT_KINDS)
+        if near is not None and is_sure(kind, JOINT_KINDS):
+            yield Flaw(
+                named(joint),
+                f"URDF knows no type {shortened(kind, QUOTED)!r} (near: {near!r})",
+                code="loose-type",
+                line=joint.line,
+                why="The file cannot be loaded.",
+                mend=f'Write type="{near}".',
+                edits=new_value(content, joint, "type", near),
+            )
