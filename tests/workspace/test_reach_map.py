@@ -87,8 +87,10 @@ def test_a_wrong_workspace_is_refused(posed, workspace):
 
 
 def test_down_needs_directions(ring):
-    with pytest.raises(pinik.InputError, match="directions"):
+    with pytest.raises(pinik.InputError, match=r"directions=48 \(--directions 48\)"):
         ring.workspace("down")
+    told_apart = pinik.reach(ring.machine, ring.frame, cell=0.3, samples=1000, directions=48)
+    assert told_apart.volume("down") == 0.0  # its tip lies in the plane
 
 
 @pytest.mark.parametrize(

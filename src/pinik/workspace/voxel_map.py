@@ -153,7 +153,10 @@ class VoxelMap:
         if workspace not in WORKSPACES:
             raise UnknownNameError("workspace", workspace, WORKSPACES)
         if workspace == "down" and self.orientations.directions < 2:
-            raise InputError("this map does not tell approach directions apart, so it has no workspace 'down'")
+            raise InputError(
+                "this map does not tell approach directions apart, so it has no workspace 'down'; make one with "
+                "directions=48 (--directions 48)"
+            )
         if workspace == "dexterous":
             return np.asarray(self._dense(np.asarray(reached.all(axis=1)), False))
         asked = reached[:, self.orientations.down] if workspace == "down" else reached
