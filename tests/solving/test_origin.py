@@ -112,3 +112,33 @@ def test_the_angles_of_many_solutions_are_those_of_each():
         for angle, name in zip(row, robot.joint_names, strict=True):
             assert math.isclose(math.cos(angle), math.cos(plain[name]), abs_tol=1e-9)
             assert math.isclose(angle, solution.angles[name], abs_tol=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("loaded", "given", "hint"),
+    [
+        ("panda", "default", "the pose of this name is robot.poses['default']"),
+        ("arm", "home", "the robot's poses are given as robot.poses['relaxed'], and likewise 'reach'"),
+        (ARM, "home", "this robot has no named poses"),
+    ],
+)
+def test_a_pose_that_is_given_by_its_name_is_refused_with_what_would_be_right(loaded, given, hint):
+    machine = load_quietly(loaded)
+    frame, place = machine.frame_names[-1], [0.3, 0.0, 0.3]
+    asked = [
+        lambda: machine.solve(frame, place, q0=given),
+        lambda: pinik.solve_many(machine, frame, [place], q0=given),
+        lambda: pinik.track(machine, frame, [place], q0=given),
+        lambda: machine.collisions(given),
+    ]
+    for ask in asked:
+        with pytest.raises(pinik.InputError) as refused:
+            ask()
+        assert f"got {given!r} ({hint})" in str(refused.value)
+
+
+def test_poses_that_cannot_be_read_do_not_hide_that_q0_is_no_name(tmp_path):
+    (tmp_path / "a.urdf").write_text(ARM)
+    (tmp_path / "a.srdf").write_text("<robot><group_state></robot>")
+    with pytest.raises(pinik.InputError, match=r"q0 must be a configuration.*no named poses"):
+        load_quietly(tmp_path / "a.urdf").solve("tip", [1, 0, 0], q0="home")

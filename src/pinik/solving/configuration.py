@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from ..errors import InputError
 from ..model.robot_model import RobotModel
-from .origin import as_start
+from .origin import as_start, not_by_name
 from .solution import Solution
 
 __all__ = ["Given", "as_configuration"]
@@ -31,9 +31,11 @@ def as_configuration(robot: RobotModel, given: Given | None, what: str = "q") ->
         UnknownNameError: There is no such joint.
         InputError: It is none of these, or not one of this robot.
     """
-    if given is None or isinstance(given, str):
-        words = "must be a configuration, angles by joint name, or a Solution"
-        raise InputError(f"{words}; got {given!r}", argument=what)
+    words = "must be a configuration, angles by joint name, or a Solution"
+    if given is None:
+        raise InputError(f"{words}; got None", argument=what)
+    if isinstance(given, str):
+        raise not_by_name(robot, given, what, words)
     if isinstance(given, Mapping):
         return as_start(robot.configuration(given), what)
     return as_start(robot.check_configuration(given.q if isinstance(given, Solution) else given, what), what)

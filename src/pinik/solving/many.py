@@ -254,7 +254,7 @@ class Solutions(Outcomes):
 
 def _starts(robot: RobotModel, q0: Any, count: int) -> tuple[Array, Mapping[str, float]]:
     """(the starts (1, nq) or (N, nq), checked; the angles of continuous joints that were given by their angle)."""
-    if q0 is None or isinstance(q0, Mapping) or is_nearest(q0) or as_numbers(q0, "q0").ndim != 2:
+    if q0 is None or isinstance(q0, (Mapping, str)) or as_numbers(q0, "q0").ndim != 2:
         origin = Origin.of(robot, q0)
         return origin.q[np.newaxis], origin.turned
     starts = as_start(robot.check_configurations(q0, "q0"))

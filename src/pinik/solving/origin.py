@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import math
 from collections.abc import Mapping
 from typing import Any, NamedTuple
@@ -10,14 +11,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..checks import FARTHEST
-from ..errors import InputError
+from ..errors import InputError, RobotLoadError
 from ..model.robot_model import RobotModel
 
-__all__ = ["Origin", "as_start", "is_nearest", "turned_near", "unwound", "unwound_path", "unwound_rows"]
+__all__ = ["Origin", "as_start", "is_nearest", "not_by_name", "turned_near", "unwound", "unwound_path", "unwound_rows"]
 
 Array = NDArray[np.float64]
 
 _TURN = 2.0 * math.pi
+_MOST_NAMED = 6
 _NONE: Mapping[str, float] = {}
 
 
@@ -58,10 +60,34 @@ class Origin(NamedTuple):
             return q0
         if q0 is None or is_nearest(q0):
             return cls(robot.neutral(), q0 is not None)
+        if isinstance(q0, str):
+            raise not_by_name(robot, q0, "q0", "must be a configuration, or angles by joint name")
         if isinstance(q0, Mapping):
             q = as_start(robot.configuration(q0))
             return cls(q, turned={name: float(angle) for name, angle in q0.items() if robot.joint(name).nq == 2})
         return cls(as_start(robot.check_configuration(q0, "q0")))
+
+
+def not_by_name(robot: RobotModel, given: str, what: str, needed: str) -> InputError:
+    """The error about a configuration that is given by a name; it says how the robot's poses are given.
+
+    Args:
+        robot: The robot.
+        given: The name, which may be that of a pose.
+        what: What the error message calls the argument.
+        needed: What it must be.
+    """
+    poses: tuple[str, ...] = ()
+    with contextlib.suppress(RobotLoadError):  # of poses that cannot be read
+        poses = tuple(robot.srdf_poses)
+    if given in poses:
+        hint = f"the pose of this name is robot.poses[{given!r}]"
+    elif poses:
+        hint = f"the robot's poses are given as robot.poses[{poses[0]!r}]"
+        hint += f", and likewise {', '.join(map(repr, poses[1:_MOST_NAMED]))}" if len(poses) > 1 else ""
+    else:
+        hint = "this robot has no named poses"
+    return InputError(f"{needed}; got {given!r} ({hint})", argument=what)
 
 
 def as_start(q: Array, what: str = "q0") -> Array:
