@@ -232,6 +232,7 @@ def test_formulas_are_mathml_and_no_latex_is_left(site):
     for page in [site / "methods.html", *(site / "notebooks").glob("0*.html")]:
         text = page.read_text("utf-8")
         assert "arithmatex" not in text
+        assert "\\(" not in re.sub(r"<(pre|code|script)\b.*?</\1>", "", text, flags=re.DOTALL), page
         assert not re.search(
             r"\\(?:frac|lambda|Delta|top)\b", re.sub(r"<pre>.*?</pre>|<code>.*?</code>", "", text, flags=re.DOTALL)
         ), page

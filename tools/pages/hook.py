@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Any
 
 from api_names import check_public_names
-from formulas import with_formulas
+from formulas import set_formulas_of, with_formulas
 from links import with_links_of_the_site
 from lists import with_wide_lists
 from live_pictures import PLAYED, filmed, with_animations
@@ -65,6 +65,7 @@ def on_page_markdown(markdown: str, page: Page, config: MkDocsConfig, files: Fil
 def on_page_content(html: str, page: Page, **_: Any) -> str:
     if page.file.src_uri == "errors.md":
         html = with_messages_as_sections(html)
+    set_formulas_of(page.toc)
     return with_animations(with_formulas(html))
 
 
