@@ -522,6 +522,19 @@ def test_who_wants_no_motion_gets_the_still_which_leads_to_the_animation(address
         browser.close()
 
 
+@pytest.mark.parametrize(("motion", "height"), [("reduce", 9 / 16), ("no-preference", 1.0)])
+def test_a_still_is_whole_on_a_narrow_page(address, motion, height):
+    with need_browser().sync_playwright() as playwright:
+        browser = playwright.chromium.launch(executable_path=CHROMIUM, args=FLAGS)
+        page = browser.new_context(reduced_motion=motion, viewport={"width": 390, "height": 800}).new_page()
+        page.goto(f"http://{address}/methods.html")
+        box = page.locator("a.plays").bounding_box()
+        fit = page.locator("a.plays img").evaluate("image => getComputedStyle(image).objectFit")
+        assert box["height"] / box["width"] == pytest.approx(height, abs=0.01)
+        assert fit == "contain" or motion == "reduce"
+        browser.close()
+
+
 def test_the_methods_behave_as_the_page_says():
     """Seen by plain Pinocchio in what the animation shows."""
     recording = filmed(PLAYED["methods"]).recorded()
