@@ -195,12 +195,16 @@ def test_the_api_shows_what_is_for_users_with_inherited_attributes_and_parameter
     assert re.search(r"how much steps are damped.*\(λ\): 1e-09 to 100", methods)
 
 
-def test_every_notebook_is_a_page_with_its_pictures(site):
+def test_every_notebook_is_a_page_with_its_pictures_and_can_be_downloaded(site):
     for path in NOTEBOOKS:
         page = (site / "notebooks" / f"{path.stem}.html").read_text("utf-8")
         cells = nbformat.read(path, as_version=4).cells
         shown = sum("image/png" in output.get("data", {}) for cell in cells for output in cell.get("outputs", ()))
         assert len(re.findall(rf'<img[^>]+src="{path.stem}-\d+\.png"', page)) == shown > 0
+        assert 'alt=""' not in page
+        before, _, after = page.partition(f'<a href="{path.name}" download>')
+        assert (before.count("<h1"), "<pre" in before, "<pre" in after) == (1, False, True)
+        assert (site / "notebooks" / path.name).read_bytes() == path.read_bytes()
 
 
 def test_at_least_forty_questions_are_answered_and_the_index_has_them_all():

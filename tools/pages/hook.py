@@ -50,6 +50,7 @@ def on_files(files: Files, config: MkDocsConfig) -> Files:
     for path in NOTEBOOKS:
         made[f"notebooks/{path.stem}.md"], pictures = notebook_page(path)
         made.update({f"notebooks/{name}": content for name, content in pictures.items()})
+        made[f"notebooks/{path.name}"] = path.read_bytes()
     for place, content in made.items():
         files.append(File.generated(config, place, content=content))
     return files

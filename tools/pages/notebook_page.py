@@ -39,9 +39,10 @@ def notebook_page(path: Path) -> tuple[str, dict[str, bytes]]:
             if "image/png" in data:
                 name = f"{path.stem}-{len(pictures) + 1}.png"
                 pictures[name] = base64.b64decode(data["image/png"])
-                parts.append(f"![]({name}){{ .output }}")
+                parts.append(f"![What the code above draws]({name}){{ .output }}")
             elif text := output.get("text") or data.get("text/plain"):
                 parts.append(_fenced(text.rstrip(), "text title=''"))
+    parts[0] = parts[0].replace("\n", f'\n\n<a href="{path.name}" download>Download this notebook</a>\n', 1)
     text = re.sub(r"^\$\$(.+?)\$\$", r"\n$$\1$$\n", "\n\n".join(parts), flags=re.MULTILINE | re.DOTALL)
     return text + "\n", pictures
 
