@@ -202,7 +202,9 @@ def test_building_writes_nothing_into_a_checkout_that_cannot_be_written(tmp_path
 
 def test_the_oldest_python_that_the_project_names_is_the_oldest_that_it_admits():
     named = [name.rpartition(" ")[2] for name in PROJECT["classifiers"] if ":: Python :: 3." in name]
-    assert PROJECT["requires-python"] == f">={min(named, key=lambda name: int(name.split('.')[1]))}"
+    oldest, newest = (pick(named, key=lambda name: int(name.split(".")[1])) for pick in (min, max))
+    assert PROJECT["requires-python"] == f">={oldest}"
+    assert f"pinik runs on Python {oldest} to {newest}." in (ROOT / "docs" / "versions.md").read_text("utf-8")
 
 
 def test_an_installed_pinik_loads_and_solves_its_own_robots_outside_the_checkout(installed, tmp_path):
