@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 import pinik
+import urdf_texts as urdf
 from pinik.export.live_recording import LiveRecording, RecordedBall
 from pinik.export.rerun import save_rrd
 
@@ -57,6 +58,16 @@ def test_the_angles_of_every_joint_are_series(arm, recorded):
     for name in arm.joint_names:
         values = [row[0] for row in column(batches[f"/angles/{name}"], "Scalars:scalars").to_pylist()]
         assert values == pytest.approx([arm.angles(one)[name] for one in q])
+
+
+def test_followers_have_angles_too(tmp_path):
+    box = '<visual><geometry><box size="1 1 1"/></geometry></visual>'
+    follower = urdf.joint("follows", "b", "c", '<mimic joint="leads" multiplier="-2" offset="0.5"/>')
+    parts = urdf.link("a", box), urdf.link("b"), urdf.link("c")
+    machine = pinik.load(urdf.robot(*parts, urdf.joint("leads", "a", "b"), follower))
+    save_rrd(machine, tmp_path / "follower.rrd", [machine.configuration({"leads": angle}) for angle in (0.1, 0.4)])
+    series = column(read(tmp_path / "follower.rrd")["/angles/follows"], "Scalars:scalars").to_pylist()
+    assert [row[0] for row in series] == pytest.approx([0.3, -0.3])
 
 
 def test_every_shape_is_a_mesh_with_all_its_triangles(arm, recorded):

@@ -131,6 +131,7 @@ def test_every_answer_shows_every_joint_and_its_message(panda):
         assert shown.open == []
         assert str(answer) in shown.text
         assert all(name in shown.words for name in panda.joint_names)
+        assert isinstance(answer, pinik.Solution) is ("panda_finger_joint2" in shown.words)
         assert not re.search(r"nan|inf\b", shown.text.replace(str(answer), ""))
 
 

@@ -96,7 +96,7 @@ def _record(scene: Scene, path: Path) -> None:
             label = rerun.Points3D([scene.plate], labels=[actor.title], colors=[color], show_labels=True)
             recording.log(rerun.new_entity_path([*parts, "name"]), label, static=True)
         angles = [scene.robot.angles(q) for q in actor.q]
-        for name in scene.robot.joint_names:
+        for name in angles[0]:  # followers included
             values = np.array([own[name] for own in angles])
             entity = rerun.new_entity_path(["angles", *parts[1:], name])
             recording.send_columns(entity, when, rerun.Scalars.columns(scalars=values))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 
 import numpy as np
 from numpy.typing import NDArray
@@ -23,33 +24,38 @@ _MARK = "#2f80d8"
 _AT_LIMIT = "#d97a00"
 
 
-def joint_bars(robot: RobotModel, message: str, success: bool, angles: Array) -> str:
+def joint_bars(
+    robot: RobotModel, message: str, success: bool, angles: Array, names: Sequence[str] | None = None
+) -> str:
     """A piece of HTML that needs no script and no style sheet, legible on white and on black.
 
     Args:
         robot: The robot.
         message: What came of the question, in one sentence.
         success: Whether that is good news.
-        angles: Angles (n, n_joints) [rad or m] in the order of `robot.joint_names`. With several rows each joint's bar
-            has a mark for each, of evenly chosen ones if there are many, and a band over all of them.
+        angles: Angles (n, len(names)) [rad or m]. With several rows each joint's bar has a mark for each, of evenly
+            chosen ones if there are many, and a band over all of them.
+        names: The joints, in the order of the angles; `robot.joint_names` when None.
     """
     from html import escape  # with its list of entities
 
     def cell(text: str, align: str = "left") -> str:
         return f'<td style="text-align:{align};padding:1px 8px;white-space:nowrap">{text}</td>'
 
-    shown = robot.joint_names[:_MOST_JOINTS] if len(angles) else ()
+    names = robot.joint_names if names is None else names
+    limits = dict(zip(robot.joint_names, zip(robot.lower, robot.upper, strict=True), strict=True))
+    shown = names[:_MOST_JOINTS] if len(angles) else ()
     rows = []
     for k, name in enumerate(shown):
-        values = angles[:, k]
-        low, high = float(robot.lower[k]), float(robot.upper[k])
-        unit = "m" if robot.joint(name).slides() else "rad"
+        values, joint = angles[:, k], robot.joint(name)
+        low, high = map(float, limits.get(name, (joint.lower, joint.upper)))
+        unit = "m" if joint.slides() else "rad"
         ends = dict.fromkeys((_number(values.min()), _number(values.max())))
         rows.append(
             "<tr style='background:none'>" + cell(escape(bounded(name))) + cell(_number(low), "right")
             + cell(_bar(values, low, high)) + cell(_number(high)) + cell(f"<b>{' … '.join(ends)}</b> {unit}") + "</tr>"
         )  # fmt: skip
-    more = len(robot.joint_names) - len(shown) if len(angles) else 0
+    more = len(names) - len(shown) if len(angles) else 0
     rest = f"<div>and {more} more joints</div>" if more else ""
     sign = "✓" if success else "✗"
     table = (

@@ -195,8 +195,7 @@ class Solution:
     def _repr_html_(self) -> str:
         """The message, and the joints as bars between their limits, as notebooks show them."""
         angles = self.angles
-        row = np.array([[angles[name] for name in self.robot.joint_names]])
-        return joint_bars(self.robot, self.message, self.success, row)
+        return joint_bars(self.robot, self.message, self.success, np.array([list(angles.values())]), tuple(angles))
 
     @cached_property
     def why_not_native(self) -> str | None:
