@@ -222,6 +222,20 @@ def test_at_least_forty_questions_are_answered_and_the_index_has_them_all():
     assert "(coming-from.md)" in index
 
 
+def test_a_page_is_called_in_the_navigation_what_its_heading_says():
+    named = re.findall(r"^ +- ([^:\n]+): (\S+\.md)$", (ROOT / "mkdocs.yml").read_text("utf-8"), re.MULTILINE)
+    titles = {path: title for title, path in named if title != "Home"}
+    assert len(titles) > 10
+    for path, title in titles.items():
+        assert (ROOT / "docs" / path).read_text("utf-8").startswith(f"# {title}"), path
+
+
+@pytest.mark.parametrize(("page", "picture"), [("architecture", "images/rooms.svg"), ("live", "images/live.png")])
+def test_a_picture_with_small_letters_leads_to_itself(site, page, picture):
+    text = (site / f"{page}.html").read_text("utf-8")
+    assert re.search(rf'<a href="{picture}"><img [^>]*src="{picture}"', text)
+
+
 def test_no_markdown_is_left_in_a_page(site):
     """Lists and formulas that GitHub reads and Python-Markdown does not would show their signs."""
     for page in site.rglob("*.html"):
