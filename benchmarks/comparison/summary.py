@@ -17,7 +17,7 @@ SINGLE = ("poses", "path", "still")
 
 def ratios_of(rows: Sequence[Row]) -> Grid:
     """By how many times pinik's rows are faster than each reference by median: the worst and the best robot."""
-    grid = [["times as fast, by median", *(name for name, _ in REFERENCES)]]
+    grid = [["speed-up (ratio of medians)", *(name for name, _ in REFERENCES)]]
     labels = {row.peer: row.label for row in rows if row.peer.startswith("pinik") and row.task in SINGLE and row.count}
     for task in SINGLE:
         for peer, label in labels.items():

@@ -36,8 +36,8 @@ def load(
 
     Args:
         source: A catalogue name ("arm", "lion", "panda", …: `pinik.catalog()`), a path to a URDF or xacro file, URDF
-            text, the bytes of a URDF file, an open file, which is read from where it stands to its end, or the name of
-            a robot in the cache of robot_descriptions ("ur10e_description").
+            text, the bytes of a URDF file, an open file, which is read from its current position to its end, or the
+            name of a robot in the cache of robot_descriptions ("ur10e_description").
         root: How the root link is attached to the world: "fixed", "free_flyer" or "planar".
         package_dirs: Folders that are searched first for `package://` addresses of meshes.
         mimic: Whether mimic joints follow their leaders; with False they are all free.

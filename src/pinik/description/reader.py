@@ -85,7 +85,7 @@ def read(given: RobotSource) -> Description:
 
     Args:
         given: The path of a file, URDF text (a string that begins with "<" after any white space and byte-order mark),
-            the bytes of a file, or an open file, which is read from where it stands to its end.
+            the bytes of a file, or an open file, which is read from its current position to its end.
 
     Raises:
         RobotLoadError: The file cannot be read, or is not a valid URDF; the message names the element and the cause.
