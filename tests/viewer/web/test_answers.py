@@ -151,6 +151,28 @@ def test_what_was_asked_before_another_robot_came_is_told_to_nobody(scene):
     assert scene.sent == []
 
 
+def test_of_many_requests_one_is_searched_for_at_a_time_and_the_newest_follows(scene):
+    for generation in range(1, 100):
+        scene.answers.find(scene.session, generation)
+        assert len(scene.later.waiting) == 1
+    scene.later.do()
+    assert (scene.sent, len(scene.later.waiting)) == ([], 1)
+    scene.later.do()
+    assert [told["generation"] for told in scene.sent] == [99]
+    assert scene.later.waiting == []
+
+
+def test_a_request_that_waits_when_another_robot_comes_is_dropped(scene):
+    for _ in range(2):
+        scene.answers.find(scene.session, 1)
+    scene.answers.forget()
+    scene.later.do()
+    assert (scene.sent, scene.later.waiting) == ([], [])
+    scene.answers.find(scene.session, 2)
+    scene.later.do()
+    assert [told["generation"] for told in scene.sent] == [2]
+
+
 @pytest.mark.parametrize("instance", [-1, 2, 4])
 def test_instances_are_counted(scene, instance):
     with pytest.raises(pinik.InputError, match="numbered from 0 to 1"):

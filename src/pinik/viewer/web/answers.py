@@ -34,7 +34,8 @@ class Answers:
     """Finds all answers of a session, or the self-motion of one of its instances, in another thread.
 
     The balls stop when they are asked for, since the answers hold for this place only. One of the answers, or a place
-    along the self-motion, is then taken by its number.
+    along the self-motion, is then taken by its number. One search is under way at a time, and the newest request of
+    those that come meanwhile follows it; the others are dropped.
     """
 
     def __init__(self, later: Later, tell: Callable[[str], None]) -> None:
@@ -45,6 +46,7 @@ class Answers:
             tell: Sends a message to every tab.
         """
         self._later, self._tell = later, tell
+        self._is_searching = False
         self.forget()
 
     KINDS = ("find_answers", "find_self_motion", "take_answer", "move_along")
@@ -76,6 +78,7 @@ class Answers:
         self._along: list[NDArray[np.float64]] = []
         self._instance = 0
         self._request: object = None
+        self._next: Callable[[], None] | None = None
 
     def find(self, session: Session, generation: int) -> None:
         """Find all answers to what the balls ask for, the nearest to the first instance first.
@@ -157,7 +160,14 @@ class Answers:
     ) -> None:
         request = self._request = object()
 
+        def begin() -> None:
+            self._is_searching, self._next = True, None
+            self._later(work, given)
+
         def given(result: Any) -> None:
+            self._is_searching = False
+            if self._next is not None:
+                self._next()
             if request is not self._request:
                 return
             if isinstance(result, BaseException):
@@ -169,7 +179,10 @@ class Answers:
             else:
                 take(result)
 
-        self._later(work, given)
+        if self._is_searching:
+            self._next = begin
+        else:
+            begin()
 
     def _say(
         self, kind: str, generation: int, session: Session, found: list[NDArray[np.float64]], words: dict[str, Any]
