@@ -8,6 +8,7 @@ import pytest
 import pinik
 from judge import plain_placement
 from pinik.problem.tolerance import Tolerance
+from pinik.viewer.protocol.messages import apply
 from pinik.viewer.simulation.another_robot import with_robot
 from pinik.viewer.simulation.session import Session
 from stand_ins import Clock
@@ -134,6 +135,33 @@ def test_the_figures_cover_the_last_thousand_steps_or_all(arm):
     assert with_robot(shown, arm).scores.window == "all"
     with pytest.raises(pinik.UnknownNameError, match="window of the statistics 'some'"):
         shown.scores.cover("some")
+
+
+@pytest.mark.parametrize("stop", [{"type": "run", "on": False}, {"type": "step_iteration", "instance": None}])
+def test_the_figures_show_every_step_once_the_session_stops(arm, stop):
+    shown = race(arm)
+    shown.set_motion("curve")
+    shown.running = True
+    for _ in range(25):
+        shown.tick()
+    assert counts(shown) == [0, 0]
+    apply(shown, stop)
+    assert counts(shown) == [25, 25]
+
+
+def test_the_figures_show_the_miss_that_the_session_has_paused_on(arm):
+    shown = race(arm, ["dls"])
+    shown.misses.pause = shown.running = True
+    for _ in range(5):
+        shown.tick()
+    before = shown.steps
+    shown.move_ball(0, [9.0, 0.0, 0.0])
+    while shown.running:
+        shown.tick()
+    assert shown.misses.last
+    (summary,) = shown.summaries
+    assert summary.busy >= shown.steps - before > 0
+    assert summary.efficiency < 1.0
 
 
 def test_steps_that_the_clock_ends_are_counted_apart(arm):

@@ -51,7 +51,7 @@ class Scoreboard:
     def begin_anew(self, count: int) -> None:
         """Discard all steps; there are `count` instances from now on."""
         self._columns = [Statistics() for _ in range(count)]
-        self._refresh()
+        self.refresh()
 
     def agree(self, terms: Terms, count: int) -> None:
         """Begin anew if these are other terms than before."""
@@ -72,7 +72,12 @@ class Scoreboard:
                     column.add(one.last)
         self._hidden += 1
         if at_once or self._hidden >= self._every:
-            self._refresh()
+            self.refresh()
+
+    def refresh(self) -> None:
+        """Let the summaries show every step."""
+        self._summaries = [column.summary(self.window) for column in self._columns]
+        self._hidden = 0
 
     def cover(self, window: str) -> None:
         """Choose what the summaries cover: "last" or "all".
@@ -83,7 +88,7 @@ class Scoreboard:
         if window not in WINDOWS:
             raise UnknownNameError("window of the statistics", window, WINDOWS)
         self.window = window
-        self._refresh()
+        self.refresh()
 
     @property
     def summaries(self) -> list[Summary]:
@@ -93,7 +98,3 @@ class Scoreboard:
     def newest(self, index: int, count: int) -> Sequence[StepFigures]:
         """The newest `count` steps of an instance, the newest one first."""
         return self._columns[index].newest(count)
-
-    def _refresh(self) -> None:
-        self._summaries = [column.summary(self.window) for column in self._columns]
-        self._hidden = 0

@@ -53,7 +53,6 @@ class Session:
         misses: Whether the session pauses on a miss, and the last one.
         looks: What the picture shows besides robots and balls.
         home: The pose in which the robots begin (nq,).
-        running: Whether `tick` takes a step.
         steps: The number of steps since the last reset.
         scores: The statistics of the visible instances.
         notes: What else changed with the last change of robot, in words.
@@ -87,7 +86,7 @@ class Session:
                 the view is not 1, 2 or 4.
         """
         self.robot = robot
-        self.looks, self.running = Looks(), False
+        self.looks, self._running = Looks(), False
         self.steps = 0
         self.stillness = Stillness()
         self.notes: list[str] = []
@@ -99,6 +98,17 @@ class Session:
         self.instances = Instances(robot, methods, view, self.home, clock, self.contacts)
         self.balls = Balls(robot)
         self.scores = Scoreboard(STEPS_PER_SECOND)
+
+    @property
+    def running(self) -> bool:
+        """Whether `tick` takes a step. Once it does not, the statistics cover the last step too."""
+        return self._running
+
+    @running.setter
+    def running(self, on: bool) -> None:
+        self._running = on
+        if not on:
+            self.scores.refresh()
 
     @property
     def methods(self) -> dict[str, type[Solver]]:
@@ -127,7 +137,10 @@ class Session:
 
     @property
     def summaries(self) -> list[Summary]:
-        """The statistics of the visible instances, refreshed every 60 steps, and empty once their terms changed."""
+        """The statistics of the visible instances, refreshed every 60 steps and when the session stops.
+
+        They are empty once their terms changed.
+        """
         self._agree_on_terms()
         return self.scores.summaries
 
