@@ -63,6 +63,34 @@ def test_another_robot_gets_its_own(bench):
     assert told(bench.join(), "reach") == [second]
 
 
+def test_what_a_look_needed_of_the_robot_before_is_neither_made_nor_sent(bench, monkeypatch):
+    for ready in (False, True):
+        bench.says("robot", name="two_link", root="fixed")
+        bench.show.receive(bench.tab, json.dumps({"type": "look", "name": "reach", "on": True}))
+        ((work, then),) = bench.later.waiting
+        bench.later.waiting.clear()
+        made = work() if ready else None
+        bench.says("look", name="reach", on=False)
+        bench.says("robot", name="arm", root="fixed")
+        bench.tab.sent.clear()
+        with monkeypatch.context() as patch:
+            patch.setattr("pinik.viewer.web.additions.reach_message", pytest.fail)
+            then(made if ready else work())
+        assert bench.tab.sent == []
+
+
+def test_collision_shapes_of_the_robot_before_that_wait_for_a_slow_tab_are_taken_back(monkeypatch):
+    bench = Bench(load_quietly("panda"))
+    bench.tab.sent.clear()
+    bench.says("look", name="collisions", on=True)
+    shapes = [message for message in bench.tab.sent if isinstance(message, bytes) and not message.startswith(b"PNKF")]
+    back = []
+    monkeypatch.setattr(bench.tab, "withdraw", back.extend)
+    bench.says("robot", name="two_link", root="fixed")
+    assert shapes
+    assert set(shapes) <= set(back)
+
+
 def test_collision_shapes_come_as_commands_and_their_paths():
     bench = Bench(load_quietly("panda"))
     shapes = [message for message in bench.tab.sent if isinstance(message, bytes) and not message.startswith(b"PNKF")]

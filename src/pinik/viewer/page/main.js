@@ -123,7 +123,8 @@ class Page {
             this._showLoading();
         },
         collisions: (message) => {
-            if (message.generation === this.robot.generation) this.show.look.setCollisions(message);
+            if (message.generation !== this.robot.generation) return;
+            this.show.look.setCollisions(message);
             for (const warning of message.warnings) this.notices.error(warning);
         },
         reach: (message) => {

@@ -13,6 +13,7 @@ from ..simulation.session import Session
 from .later import Later
 from .outbox import Message
 from .scene import collision_shapes
+from .seats import Seats
 
 __all__ = ["Additions"]
 
@@ -24,16 +25,17 @@ class Additions:
         messages: Those that are made already; a new tab needs all of them.
     """
 
-    def __init__(self, generation: int, later: Later, send: Callable[[Message], None]) -> None:
+    def __init__(self, generation: int, seats: Seats, later: Later) -> None:
         """Begin without any.
 
         Args:
             generation: The robot's number in messages.
+            seats: The tabs that are sent them.
             later: Makes them in another thread.
-            send: Sends one to every tab.
         """
         self._generation = generation
-        self._later, self._send = later, send
+        self._seats, self._later = seats, later
+        self._is_over = False
         self._asked: set[str] = set()
         self.messages: list[Message] = []
 
@@ -46,18 +48,25 @@ class Additions:
             for frame in session.balls.frames:
                 self._make(f"reach {frame}", partial(_reach, robot, generation, frame))
 
+    def end(self) -> None:
+        """Make and send nothing more, because another robot follows."""
+        self._is_over = True
+        self._seats.withdraw([message for message in self.messages if isinstance(message, bytes)])
+
     def _make(self, key: str, work: Callable[[], list[Message]]) -> None:
         if key not in self._asked:
             self._asked.add(key)
-            self._later(work, self._take)
+            self._later(lambda: [] if self._is_over else work(), self._take)
 
     def _take(self, made: Any) -> None:
+        if self._is_over:
+            return
         if isinstance(made, BaseException):
             made = [json.dumps({"type": "error", "message": f"this look cannot be shown: {made}"})]
         else:
             self.messages += made
         for message in made:
-            self._send(message)
+            self._seats.send(message)
 
 
 def _reach(robot: Robot, generation: int, frame: str) -> list[Message]:

@@ -44,7 +44,7 @@ class Exhibit:
         self.robot: dict[str, Any] = robot_message(session.robot, generation) | {"keeps_view": keeps_view}
         self.shapes: Shapes | None = None
         self.maker = FrameMaker(session.robot, generation)
-        self._additions = Additions(generation, later, seats.send)
+        self._additions = Additions(generation, seats, later)
         self._contacts: Contacts | None = None
         self._seats, self._later = seats, later
         self._is_over = False
@@ -66,6 +66,7 @@ class Exhibit:
     def end(self) -> None:
         """Send nothing more, because another exhibit follows."""
         self._is_over = True
+        self._additions.end()
         if self.shapes is not None:
             self._seats.withdraw(self.shapes.commands)  # else those of robot after robot would wait for a slow tab
 
