@@ -40,6 +40,13 @@ def test_the_newest_request_wins(loader, later, order):
     assert loader.loading is None
 
 
+def test_a_robot_that_is_no_longer_wanted_does_not_arrive(loader, later):
+    loader.load("arm", "fixed", pytest.fail)
+    loader.cancel()
+    assert loader.loading is None
+    later.do_all()
+
+
 def test_an_unknown_robot_is_refused_before_anything_is_loaded(loader, later):
     with pytest.raises(pinik.UnknownNameError):
         loader.load("armm", "fixed", pytest.fail)

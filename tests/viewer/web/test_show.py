@@ -407,6 +407,19 @@ def test_the_newest_of_two_requests_wins(stage, first, second, order):
     assert stage.show.session.robot.root == second[1]
 
 
+@pytest.mark.parametrize(
+    ("newer", "shown"), [("robot=two_link&root=fixed&view=1", "two_link"), ("view=1", "arm")], ids=["whole", "a part"]
+)
+def test_a_newer_set_up_of_the_robot_on_show_keeps_it(stage, newer, shown):
+    tab = stage.join()
+    stage.later.do_all()
+    stage.says(tab, "robot", name="arm", root="fixed")
+    stage.says(tab, "setup", setup=newer)
+    assert stage.show.state()["loading"] == (None if shown == "two_link" else "arm")
+    stage.later.do_all()
+    assert (stage.show.session.robot.name, stage.show.session.view) == (shown, 1)
+
+
 def test_a_robot_that_cannot_be_loaded_leaves_the_old_one_and_says_why(stage):
     tab, other = stage.join(), stage.join()
     stage.later.do_all()

@@ -55,3 +55,8 @@ class RobotLoader:
             then(result)
 
         self._later(work, take)
+
+    def cancel(self) -> None:
+        """Drop the robot that is being loaded, because something newer was asked for."""
+        self.loading = None
+        self._request += 1

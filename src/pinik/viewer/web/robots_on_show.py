@@ -74,6 +74,10 @@ class RobotsOnShow:
 
         self._loader.load(name, root, take)
 
+    def stay(self) -> None:
+        """Keep the robot on show, whatever is being loaded."""
+        self._loader.cancel()
+
     def look_at_files(self, then: Take, fault: Callable[[], None]) -> None:
         """Look at the watched files; if they have changed, call `then` as `load` does, or `fault` if one is faulty."""
 

@@ -241,6 +241,8 @@ class Show:
         root = setup.get("root", "fixed" if "robot" in setup else robot.root)
         if (name, root) == (robot.name, robot.root):
             self._broadcast.state_due = True
+            if "robot" in setup:  # a part of a set-up asks for no robot
+                self._robots.stay()
             self._change(lambda session: apply_setup(session, setup))
         else:
             self._load(name, root, setup)
