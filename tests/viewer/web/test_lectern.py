@@ -175,6 +175,22 @@ def test_a_lesson_begins_anew_even_if_its_scene_is_on_show(hall):
     }
 
 
+def test_a_lesson_of_another_robot_leaves_the_one_on_show_as_it_is_until_that_is_there(hall):
+    tab = hall.join()
+    hall.says(tab, "motion", motion="curve")
+    hall.says(tab, "run", on=True)
+    hall.tick(20, tab)
+    before = write_setup(hall.session), [one.q.tolist() for one in hall.session.instances], hall.session.steps
+    hall.says(tab, "lesson", name="two-bones")
+    after = write_setup(hall.session), [one.q.tolist() for one in hall.session.instances], hall.session.steps
+    assert after == before
+    on = hall.session.balls[0].position
+    hall.session.step()
+    assert np.linalg.norm(hall.session.balls[0].position - on) < 0.05  # the lap goes on
+    hall.later.do_all()
+    assert (hall.session.robot.name, hall.session.steps, hall.session.running) == ("two_link", 0, True)
+
+
 def test_a_comparison_begins_where_the_curve_crosses_itself(hall):
     tab = hall.join()
     hall.says(tab, "comparison", number="1", preset="thesis")

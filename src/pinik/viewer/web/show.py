@@ -191,10 +191,7 @@ class Show:
             case "setup":
                 self._set_up(read_setup(checked("setup", message, {"setup": any_text})["setup"]))
             case "lesson" | "comparison":
-                setup, phase = scene_of(message, self.session)
-                self._change(Session.reset)
-                self._set_up(setup)
-                self.session.motion.start_at(phase)
+                self._set_up(*scene_of(message, self.session))
             case kind if kind in self._answers.KINDS:
                 self._broadcast.state_due = True
                 self._change(lambda session: self._answers.receive(message, session, self._exhibit.generation))
@@ -235,7 +232,8 @@ class Show:
         """Return what moves the balls."""
         return self.session.motion.kind, self.session.leading.among(self.session.balls.targets)
 
-    def _set_up(self, setup: Setup) -> None:
+    def _set_up(self, setup: Setup, phase: float | None = None) -> None:
+        """Apply a set-up. A scene, which has a phase of its curve's lap, begins anew there."""
         robot = self.session.robot
         name = setup.get("robot", robot.name)
         root = setup.get("root", "fixed" if "robot" in setup else robot.root)
@@ -243,9 +241,9 @@ class Show:
             self._broadcast.state_due = True
             if "robot" in setup:  # a part of a set-up asks for no robot
                 self._robots.stay()
-            self._change(lambda session: apply_setup(session, setup))
+            self._change(lambda session: _apply(session, setup, phase))
         else:
-            self._load(name, root, setup)
+            self._load(name, root, setup)  # its session begins anew as it is, and at the beginning of a lap
 
     def _load(self, name: str, root: str, setup: Setup) -> None:
         self._robots.load(name, root, setup, self._take_session)
@@ -283,6 +281,14 @@ class Show:
         ]
         solvers = tuple(instance.solver for instance in self.session.seen)
         return LiveRecording(self.session.robot, solvers, self.recording.times, self.recording.q, tuple(balls))
+
+
+def _apply(session: Session, setup: Setup, phase: float | None) -> None:
+    if phase is not None:
+        session.reset()
+    apply_setup(session, setup)
+    if phase is not None:
+        session.motion.start_at(phase)
 
 
 def _notice(words: str) -> str:
