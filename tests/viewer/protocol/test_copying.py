@@ -8,6 +8,7 @@ import subprocess
 import sys
 import xml.etree.ElementTree as ET
 from pathlib import Path
+from xml.sax.saxutils import escape
 
 import numpy as np
 import pytest
@@ -19,6 +20,7 @@ from pinik.viewer.simulation.by_hand import set_angles
 from pinik.viewer.simulation.session import Session
 from robots import load_quietly
 from stand_ins import Clock
+from urdf_texts import joint, link, robot
 
 PINIK = str(Path(sys.executable).with_name("pinik"))
 
@@ -69,9 +71,9 @@ def test_the_question_gives_the_same_answer_in_python_and_on_the_command_line(go
 def test_limits_own_files_and_free_roots_are_in_the_text(tmp_path):
     here = tmp_path / "it's a robot.urdf"
     plain = ET.parse(load_quietly("two_link").description.path)
-    for link in plain.getroot().findall("link"):
-        for shape in [*link.findall("visual"), *link.findall("collision")]:
-            link.remove(shape)
+    for tag in plain.getroot().findall("link"):
+        for shape in [*tag.findall("visual"), *tag.findall("collision")]:
+            tag.remove(shape)
     plain.write(here)
     shown = Session(pinik.load(here), ["pinv"], clock=Clock())
     shown.change_settings(limits=False)
@@ -98,6 +100,20 @@ def test_the_pose_comes_back_from_each_of_its_forms():
     for form in ("pose.json", "pose.yaml"):
         np.testing.assert_allclose(tiago.configuration(read_angles(tiago, copied[form])), q, atol=1e-12)
     np.testing.assert_allclose(run_command(copied["pose.sh"])["q"], q, atol=1e-12)
+
+
+NAMES = ["no", "on", "joint é 1", "joint #2", 'say "hi": 3', "back\\slash", "1e3", "~", "\u2028 line"]
+
+
+def test_yaml_comes_back_whatever_the_joints_are_called():
+    chain = [link(f"link{k}") for k in range(len(NAMES) + 1)]
+    hinges = [joint(escape(name, {'"': "&quot;"}), f"link{k}", f"link{k + 1}") for k, name in enumerate(NAMES)]
+    odd = pinik.load(robot(*chain, *hinges))
+    assert list(odd.joint_names) == NAMES
+    shown = Session(odd, ["dls"], clock=Clock())
+    angles = {name: 0.01 * k for k, name in enumerate(NAMES)}
+    set_angles(shown, None, angles)
+    assert read_angles(odd, texts(shown)["pose.yaml"]) == pytest.approx(angles)
 
 
 def test_without_balls_there_is_no_question_and_only_visible_instances_have_text(arm):

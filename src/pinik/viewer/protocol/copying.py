@@ -123,5 +123,5 @@ def _pose_command(robot: Robot, angles: dict[str, float]) -> str:
 
 
 def _yaml(name: str) -> str:
-    """A name as a YAML key: in quotes unless it consists of letters, digits and the like."""
-    return name if name.replace("_", "a").isalnum() and not name[0].isdigit() else json.dumps(name)
+    """A name as a YAML key, in quotes because `no` would be a truth value."""
+    return json.dumps(name, ensure_ascii=False)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import contextlib
+import json
 import re
 from collections.abc import Mapping
 from typing import Any
@@ -19,6 +21,7 @@ _LONGEST = 20_000
 _MOST_JOINTS = 1000
 _FORMS = "numbers in the order of the joints, JSON, or YAML with one joint: value in a line"
 _NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?")
+_COMMENT = re.compile(r'("(?:[^"\\]|\\.)*")|(?:^|\s)#.*')  # or a name in quotes, which may contain a #
 _WRAPPERS = ("angles", "positions", "joint_positions", "joints", "q0", "solution", "pose")
 """Names under which programs put the angles of joints."""
 
@@ -100,8 +103,8 @@ def _from_lines(robot: Robot, text: str) -> dict[str, Any]:
     angles: dict[str, Any] = {}
     lists: dict[str, list[str]] = {}
     current = ""
-    for number, line in enumerate(text.splitlines(), 1):
-        words = re.sub(r"(^|\s)#.*", "", line).strip()
+    for number, line in enumerate(text.split("\n"), 1):
+        words = _COMMENT.sub(lambda found: found[1] or "", line).strip()
         if not words or words in ("---", "..."):
             continue
         if words.startswith("- ") and current:
@@ -131,5 +134,9 @@ def _joint_state(lists: Mapping[str, list[str]]) -> dict[str, Any]:
 
 
 def _unquoted(text: str) -> str:
+    """A name without its quotes; double ones are those of JSON, as YAML's are."""
     text = text.strip()
+    if text[:1] == '"':
+        with contextlib.suppress(ValueError):
+            return str(json.loads(text))
     return text[1:-1] if len(text) > 1 and text[0] == text[-1] and text[0] in "'\"" else text
