@@ -11,11 +11,12 @@ from pathlib import Path
 from xml.sax.saxutils import escape
 
 import numpy as np
+import pinocchio
 import pytest
 
 import pinik
 from pinik.viewer.protocol.copying import texts_to_copy
-from pinik.viewer.protocol.pasting import read_angles
+from pinik.viewer.protocol.pasting import paste_angles, read_angles
 from pinik.viewer.simulation.by_hand import set_angles
 from pinik.viewer.simulation.session import Session
 from robots import load_quietly
@@ -86,9 +87,28 @@ def test_limits_own_files_and_free_roots_are_in_the_text(tmp_path):
     walking = Session(lion, ["dls"], clock=Clock())
     walking.move_ball(0, walking.balls[0].position + np.array([0.1, 0.0, 0.1]))
     walking.step()
-    names = run_python(texts(walking)["pose.py"])
-    np.testing.assert_allclose(names["q"], walking.instances[0].q, atol=1e-9)
-    assert "# the root starts where it is neutral" in texts(walking)["question.sh"]
+    copied = texts(walking)
+    np.testing.assert_allclose(run_python(copied["pose.py"])["q"], walking.instances[0].q, atol=1e-9)
+    for form in ("question.sh", "pose.sh", "pose.yaml"):
+        assert copied[form].startswith('# left out here: the placement of "root_joint", which the Python has\n')
+    assert run_command(copied["pose.sh"])["joint_placements"]["root_joint"] == np.eye(4).tolist()
+    assert "#" not in "".join(copied[form] for form in ("pose.py", "pose.json", "question.py"))
+
+
+@pytest.mark.parametrize("root", ["free_flyer", "planar"])
+def test_a_free_root_comes_back_with_the_json_and_stays_where_it_is_with_the_yaml(root):
+    arm = load_quietly("arm", root=root)
+    shown = Session(arm, ["dls"], clock=Clock())
+    moved = arm.random(np.random.default_rng(3))
+    shown.instances[0].put(moved)
+    copied = texts(shown)
+    for form, pose in (("pose.json", moved), ("pose.yaml", arm.configuration(arm.angles(moved)))):
+        other = Session(arm, ["dls", "ccd"], clock=Clock())
+        other.instances[0].put(arm.neutral())
+        paste_angles(other, None, copied[form])
+        for one in other.seen:
+            distance = pinocchio.distance(arm.model, one.q, pose)
+            np.testing.assert_allclose(distance, 0.0, atol=1e-7)
 
 
 def test_the_pose_comes_back_from_each_of_its_forms():

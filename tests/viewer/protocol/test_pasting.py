@@ -66,6 +66,11 @@ def test_the_json_of_a_solution_can_be_pasted():
         ("1 2 3", r"panda has 8 joints that can be set \(panda_joint1, .*got 3 numbers"),
         ('{"angles": [0.1, 0.2]}', "panda has 8 joints that can be set .*got 2 numbers"),
         ('{"panda_joint1": 0.1', "begins like JSON, but is not"),
+        ('{"angles": {"panda_joint1": 0.1}, "joint_placements": 3}', "joint_placements must be an object"),
+        (
+            '{"joint_placements": {"root_joint": [1, 2]}}',
+            "the placement of joint 'root_joint' must be .*homogeneous matrix",
+        ),
         ("panda_joint1 = 0.1", "line 1 of the pasted text must be joint: value; got 'panda_joint1 = 0.1'"),
         ("panda_joint1: 0.1\n\npanda_joint2: fast", "line 3: joint 'panda_joint2' must have a number; got 'fast'"),
         ("panda_joint1: 0.1\npanda_joint1: 0.2", "line 2 .* sets joint 'panda_joint1' a second time"),

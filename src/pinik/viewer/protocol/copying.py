@@ -35,9 +35,9 @@ def texts_to_copy(session: Session, instance: int) -> list[dict[str, str]]:
     angles = {name: float(robot.angles(q)[name]) for name in robot.joint_names}
     pose = [
         ("pose.py", "The pose as Python", _loaded(robot) + _configuration("q", robot, q, angles)),
-        ("pose.sh", "The pose as a command", _pose_command(robot, angles)),
+        ("pose.sh", "The pose as a command", _left_out(robot, q) + _pose_command(robot, angles)),
         ("pose.json", "The pose as JSON", json.dumps({"angles": angles, **_root(robot, q)}, indent=2) + "\n"),
-        ("pose.yaml", "The pose as YAML", "".join(f"{_yaml(name)}: {angle!r}\n" for name, angle in angles.items())),
+        ("pose.yaml", "The pose as YAML", _left_out(robot, q) + _pose_yaml(angles)),
     ]
     question = []
     if session.balls.targets:
@@ -111,7 +111,7 @@ def _command(session: Session, instance: int, angles: dict[str, float]) -> str:
     for joint, angle in angles.items():
         words += ["--start", f"{joint}={angle!r}"]
     targets = json.dumps([target.to_dict() for target in session.balls.targets])
-    note = "" if session.robot.root == "fixed" else "# the root starts where it is neutral; the Python starts it here\n"
+    note = _left_out(session.robot, session.instances[instance].q)
     return f"{note}{shlex.join(words)} <<'END'\n{targets}\nEND\n"
 
 
@@ -122,6 +122,12 @@ def _pose_command(robot: Robot, angles: dict[str, float]) -> str:
     return shlex.join(words) + "\n"
 
 
-def _yaml(name: str) -> str:
-    """A name as a YAML key, in quotes because `no` would be a truth value."""
-    return json.dumps(name, ensure_ascii=False)
+def _pose_yaml(angles: dict[str, float]) -> str:
+    """The angles as YAML. All names are in quotes, because `no` would be a truth value."""
+    return "".join(f"{json.dumps(name, ensure_ascii=False)}: {angle!r}\n" for name, angle in angles.items())
+
+
+def _left_out(robot: Robot, q: Array) -> str:
+    """A comment for the forms that have angles alone; nothing if the robot has no floating or planar joint."""
+    names = ", ".join(map(json.dumps, robot.joint_placements(q)))
+    return f"# left out here: the placement of {names}, which the Python has\n" if names else ""

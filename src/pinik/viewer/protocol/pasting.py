@@ -8,9 +8,12 @@ import re
 from collections.abc import Mapping
 from typing import Any
 
+import pinocchio
+
 from ...echoes import QUOTED, shortened
 from ...errors import InputError
 from ...robot import Robot
+from ...rotations import as_se3
 from ..simulation.by_hand import set_angles
 from ..simulation.session import Session
 from .reading import read_json
@@ -22,6 +25,7 @@ _MOST_JOINTS = 1000
 _FORMS = "numbers in the order of the joints, JSON, or YAML with one joint: value in a line"
 _NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?")
 _COMMENT = re.compile(r'("(?:[^"\\]|\\.)*")|(?:^|\s)#.*')  # or a name in quotes, which may contain a #
+_PLACEMENTS = "joint_placements"
 _WRAPPERS = ("angles", "positions", "joint_positions", "joints", "q0", "solution", "pose")
 """Names under which programs put the angles of joints."""
 
@@ -49,11 +53,12 @@ def read_angles(robot: Robot, text: str) -> dict[str, Any]:
 
     The forms are: numbers, one for each joint that can be set, in the robot's order, with or without brackets and
     commas; a JSON object of joint: number, or one that contains it, or such numbers, as "angles", as `pinik solve
-    --json` prints it; and YAML lines "joint: number", indented or not, or the two lists `name` and `position` of a ROS
-    joint state. Followers are left out, because they follow.
+    --json` prints it, with the "joint_placements" of floating and planar joints if there are any; and YAML lines
+    "joint: number", indented or not, or the two lists `name` and `position` of a ROS joint state. Followers are left
+    out, because they follow.
 
     Returns:
-        Joint name → number, as `set_angles` takes them.
+        Joint name → number or placement, as `set_angles` takes them.
 
     Raises:
         InputError: The text is none of these; the message names the line or the count that does not fit.
@@ -92,10 +97,15 @@ def _from_json(robot: Robot, text: str) -> dict[str, Any]:
         value = read_json(text)
     except ValueError as error:
         raise InputError(f"the pasted text begins like JSON, but is not: {error}") from None
+    placements = angles_by_joint(_PLACEMENTS, value.pop(_PLACEMENTS, {}))
     inner = next((value[name] for name in _WRAPPERS if isinstance(value.get(name), dict | list)), value)
-    if isinstance(inner, list):
-        return _in_order(robot, inner)
-    return angles_by_joint("the pasted JSON", inner)
+    angles = _in_order(robot, inner) if isinstance(inner, list) else angles_by_joint("the pasted JSON", inner)
+    return angles | {name: _placement(name, matrix) for name, matrix in placements.items()}
+
+
+def _placement(name: str, matrix: Any) -> list[float]:
+    """The placement of a floating or planar joint, as `set_angles` takes it."""
+    return list(pinocchio.SE3ToXYZQUATtuple(as_se3(matrix, f"the placement of joint {name!r}")))
 
 
 def _from_lines(robot: Robot, text: str) -> dict[str, Any]:
