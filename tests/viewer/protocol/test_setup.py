@@ -16,8 +16,10 @@ from hypothesis import strategies as st
 import pinik
 from pinik.viewer.protocol.messages import apply
 from pinik.viewer.protocol.setup import apply_setup, read_setup, write_setup
+from pinik.viewer.protocol.state import session_state
 from pinik.viewer.simulation.looks import LOOKS
 from pinik.viewer.simulation.session import Session
+from pinik.viewer.web.tab import LARGEST_MESSAGE
 from robots import load_quietly
 from stand_ins import Clock, snapshot
 from urdf_texts import joint, link
@@ -204,6 +206,19 @@ def test_a_set_up_fits_into_an_address():
     assert write_setup(other) == setup
 
 
+def test_an_undo_of_four_robots_with_many_joints_can_be_read():
+    """The page adds the poses of all robots to a set-up, in full digits, and escapes them as browsers do."""
+    shown = Session(load_quietly("tiago_dual"), ["ccd", "jt", "pinv", "dls"], clock=Clock())
+    state = session_state(shown)["instances"]
+    poses = {
+        str(k): {name: angle + 0.1234567890123 for name, angle in one["angles"].items()} for k, one in enumerate(state)
+    }
+    text = f"{write_setup(shown)}&angles={quote(json.dumps(poses, separators=(',', ':')), safe='')}&lead=balls"
+    assert len(text) > 20_000
+    assert json.loads(read_setup(text)["angles"]) == poses
+    assert len(json.dumps({"type": "setup", "setup": "x" * 65_000})) <= LARGEST_MESSAGE
+
+
 def test_numbers_are_kept_to_the_last_digit(arm):
     shown, other = (Session(arm, clock=Clock()) for _ in range(2))
     shown.motion.speed = math.pi
@@ -264,7 +279,7 @@ def test_parameters_that_are_not_said_are_the_defaults():
 @pytest.mark.parametrize(
     ("text", "fault"),
     [
-        ("x" * 20_001, "at most 20000 characters"),
+        ("x" * 65_001, "at most 65000 characters"),
         ("view=1&view=2", "contains 'view' twice"),
         ("colour=red", "no part of a set-up 'colour'"),
         ("path=/etc/passwd", "no part of a set-up 'path'"),

@@ -22,7 +22,7 @@ from .surroundings import collisions_messages, obstacle_messages, written_collis
 __all__ = ["Setup", "apply_setup", "apply_what_fits", "read_setup", "write_setup"]
 
 Setup = dict[str, str]
-_LONGEST = 20_000
+_LONGEST = 65_000  # characters; an undo names every joint of four robots, and a message may have 65,536 bytes
 _JSON_NAMES = {list: "array", dict: "object"}
 _KEYS = ("robot", "root", "view", "methods", "parameters", "motion", "curve", "speed", "limits", "polish", "iterations",
          "tolerance", "statistics", "balls", "angles", "lead", "pause", "collisions", "obstacles", "looks",

@@ -15,7 +15,7 @@ from .show import Show
 
 __all__ = ["LARGEST_MESSAGE", "WebSocket"]
 
-LARGEST_MESSAGE = 65_536  # bytes; about three times the longest set-up
+LARGEST_MESSAGE = 65_536  # bytes; enough for the longest set-up
 # A tab may keep the server busy for a tenth of the time; every message counts as half a millisecond at least.
 _SHARE = 0.1
 _AT_ONCE = 0.1  # [s]
