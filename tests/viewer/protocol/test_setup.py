@@ -17,6 +17,7 @@ import pinik
 from pinik.viewer.protocol.messages import apply
 from pinik.viewer.protocol.setup import apply_setup, read_setup, write_setup
 from pinik.viewer.protocol.state import session_state
+from pinik.viewer.simulation.by_hand import set_angles
 from pinik.viewer.simulation.looks import LOOKS
 from pinik.viewer.simulation.session import Session
 from pinik.viewer.web.tab import LARGEST_MESSAGE
@@ -217,6 +218,18 @@ def test_an_undo_of_four_robots_with_many_joints_can_be_read():
     assert len(text) > 20_000
     assert json.loads(read_setup(text)["angles"]) == poses
     assert len(json.dumps({"type": "setup", "setup": "x" * 65_000})) <= LARGEST_MESSAGE
+
+
+def test_a_link_can_be_read_when_a_pose_took_the_balls_farther_than_one_may_be_put():
+    lion = load_quietly("lion", root="free_flyer")
+    shown, again = (Session(lion, ["dls"], clock=Clock()) for _ in range(2))
+    set_angles(shown, None, {"root_joint": [500.0, 0.0, -500.0, 0.0, 0.0, 0.0, 1.0]})
+    apply(shown, {"type": "balls_lead"})
+    setup, before = read_setup(write_setup(shown)), snapshot(shown)
+    apply_setup(again, setup)
+    assert again.balls[0].position[[0, 2]].tolist() == [100.0, -100.0]
+    apply_setup(shown, setup)
+    assert snapshot(shown) == before
 
 
 def test_numbers_are_kept_to_the_last_digit(arm):

@@ -9,6 +9,7 @@ from typing import Any
 from ...errors import InputError
 from ..simulation.ball import Ball
 from ..simulation.session import Session
+from .messages import FARTHEST
 from .parameters import tolerance_of
 
 __all__ = ["ball_messages", "balls_text"]
@@ -29,7 +30,7 @@ def _ball(session: Session, index: int) -> list[Any]:
     ball = session.balls[index]
     led = bool(session.leading.among(session.balls.targets))
     moved = led or ball.mode == "off" or (session.motion.kind != "hand" and ball.mode == "on")
-    position = None if moved else [round(float(x), 4) for x in ball.position]
+    position = None if moved else _position(ball)
     rpy = [round(float(x), 4) for x in ball.rpy] if ball.oriented else None
     extra: dict[str, Any] = {"free": ball.free} if ball.free else {}
     if ball.tolerance is not None:
@@ -59,9 +60,14 @@ def ball_messages(session: Session, balls: list[Any]) -> Iterator[dict[str, Any]
         here = session.balls[index]
         if here.mode != mode:
             yield {"type": "effector", "index": index, "mode": mode}
-        if position is not None and position != [round(float(x), 4) for x in here.position]:
+        if position is not None and position != _position(here):
             yield {"type": "ball", "index": index, "position": position}
         yield from _asked(index, here, rpy, **(extra or {}))
+
+
+def _position(ball: Ball) -> list[float]:
+    """Where a ball is, to a tenth of a millimetre. One that a pose took farther than a link may say is at the edge."""
+    return [round(min(max(float(x), -FARTHEST), FARTHEST), 4) for x in ball.position]
 
 
 def _is_extra(parts: list[Any]) -> bool:
