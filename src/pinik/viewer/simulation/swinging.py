@@ -17,8 +17,8 @@ _LARGE = 0.1  # [rad or m] in a sixtieth of a second, which no target that moves
 _OFTEN = 0.25  # the share of such steps; a swing of two poses may end one step where the step before ended
 
 _WHY = (
-    "near its full stretch the robot is almost singular, and the pseudo-inverse takes steps that overshoot; damped "
-    "least squares (dls) come to rest"
+    "where a robot is almost singular, as at its full stretch, the pseudo-inverse takes steps that are too long; "
+    "damped least squares (dls) takes shorter ones"
 )
 
 
