@@ -12,8 +12,10 @@ import pinik
 from judge import plain_placement
 from pinik.model.home import home_configuration
 from pinik.solvers.registry import make_solver
+from pinik.viewer.simulation.by_iteration import step_iteration
 from pinik.viewer.simulation.explainer import Explainer
 from pinik.viewer.simulation.instance import Instance
+from pinik.viewer.simulation.session import Session
 from pinik.viewer.simulation.step_settings import StepSettings
 from robots import load_quietly
 from stand_ins import Clock
@@ -157,6 +159,18 @@ def test_iterations_follow_one_another_and_are_no_steps(panda):
     one.step_iteration(targets)
     assert one.q is reached
     assert Explainer().explain(one, targets).reached
+
+
+def test_iterations_are_counted_since_the_ball_moved(arm):
+    shown = Session(arm, ["jt"], clock=Clock())
+    shown.set_motion("curve")
+    for _ in range(50):
+        shown.step()
+    for position in ([0.3, 0.1, 0.8], [0.2, 0.3, 0.8]):
+        shown.move_ball(0, position)
+        for taken in range(1, 4):
+            step_iteration(shown)
+            assert f"between two iterations, {taken} taken" in shown.seen[0].verdict().message
 
 
 def test_a_sweep_turns_each_joint_to_its_best_angle(panda):

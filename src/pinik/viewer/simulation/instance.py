@@ -127,6 +127,7 @@ class Instance:
         self._trouble = self._blocked = ""
         self._stalls = 0
         self._paused = False
+        self._earlier = 0  # iterations of this run for targets that have moved since
 
     def step(self, targets: Sequence[Target], seconds: float = math.inf) -> None:
         """Follow the targets for one simulation step, in which the solver computes for about `seconds` at most.
@@ -155,6 +156,8 @@ class Instance:
             return
         self._paused, self._blocked = False, ""
         began, before, former = self._clock(), self.q, self._state if self._pursuit else None
+        if moved or former is None:
+            self._earlier = former.iteration if former else 0
         try:
             state = self._run(asked, began, seconds)
             if avoided is not None and self._question is not None and self.contacts.touches(state.q):
@@ -260,7 +263,8 @@ class Instance:
         active = question.active_limits(self.q) if question.options.limits else {}
         words = explain(question, self._targets, verdict, active)
         if self._paused and self._state is not None:
-            words = words.replace("out of time,", f"between two iterations, {self._state.iteration} taken,", 1)
+            taken = self._state.iteration - self._earlier
+            words = words.replace("out of time,", f"between two iterations, {taken} taken,", 1)
         off = largest_of(verdict.errors)
         if self._blocked:
             words = f"waits, since every answer that was found touches something: {self._blocked}"
