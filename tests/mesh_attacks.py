@@ -141,6 +141,9 @@ def attacks() -> dict[str, tuple[bytes, str]]:
         "zeros.gltf": (gltf(long), "announces more numbers"),
         "zeros.glb": (_glb(gltf(long)), "announces more numbers"),
         "cut.glb": (_glb(gltf(long))[:40], "cut off"),
+        "shared.gltf": (_shared(primitives=1000, nodes=1), "repeats its parts so often"),
+        "shared.glb": (_glb(_shared(primitives=1000, nodes=1)), "repeats its parts so often"),
+        "many.gltf": (_shared(primitives=1, nodes=1000), "repeats its parts so often"),
         "no.gltf": (b"[" * 100_000, "its JSON cannot be read"),
         "outside.gltf": (
             gltf(
@@ -156,6 +159,14 @@ def attacks() -> dict[str, tuple[bytes, str]]:
         "scene.usd": (b"#usda 1.0\n", "no .usd files as meshes, but .stl, .obj"),
         "ending": (b"mesh", "no files without an ending"),
     }
+
+
+def _shared(primitives: int, nodes: int) -> bytes:
+    """A glTF file of 10,000 corners, which many primitives or nodes share."""
+    corners: dict[str, object] = {"componentType": 5126, "type": "VEC3", "count": 10_000}
+    tree = json.loads(gltf([corners], nodes))
+    tree["meshes"][0]["primitives"] *= primitives
+    return json.dumps(tree).encode()
 
 
 def _glb(tree: bytes) -> bytes:

@@ -39,7 +39,10 @@ FORMATS = ("stl", "obj", "dae", "ply", "gltf", "glb", "off")
 MOST_BYTES = 100 * 1024**2
 """The largest mesh file that is read."""
 _MOST_COPIED = 5 * MOST_BYTES  # bytes that a COLLADA file may repeat, in all
-_MOST_NUMBERS = 50_000_000  # in the arrays of a glTF file, and vertices times materials of an OBJ file, times 20
+_MOST_WALKED = 1_000_000_000  # vertices times materials of an OBJ file
+_MOST_ENTRIES = 25_000_000  # of the arrays of a glTF file, in all
+_MOST_REPEATED = 8_000_000  # corners and triangles of a glTF file that are used once more; each costs up to 200 bytes
+_REPEATS = "it repeats its parts so often that it would become far larger than it is"
 _ARCHIVES = (
     b"PK\x03\x04",
     b"PK\x05\x06",
@@ -159,12 +162,12 @@ def _check_obj(data: bytes) -> None:
     """Each material costs trimesh a walk through all vertices."""
     materials = len(set(re.findall(rb"^usemtl[^\n]*", data, re.MULTILINE)))
     vertices = data.count(b"\nv ")
-    if materials * vertices > 20 * _MOST_NUMBERS:
+    if materials * vertices > _MOST_WALKED:
         raise MeshError(f"{materials:,} materials for {vertices:,} vertices are too many", "mesh-too-large")
 
 
 def _check_gltf(data: bytes, kind: str) -> None:
-    """Arrays that are announced without data are filled with zeros, so their lengths are bounded."""
+    """Bound the lengths of arrays, as those that are announced without data are filled with zeros, and their copies."""
     text = data
     if kind == "glb":
         if data[:4] != b"glTF" or len(data) < 20:
@@ -178,10 +181,27 @@ def _check_gltf(data: bytes, kind: str) -> None:
     try:
         tree: Any = json.loads(text)
         counts = [int(accessor["count"]) for accessor in tree.get("accessors", [])]
-    except (ValueError, KeyError, TypeError, AttributeError, OverflowError, RecursionError):
+        repeated = _repeated(tree, counts)
+    except (ValueError, LookupError, TypeError, AttributeError, OverflowError, RecursionError):
         raise MeshError("this is no glTF file: its JSON cannot be read", "not-a-mesh") from None
-    if min(counts, default=0) < 0 or sum(counts) > _MOST_NUMBERS // 2:
+    if min(counts, default=0) < 0 or sum(counts) > _MOST_ENTRIES:
         raise MeshError("it announces more numbers than pinik reads", "mesh-too-large")
+    if repeated > _MOST_REPEATED:
+        raise MeshError(_REPEATS, "mesh-too-large")
+
+
+def _repeated(tree: Any, counts: list[int]) -> int:
+    """How many corners and triangles of a glTF file are copies: of arrays that primitives share, and for more nodes."""
+    shown = Counter(node.get("mesh") for node in tree.get("nodes", []))
+    total, known = 0, set()
+    for number, mesh in enumerate(tree.get("meshes", [])):
+        for primitive in mesh["primitives"]:
+            corners = max(primitive["attributes"].values(), key=counts.__getitem__, default=None)
+            for array, entries in ((corners, 1), (primitive.get("indices"), 3)):  # for a corner, and for a triangle
+                if array is not None:
+                    total += counts[array] // entries * (max(shown[number], 1) - (array not in known))
+                    known.add(array)
+    return total
 
 
 def _check_collada(data: bytes) -> None:
@@ -206,7 +226,7 @@ def _check_collada(data: bytes) -> None:
         if element.tag.rpartition(":")[2] in ("instance_geometry", "instance_controller")
     )
     if (total - len(used)) * len(data) > _MOST_COPIED:
-        raise MeshError("it repeats its parts so often that it would become far larger than it is", "mesh-too-large")
+        raise MeshError(_REPEATS, "mesh-too-large")
 
 
 def _refuse_nan(root: Element, data: bytes) -> None:
