@@ -1,4 +1,4 @@
-"""The files that a mesh refers to: its colours and its numbers, from its own folder alone, and no textures."""
+"""The files that a mesh refers to: colours and numbers, from its own folder and those below it, and no textures."""
 
 from __future__ import annotations
 
@@ -11,10 +11,9 @@ from trimesh.resolvers import Resolver
 
 from ..files import FileError, read_within
 from .mesh_checks import MOST_BYTES
+from .referred import REFERRED
 
 __all__ = ["Neighbours"]
-
-_KINDS = (".mtl", ".bin")
 
 
 class Neighbours(Resolver):
@@ -36,7 +35,7 @@ class Neighbours(Resolver):
             FileNotFoundError: There is no such file, it is not of a kind that pinik uses, or it lies elsewhere.
         """
         path = os.path.realpath(os.path.join(self._folder, unquote(name.strip()).replace("\\", "/")))
-        if not path.startswith(self._folder.rstrip(os.sep) + os.sep) or not path.lower().endswith(_KINDS):
+        if not path.startswith(self._folder.rstrip(os.sep) + os.sep) or not path.lower().endswith(REFERRED):
             raise FileNotFoundError(name)
         try:
             contents = read_within(Path(path), self._left, "a part of a mesh")

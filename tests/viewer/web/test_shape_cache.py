@@ -10,6 +10,7 @@ import sys
 import threading
 from pathlib import Path
 
+import numpy as np
 import platformdirs
 import pytest
 import trimesh
@@ -117,15 +118,38 @@ def test_a_mesh_of_another_size_is_converted_anew_even_with_the_old_time(tmp_pat
     assert len(conversions) == 2
 
 
-def test_a_changed_material_file_is_read_anew(tmp_path):
+@pytest.mark.parametrize("place", ["paint.mtl", "deep/below/paint.mtl"])
+def test_a_changed_material_file_is_read_anew(tmp_path, place):
     model = robot_with_mesh(tmp_path, "obj")
-    mesh, material = tmp_path / "meshes" / "part.obj", tmp_path / "meshes" / "paint.mtl"
-    mesh.write_text("mtllib paint.mtl\nusemtl paint\n" + mesh.read_text())
+    mesh, material = tmp_path / "meshes" / "part.obj", tmp_path / "meshes" / place
+    material.parent.mkdir(parents=True, exist_ok=True)
+    mesh.write_text(f"mtllib {place}\nusemtl paint\n" + mesh.read_text())
     material.write_text("newmtl paint\nKd 1 0 0\n")
     red = shapes_of(model)
     material.write_text("newmtl paint\nKd 0 0 1.00\n")
     blue = shapes_of(model)
     assert blue == make_shapes(model) != red
+
+
+def test_changed_numbers_of_a_gltf_mesh_are_read_anew(tmp_path):
+    (tmp_path / "meshes").mkdir()
+    for name, data in trimesh.creation.box((1, 1, 1)).export(file_type="gltf").items():
+        (tmp_path / "meshes" / name).write_bytes(data)
+    (tmp_path / "meshes" / "model.gltf").rename(tmp_path / "meshes" / "part.gltf")
+    (tmp_path / "r.urdf").write_text(robot(link("base", MESH.format("gltf"))))
+    model = pinik.load(tmp_path / "r.urdf")
+    before = shapes_of(model)
+    corners = tmp_path / "meshes" / "gltf_buffer_1.bin"
+    corners.write_bytes((np.frombuffer(corners.read_bytes(), "<f4") * 2).tobytes())
+    os.utime(corners, ns=(0, 0))
+    assert shapes_of(model) == make_shapes(model) != before
+
+
+def test_a_mesh_among_too_many_files_is_converted_each_time(tmp_path, monkeypatch, conversions):
+    model = robot_with_mesh(tmp_path, "obj")
+    monkeypatch.setattr("pinik.shapes.referred._MOST", 0)
+    assert len(shapes_of(model).parts) == len(shapes_of(model).parts) == 1
+    assert len(conversions) == 2
 
 
 def test_a_mesh_in_another_place_is_another_mesh(tmp_path, conversions):

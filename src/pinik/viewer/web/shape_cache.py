@@ -13,6 +13,7 @@ import umsgpack
 from ...caches import cache_folder, digest, keep
 from ...files import FileError, read_within
 from ...robot import Robot
+from ...shapes.referred import referred_by
 from .scene import Shapes, make_shapes
 
 __all__ = ["LIMIT", "shapes_of"]
@@ -35,6 +36,7 @@ _MAKERS = [
         ("shapes", "meshes.py"),
         ("shapes", "neighbours.py"),
         ("shapes", "quiet.py"),
+        ("shapes", "referred.py"),
         ("shapes", "simplified.py"),
         ("shapes", "triangles.py"),
         ("viewer/web", "scene.py"),
@@ -77,16 +79,17 @@ def _key(robot: Robot) -> str:
 
 
 def _mesh_files(robot: Robot) -> Iterator[str]:
-    """Yield path, size and modification time of each mesh file, and of the material files that an OBJ may use."""
+    """Yield path, size and modification time of each mesh file, and of the files that one may refer to."""
     surroundings = robot.surroundings
+    meshes = []
     for address in robot.description.meshes:
         mesh = surroundings.find(address).path
-        yield address
+        yield f"{address} {mesh}"
         if mesh is not None:
-            materials = sorted(mesh.parent.glob("*.mtl")) if mesh.suffix.lower() == ".obj" else []
-            for file in (mesh, *materials):
-                status = file.stat()
-                yield f"{file.absolute()} {status.st_size} {status.st_mtime_ns}"
+            meshes.append(mesh)
+    for file in (*meshes, *referred_by(meshes)):
+        status = file.stat()
+        yield f"{file.absolute()} {status.st_size} {status.st_mtime_ns}"
 
 
 def _read(path: Path) -> Shapes | None:

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import contextlib
 import os
 from collections.abc import Callable, Iterator
 from pathlib import Path
 
 from ...echoes import shortened
 from ...robot import Robot
+from ...shapes.referred import referred_by
 from .later import Later
 
 __all__ = ["SECONDS", "Watch", "files_of"]
@@ -20,8 +22,8 @@ _INCLUDED = (".xacro", ".urdf", ".srdf", ".yaml", ".yml")
 
 
 def files_of(robot: Robot) -> list[Path]:
-    """The files that a robot depends on, at most 300: its description, its SRDF, its meshes, and if it is xacro, files
-    of the kinds that it may include, from its folder and the folders in that.
+    """The files that a robot depends on, at most 300: its description, its SRDF, its meshes, the files that these may
+    refer to, and if it is xacro, files of the kinds that it may include, from its folder and the folders in that.
     """
     path = robot.description.path
     if path is None:
@@ -30,7 +32,10 @@ def files_of(robot: Robot) -> list[Path]:
     if path.suffix == ".xacro":
         files += sorted(found for found in _near(path.parent) if found.suffix in _INCLUDED)
     around = robot.surroundings
-    files += [found.path for address in robot.description.meshes if (found := around.find(address)).path]
+    meshes = [found.path for address in robot.description.meshes if (found := around.find(address)).path]
+    files += meshes
+    with contextlib.suppress(OSError):
+        files += referred_by(meshes)
     return list(dict.fromkeys(files))[:_MOST]
 
 
