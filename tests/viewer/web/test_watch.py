@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 import pinik
+from by_hand import two_hinges
 from pinik.loading import load_in_silence
 from pinik.viewer.simulation.by_hand import set_angles
 from pinik.viewer.simulation.session import Session
@@ -81,6 +82,27 @@ def test_a_changed_file_brings_the_new_robot_with_the_old_angles_and_settings(st
     assert stage.show.state()["watched"] == {"file": "own.urdf", "fault": None, "shown": True}
 
 
+@pytest.mark.parametrize("motion", ["curve", "random"])
+def test_balls_that_move_go_on_from_where_they_are(tmp_path, motion):
+    path = tmp_path / "own.urdf"
+    write(path, two_hinges(0.5, 0.4))
+    stage = Stage(path)
+    before = stage.show.session
+    before.set_motion(motion)
+    for _ in range(200):
+        before.step()
+    here = before.balls[0].position
+    write(path, two_hinges(0.5, 0.4) + "<!-- changed -->")
+    stage.look()
+    now = stage.show.session
+    assert now is not before
+    np.testing.assert_array_equal(now.balls[0].position, here)
+    for _ in range(200):
+        before.step()
+        now.step()
+        np.testing.assert_allclose(now.balls[0].position, before.balls[0].position)
+
+
 def test_a_faulty_file_is_said_in_words_over_the_last_good_robot_until_it_is_good_again(stage):
     before = stage.show.session
     write(stage.path, arm(0.4).replace('<child link="two"/>', '<child link="three"/>'))
@@ -128,13 +150,15 @@ def test_nobody_who_watches_costs_no_look(stage):
 
 def test_srdf_meshes_and_included_files_are_watched_too(tmp_path):
     (tmp_path / "parts").mkdir()
-    mesh, macro, path = tmp_path / "m.stl", tmp_path / "parts" / "macro.xacro", tmp_path / "own.xacro"
+    mesh, macro, path = tmp_path / "m.obj", tmp_path / "parts" / "macro.xacro", tmp_path / "own.xacro"
     mesh.write_bytes(b"x")
+    colours = tmp_path / "parts" / "paint.mtl"
+    write(colours, "newmtl red")
     write(macro, "<robot/>")
-    shape = '<visual><geometry><mesh filename="m.stl"/></geometry></visual>'
+    shape = '<visual><geometry><mesh filename="m.obj"/></geometry></visual>'
     write(path, named("own", link("base", shape)))
     found = files_of(load_in_silence(path))
-    assert {path, path.with_suffix(".srdf"), mesh, macro} <= set(found)
+    assert {path, path.with_suffix(".srdf"), mesh, colours, macro} <= set(found)
     loads = []
 
     def again():
@@ -142,12 +166,12 @@ def test_srdf_meshes_and_included_files_are_watched_too(tmp_path):
         return load_in_silence(path)
 
     watch = Watch(load_in_silence(path), again, lambda work, then: then(work()))
-    for file in (mesh, macro, path.with_suffix(".srdf")):
+    for file in (mesh, colours, macro, path.with_suffix(".srdf")):
         write(file, "<robot name='own'/>")
         watch.look(lambda robot: None)
-    assert len(loads) == 3
+    assert len(loads) == 4
     watch.look(lambda robot: None)
-    assert len(loads) == 3
+    assert len(loads) == 4
 
 
 def test_only_a_robot_from_a_file_can_be_watched(two_link):

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import copy
 from collections.abc import Sequence
 
 import numpy as np
@@ -63,6 +64,11 @@ class Motion:
     def start_at(self, phase: float) -> None:
         """Go on along the curve after this part of its lap, from 0 to 1."""
         self._phase = phase % 1.0
+
+    def go_on_from(self, other: Motion) -> None:
+        """Go on where another motion is: at its place on the lap, and with the random positions it would choose."""
+        self._phase, self._since = other._phase, other._since
+        self._rng = copy.deepcopy(other._rng)
 
     def advance(self, balls: Sequence[Ball], seconds: float) -> None:
         """Move the balls by one step of `seconds`."""

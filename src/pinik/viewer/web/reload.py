@@ -14,14 +14,18 @@ __all__ = ["reloaded"]
 def reloaded(session: Session, robot: Robot) -> Session:
     """The session with the robot as it is in its file now.
 
-    Joints keep their angles, inside their new limits, and balls their frames and positions. What the robot no longer
-    has is dropped, which the session's notes say.
+    Joints keep their angles, inside their new limits, and balls their frames and positions, from where they move on.
+    What the robot no longer has is dropped, which the session's notes say.
     """
     other = with_robot(session, robot)
     setup = read_setup(write_setup(session))
     for part in ("angles", "lead"):  # whose joints may be gone; the poses are taken over below
         setup.pop(part, None)
     other.notes = [*other.notes, *apply_what_fits(other, setup)]
+    other.motion.go_on_from(session.motion)
+    places = {ball.frame: ball.position for ball in session.balls}
+    for ball in other.balls:
+        ball.put(places.get(ball.frame, ball.position))
     for old, new in zip(session.instances, other.instances, strict=True):
         q = new.q.copy()
         kept = session.robot.angles(old.q)
