@@ -347,9 +347,16 @@ def test_the_ends_of_a_range_belong_to_it(arm, name):
     for end, beyond in zip(RANGES[name], (-1, 1), strict=True):
         after(arm, kind, **{field: end}, **others)
         further = end + beyond if name == "iterations" else math.nextafter(end, beyond * math.inf)
-        with pytest.raises(pinik.InputError, match=re.escape(f"{kind}: {field} must be a number from")):
+        words = f"{kind}: {field} must be a number from"
+        if name == "iterations":
+            words = "max. iterations must be a whole number from 1 to 1000; got"
+        with pytest.raises(pinik.InputError, match=re.escape(words)):
             after(arm, kind, **{field: further}, **others)
     assert FARTHEST == 100.0
+    words = "ball: position must be from -100 to 100 m along each axis; got 99, 1000, -0.08571"
+    with pytest.raises(pinik.InputError, match=re.escape(words) + "$"):
+        after(arm, "ball", index=0, position=[99.0, 1000.0, -0.08571428571427833])
+    after(arm, "ball", index=0, position=[-100.0, 100.0, 100.0])
 
 
 def test_angles_of_many_turns_stay_numbers_and_huge_ones_are_refused(arm):

@@ -354,7 +354,7 @@ def test_parameters_that_are_not_said_are_the_defaults():
         ('balls=[["tip",[]]]', "mode must be a text"),
         ('balls=[["tip","on",[1,2]]]', "3 finite numbers"),
         ('balls=[["tip","on","here"]]', "3 finite numbers"),
-        ('balls=[["tip","on",[1,2,1e5]]]', "within 100 m"),
+        ('balls=[["tip","on",[1,2,1e5]]]', "from -100 to 100 m"),
         ('balls=[["tip","on",[1,2,1e999]]]', "3 finite numbers"),
         ('balls=[["tip","on",null,[1]]]', "3 finite numbers"),
         ('balls=[["tip","on",null,{"a":1}]]', "3 finite numbers"),

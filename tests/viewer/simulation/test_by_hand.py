@@ -101,7 +101,11 @@ def test_limits_hold_while_they_are_on_and_followers_and_roots_are_not_set():
     shown = session(panda, ("dls",))
     before = shown.instances[0].q.copy()
     for angles, words in [
-        ({"panda_joint4": 1.0}, "its limits are from -3.0718 to -0.0698 rad"),
+        (
+            {"panda_joint4": math.radians(500)},
+            r"cannot be at 8.72665 rad \(500°\): its limits are from -3.0718 to -0.0698 rad \(-176° to -3.999°\)$",
+        ),
+        ({"panda_finger_joint1": 1.0}, "cannot be at 1 m: its limits are from 0 to 0.04 m$"),
         ({"panda_finger_joint2": 0.01}, "mimics 'panda_finger_joint1'"),
         ({"panda_joint1": 0.1, "panda_joint4": 1.0}, "panda_joint4"),
         ({"root_joint": 0.1}, "has no angle"),

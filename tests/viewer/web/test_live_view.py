@@ -281,7 +281,7 @@ def test_a_message_changes_what_a_page_would(view):
         (lambda view: view.move_ball("abc"), "3 finite numbers"),
         (lambda view: view.move_ball(None), "3 finite numbers"),
         (lambda view: view.move_ball([1, 2, "3"]), "3 finite numbers"),
-        (lambda view: view.move_ball([0, 0, 1e3]), "within 100 m"),
+        (lambda view: view.move_ball([0, 0, 1e3]), "from -100 to 100 m"),
         (lambda view: view.move_ball([0, 0, 1], index=9), "from 0 to 0; got 9"),
     ],
 )

@@ -36,7 +36,7 @@ RANGES: dict[str, tuple[float, float]] = {
 }
 """Name → lowest and highest value; the page's sliders have these ends."""
 FARTHEST = 100.0
-"""How far from the world's origin a ball may be [m]."""
+"""How far from the world's origin a ball may be along each axis [m]."""
 _LONGEST_NAME = 200
 _LARGEST_ANGLE = 100.0  # [rad]
 
@@ -129,10 +129,10 @@ def number_or_none(what: str, value: Any) -> int | None:
     return number
 
 
-def _in_range(name: str, *, whole: bool = False) -> Check:
+def _in_range(name: str) -> Check:
     def check(what: str, value: Any) -> float:
         low, high = RANGES[name]
-        number = whole_number(what, value) if whole else as_finite_number(value, what)
+        number = as_finite_number(value, what)
         if not low <= number <= high:
             raise InputError(f"{what} must be a number from {low:g} to {high:g}; got {value!r}")
         return number
@@ -140,10 +140,20 @@ def _in_range(name: str, *, whole: bool = False) -> Check:
     return check
 
 
+def _iterations(_: str, value: Any) -> int:
+    low, high = RANGES["iterations"]
+    what = "max. iterations"  # as the page calls them
+    number = whole_number(what, value)
+    if not low <= number <= high:
+        raise InputError(f"{what} must be a whole number from {low:g} to {high:g}; got {value!r}")
+    return number
+
+
 def _point(what: str, value: Any) -> Any:
     point = as_vector(value, 3, what)
     if abs(point).max() > FARTHEST:
-        raise InputError(f"{what} must be a point within {FARTHEST:g} m of the origin; got {point.tolist()}")
+        got = ", ".join(f"{number:.4g}" for number in point)
+        raise InputError(f"{what} must be from {-FARTHEST:g} to {FARTHEST:g} m along each axis; got {got}")
     return point
 
 
@@ -224,7 +234,7 @@ _MESSAGES: dict[str, tuple[dict[str, Check], Callable[..., None]]] = {
     "curve": ({"curve": text}, lambda s, curve: s.set_curve(curve)),
     "speed": ({"value": _in_range("speed")}, _set_speed),
     "iterations": (
-        {"until_reached": _truth, "at_most": _in_range("iterations", whole=True)},
+        {"until_reached": _truth, "at_most": _iterations},
         lambda s, until_reached, at_most: s.change_settings(until_reached=until_reached, at_most=at_most),
     ),
     "tolerance": (

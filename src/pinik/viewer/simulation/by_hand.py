@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 
 import numpy as np
@@ -79,7 +80,14 @@ def _check(session: Session, joint: Joint, angle: float) -> None:
     within = angle_range(session.robot, joint) if joint.has_one_axis and session.settings.limits else None
     lower, upper = within or (-WIDEST_RANGE, WIDEST_RANGE)
     if not lower - _SLACK <= angle <= upper + _SLACK:
-        unit = "m" if joint.kind == "prismatic" else "rad"
         reason = "its limits are" if within else "it can be set"
-        reason = f"{reason} from {lower:g} to {upper:g} {unit}"
-        raise InputError(f"joint {joint.name!r} cannot be at {angle:g} {unit}: {reason}")
+        at, ends = _in_units(joint, angle), _in_units(joint, lower, upper)
+        raise InputError(f"joint {joint.name!r} cannot be at {at}: {reason} from {ends}")
+
+
+def _in_units(joint: Joint, *numbers: float) -> str:
+    """A number or a range of a joint: in metres, or in radians and in degrees."""
+    words = " to ".join(f"{number:g}" for number in numbers)
+    if joint.kind == "prismatic":
+        return f"{words} m"
+    return f"{words} rad ({' to '.join(f'{math.degrees(number):.4g}°' for number in numbers)})"
