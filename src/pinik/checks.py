@@ -1,10 +1,12 @@
-"""Checks of arguments: numbers, names, arrays, vectors and points. Errors name the argument and the requirement."""
+"""Checks of arguments: numbers, names, files, arrays, vectors, points. Errors name the argument and what it must be."""
 
 from __future__ import annotations
 
 import contextlib
 import math
+import os
 from collections.abc import Callable, Iterable
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -15,6 +17,7 @@ from .errors import InputError
 __all__ = [
     "as_array",
     "as_count",
+    "as_file_name",
     "as_finite_number",
     "as_length",
     "as_many",
@@ -185,6 +188,13 @@ def as_names(value: Iterable[str], what: str) -> tuple[str, ...]:
     if isinstance(value, (str, memoryview)) or not isinstance(value, Iterable):
         raise InputError(f"must be a list of joint names; got {value!r}", argument=what)
     return tuple(value)
+
+
+def as_file_name(value: str | os.PathLike[str], what: str, example: str) -> Path:
+    """`value` as a path; InputError unless it is the name of a file, as text or as a path."""
+    if not isinstance(value, (str, os.PathLike)) or not isinstance(os.fspath(value), str):
+        raise InputError(f"must be the name of a file, such as {example!r}; got {value!r}", argument=what)
+    return Path(value)
 
 
 def as_unit_vector(value: ArrayLike, what: str) -> Array:

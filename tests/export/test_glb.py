@@ -263,6 +263,9 @@ def arm_on_show(arm):
 def test_what_cannot_be_written_is_refused_in_words(arm, arm_on_show, track, tmp_path):
     with pytest.raises(pinik.InputError, match=r"must end with '\.glb'"):
         save_glb(track, tmp_path / "track.gltf")
+    for wrong in (5, None, b"a.glb"):
+        with pytest.raises(pinik.InputError, match=r"path must be the name of a file, such as 'robot\.glb'; got"):
+            save_glb(track, wrong)
     with pytest.raises(pinik.InputError, match="must increase"):
         save_glb(track, tmp_path / "a.glb", times=[0, 1, 1, 2, 3])
     with pytest.raises(pinik.InputError, match="q must be left out"):

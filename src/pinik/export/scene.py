@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, TypeAlias, get_args
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..checks import as_vector
+from ..checks import as_file_name, as_vector
 from ..errors import InputError, UrdfWarning
 from ..model.home import robot_size
 from ..picture.arguments import as_configurations
@@ -190,8 +190,9 @@ def check_suffix(path: str | os.PathLike[str], suffix: str) -> Path:
     """The path of a file.
 
     Raises:
-        InputError: Its name does not end with `suffix`.
+        InputError: It is no name of a file, or does not end with `suffix`.
     """
-    if Path(path).suffix.lower() != suffix:
-        raise InputError(f"must end with {suffix!r}; got {os.fspath(path)!r}", argument="path")
-    return Path(path)
+    file = as_file_name(path, "path", f"robot{suffix}")
+    if file.suffix.lower() != suffix:
+        raise InputError(f"must end with {suffix!r}; got {str(file)!r}", argument="path")
+    return file

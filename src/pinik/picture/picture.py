@@ -5,12 +5,12 @@ from __future__ import annotations
 import io
 import os
 from dataclasses import dataclass
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from ..checks import as_file_name
 from ..errors import InputError
 from ..extras import needed_by
 from ..files import write_whole
@@ -73,15 +73,14 @@ class Picture:
         with needed_by("a picture's file", "pictures"):
             from PIL import Image
 
-        if not isinstance(path, (str, os.PathLike)) or not isinstance(os.fspath(path), str):
-            raise InputError(f"path must be the name of a file, such as 'robot.png'; got {path!r}")
-        kind = Image.registered_extensions().get(Path(path).suffix.lower(), "")
+        file_name = as_file_name(path, "path", "robot.png")
+        kind = Image.registered_extensions().get(file_name.suffix.lower(), "")
         image = Image.fromarray(self.pixels)
         if kind not in _WITH_OPACITY:
             image = Image.alpha_composite(Image.new("RGBA", image.size, "white"), image).convert("RGB")
         if not _is_written(image, kind):
             raise InputError(
-                f"path must end in .png, .jpg or another suffix that Pillow can write; got {os.fspath(path)!r}"
+                f"path must end in .png, .jpg or another suffix that Pillow can write; got {str(file_name)!r}"
             )
         file = io.BytesIO()
         image.save(file, kind)
