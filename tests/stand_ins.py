@@ -179,7 +179,8 @@ def read_frame(message: bytes) -> Frame:
         assert len(taken) == count
         return taken
 
-    generation, step, instances, joints, balls = (int(number) for number in take(5))
+    generation, _, instances, joints, balls = (int(number) for number in take(5))
+    (step,) = struct.unpack_from("<I", message, 8)
     where = np.array(take(7 * balls), dtype=np.float32).reshape(balls, 7)
     blocks = []
     for _ in range(instances):

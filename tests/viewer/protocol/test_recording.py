@@ -15,13 +15,19 @@ from stand_ins import recorded, small_frame
 def steps(recording):
     count, size = len(recording), recording.frame_bytes
     assert len(recording.frames) == count * size
-    return [struct.unpack_from("<4x5f", recording.frames, k * size)[1] for k in range(count)]
+    return [struct.unpack_from("<8xI", recording.frames, k * size)[0] for k in range(count)]
 
 
 def test_every_second_frame_is_kept_as_it_came():
     recording = recorded(small_frame(k, mark=0.5) for k in range(7))
     assert steps(recording) == [0, 2, 4, 6]
     assert recording.frames == b"".join(small_frame(k, mark=0.5) for k in (0, 2, 4, 6))
+
+
+def test_no_frame_is_lost_after_any_number_of_steps():
+    for first in (2**24, 2**31, 2**32 - 8):
+        recording = recorded(small_frame(first + k) for k in range(8))
+        assert steps(recording) == [first, first + 2, first + 4, first + 6]
 
 
 def test_twenty_seconds_are_kept_and_no_more():

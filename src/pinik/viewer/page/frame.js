@@ -15,7 +15,8 @@ export class Frame {
     constructor(buffer) {
         const start = isFrame(new Uint8Array(buffer, 0, 4)) ? 4 : 0;
         const numbers = new Float32Array(buffer, start);
-        [this.generation, this.step, this.instances, this.joints, this.balls] = numbers;
+        [this.generation, , this.instances, this.joints, this.balls] = numbers;
+        [this.step] = new Uint32Array(buffer, start + 4, 1); // the only whole number
         this.numbers = numbers;
         this._first = HEAD + PLACEMENT * this.balls;
         this._stride = FIGURES + (PLACEMENT + 1) * this.joints + 3 * this.balls;

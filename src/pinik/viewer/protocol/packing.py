@@ -11,12 +11,11 @@ from numpy.typing import NDArray
 
 from ...robot import Robot
 
-__all__ = ["FRAME_MAGIC", "InstanceBlock", "JointPlacements", "pack_frame"]
+__all__ = ["InstanceBlock", "JointPlacements", "pack_frame"]
 
 Array = NDArray[np.float64]
 
-FRAME_MAGIC = b"PNKF"
-"""The first four bytes of a frame message."""
+_MAGIC = b"PNKF"
 
 
 class JointPlacements:
@@ -64,7 +63,7 @@ def pack_frame(generation: int, step: int, balls: Array, blocks: Sequence[Instan
 
     Args:
         generation: The number of the robot that the frame shows.
-        step: The session's step counter.
+        step: The session's step counter; it is written as a whole number, as float32 loses some after three days.
         balls: Placements (B, 7): x, y, z [m], qx, qy, qz, qw.
         blocks: One block per instance, all of the same robot.
 
@@ -78,4 +77,5 @@ def pack_frame(generation: int, step: int, balls: Array, blocks: Sequence[Instan
     numbers = np.concatenate(pieces, dtype="<f4", casting="same_kind")
     if numbers.size != 5 + 7 * len(balls) + len(blocks) * (8 + 8 * joints + 3 * len(balls)):
         raise ValueError("every block of a frame must have eight figures and the same number of joints and points")
-    return FRAME_MAGIC + numbers.tobytes()
+    numbers.view("<u4")[1] = step % 2**32
+    return _MAGIC + numbers.tobytes()

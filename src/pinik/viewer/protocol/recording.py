@@ -101,7 +101,7 @@ class Recording:
         if layout != self._layout:
             self.clear()
             self._layout = layout
-        step = int(struct.unpack("<f", frame[_STEP])[0])
+        (step,) = struct.unpack("<I", frame[_STEP])
         at = 0
         if self._moments:
             last = self._moments[-1]
