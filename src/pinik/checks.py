@@ -1,4 +1,4 @@
-"""Checks of arguments: numbers, names, files, arrays, vectors, points. Errors name the argument and what it must be."""
+"""Checks of arguments: numbers, names, files, arrays, vectors and points. Errors name argument and requirement."""
 
 from __future__ import annotations
 
