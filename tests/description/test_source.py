@@ -150,6 +150,8 @@ def closed():
         (NotAFile("<robot/>", b"<robot/>"), "the file must give either text or bytes; it gave both"),
         (WithoutSize(), r"the file's read\(\) must take a size: .*positional argument"),
         (NotAFile("\ud800<robot/>", ""), "cannot be encoded"),
+        ("there/is/none.urdf", "no such file$"),
+        ("xml <robot/>", r"no such file \(URDF text would begin with '<'\)$"),
         (b"", "empty"),
         (b"\x7fELF\x02\x01", "not XML"),
     ],

@@ -131,5 +131,6 @@ def _file_bytes(path: Path) -> bytes:
     try:
         return read_within(path, MAX_BYTES, "a URDF file", streams=True)
     except FileError as fault:
-        remark = "" if os.path.lexists(path) else " (URDF text would begin with '<')"
+        is_name = path.suffix or os.path.lexists(path)
+        remark = "" if is_name else " (URDF text would begin with '<')"
         raise DocumentError(f"{fault}{remark}") from None

@@ -111,7 +111,7 @@ def test_a_faulty_file_is_said_in_words_over_the_last_good_robot_until_it_is_goo
     assert "three" in stage.show.state()["watched"]["fault"]
     stage.path.unlink()
     stage.look()
-    assert "own.urdf" in stage.show.state()["watched"]["fault"]
+    assert stage.show.state()["watched"]["fault"] == f"{stage.path}: there is no such file"
     write(stage.path, arm(0.5))
     stage.look()
     assert stage.show.state()["watched"]["fault"] is None
