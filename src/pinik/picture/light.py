@@ -12,7 +12,7 @@ from .bodies import Body
 from .camera import Camera, look_from
 from .raster import Raster, rasterize
 
-__all__ = ["FAR", "Mesh", "Sun", "to_linear", "to_srgb"]
+__all__ = ["FAR", "Mesh", "Sun", "to_srgb"]
 
 Array = NDArray[np.float64]
 
@@ -22,7 +22,7 @@ _SKY, _KEY, _FILL = 0.44, 0.70, 0.13
 _TAPS = 6  # lookups in the shadow map for each sample; a pixel's four samples use different ones
 
 
-def to_linear(color: Array) -> Array:
+def _to_linear(color: Array) -> Array:
     """sRGB in 0..1 as linear light."""
     return np.asarray(color) ** 2.2
 
@@ -69,7 +69,7 @@ class Mesh:
             np.vstack([solid.vertices for solid in solids]),
             np.vstack([solid.normals for solid in solids]),
             np.vstack([solid.faces + start for solid, start in zip(solids, starts, strict=True)]),
-            np.repeat(to_linear(np.array([body.color for body in bodies])), counts, axis=0),
+            np.repeat(_to_linear(np.array([body.color for body in bodies])), counts, axis=0),
             np.repeat([body.gloss for body in bodies], counts),
             np.repeat([body.glow for body in bodies], counts),
             np.repeat([body.opacity >= 1.0 and not body.scenery for body in bodies], counts),

@@ -19,7 +19,7 @@ from .disabled_pairs import LinkPair, link_pair, read_disabled_pairs
 from .solids import Solid
 from .touch import Pair
 
-__all__ = ["SAMPLES", "CollisionPairs", "Reason", "find_pairs", "solid_pairs"]
+__all__ = ["SAMPLES", "CollisionPairs", "find_pairs", "solid_pairs"]
 
 Reason = Literal["fixed", "srdf", "adjacent", "at rest", "always", "never"]
 """Why a pair does not count: the links are fixed to each other; the SRDF disables it; the links are joined by a joint;

@@ -7,7 +7,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from pinik.viewer.simulation.statistics import WINDOW, Statistics, StepFigures
+from pinik.motion.figures import StepFigures
+from pinik.viewer.simulation.statistics import WINDOW, Statistics
 
 FIGURES = st.builds(
     StepFigures,

@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from typing import Any, NamedTuple
 from urllib.parse import quote, urlencode
 
-__all__ = ["LESSONS", "Lesson", "setup_text"]
+__all__ = ["LESSONS", "setup_text"]
 
 
 class Lesson(NamedTuple):

@@ -20,7 +20,7 @@ from ...solving.prepared import Prepared
 from .ball import Ball
 from .step_settings import StepSettings
 
-__all__ = ["LONGEST", "MOST_PLACES", "Entry", "Finish", "Race", "Runner", "enter", "run_race"]
+__all__ = ["LONGEST", "MOST_PLACES", "Race", "Runner", "enter", "run_race"]
 
 Array = NDArray[np.float64]
 

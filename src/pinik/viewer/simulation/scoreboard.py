@@ -12,7 +12,7 @@ from .motion import Motion
 from .statistics import WINDOWS, Statistics, Summary
 from .step_settings import StepSettings
 
-__all__ = ["Scoreboard", "Terms", "terms"]
+__all__ = ["Scoreboard", "terms"]
 
 Terms = tuple[object, ...]
 

@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 from ...motion.figures import StepFigures
 
-__all__ = ["WINDOW", "WINDOWS", "Statistics", "StepFigures", "Summary"]
+__all__ = ["WINDOW", "WINDOWS", "Statistics", "Summary"]
 
 WINDOW = 1000
 """The number of steps that the statistics cover, as in the thesis, if they do not cover all."""

@@ -51,9 +51,8 @@ class Exhibit:
         seats.send(json.dumps(self.robot))
 
     def begin(self, session: Session) -> None:
-        """Have the shapes read, and what the session needs besides."""
+        """Have the shapes read."""
         self._later(lambda: shapes_of(session.robot), self._take)
-        self._additions.ask(session)
 
     def _take(self, shapes: Shapes | BaseException) -> None:
         if isinstance(shapes, BaseException):

@@ -6,7 +6,7 @@ import ipaddress
 import re
 import socket
 
-__all__ = ["frame_ancestors", "host_name", "is_own_host"]
+__all__ = ["frame_ancestors", "is_own_host"]
 
 _LOOPBACK = ("localhost", "127.0.0.1", "::1")
 
@@ -16,7 +16,7 @@ _HOST = re.compile(r"(?:([A-Za-z0-9-]+(?:\.[A-Za-z0-9-]+)*)|\[([0-9A-Fa-f:.]{2,4
 _LONGEST = 260  # characters; a name has at most 253
 
 
-def host_name(host_header: str) -> str:
+def _host_name(host_header: str) -> str:
     """Return the name in a Host header, in lower case and without brackets; "" if any part of the header is malformed.
 
     Only letters, digits, dots, hyphens, colons and a pair of brackets may occur, so that the header can be quoted in a
@@ -32,7 +32,7 @@ def is_own_host(host_header: str, served: str) -> bool:
     Such names are localhost and the loopback addresses, with any port. If the server listens on another address, they
     are also any bare IP address, the machine's own name, and the name it was told to listen on.
     """
-    name = host_name(host_header)
+    name = _host_name(host_header)
     if name in _LOOPBACK:
         return True
     if served in _LOOPBACK or not name:
@@ -46,7 +46,7 @@ def frame_ancestors(host_header: str) -> str:
     Any other page could replace the session by a set-up in the frame's address. IPv6 addresses are left out because a
     content security policy cannot name them.
     """
-    hosts = dict.fromkeys(("localhost", "127.0.0.1", host_name(host_header)))
+    hosts = dict.fromkeys(("localhost", "127.0.0.1", _host_name(host_header)))
     origins = [f"{scheme}://{host}:*" for host in hosts if host and ":" not in host for scheme in ("http", "https")]
     return " ".join((*origins, "vscode-webview:", "vscode-file:"))
 

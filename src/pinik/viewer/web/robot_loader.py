@@ -25,11 +25,6 @@ class RobotLoader:
         self._request = 0  # number of the newest request
         self.loading: str | None = None
 
-    @property
-    def menu(self) -> RobotMenu:
-        """The robots that can be loaded."""
-        return self._menu
-
     def load(self, name: str, root: str, then: Callable[[Robot | InputError], None]) -> None:
         """Load a robot, then call `then` with it or with the reason why it cannot be loaded.
 
