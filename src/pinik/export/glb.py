@@ -38,7 +38,8 @@ def save_glb(
 
     Its root is a node with the robot's name, which faces the viewer. Below it each link is a node of its own name,
     placed in its parent link [m]. With several configurations they are the keys of one animation that begins at 0 s,
-    with others between them where a joint turns farther than 60°; between keys, joints move evenly.
+    with others between them where a joint turns farther than 60° or slides farther than about 1 m; between keys,
+    joints move evenly.
 
     The robots of a live view stand side by side, each below a node with the name of its method, which begins all names
     below it ("dls tip"), together with a plate on which the method is written and the balls ("dls ball tip").
@@ -46,7 +47,7 @@ def save_glb(
     Args:
         shown: A solution, a track, a self-motion or the `recording()` of a live view; or a robot with `q`.
         path: The file; its name ends with ".glb".
-        q: A configuration (nq,) or several (n, nq) of a robot; neutral when None.
+        q: A configuration (nq,) or several (n, nq) of a robot; its rest configuration when None.
         times: When it is at each (n,) [s], increasing; those of a track or a recording, or 30 a second, when None.
 
     Raises:

@@ -12,11 +12,11 @@ __all__ = ["filled_in", "places_of", "turned_the_short_way"]
 
 Array = NDArray[np.float64]
 
-_FARTHEST = np.pi / 3  # that a joint turns between two keys; beyond π a player would take the short way
+_FARTHEST = np.pi / 3  # [rad or m] that a joint moves between two keys; beyond π a player would take the short way
 
 
 def filled_in(robot: Robot, q: Array, times: Array) -> tuple[Array, Array]:
-    """Configurations (n, nq) and times (n,) with others between them where a joint turns far."""
+    """Configurations (n, nq) and times (n,) with others between them where a joint moves far."""
     rates = np.ones(robot.model.nv)  # how much faster the fastest follower of a joint turns
     for joint in robot.joints:
         if joint.leader is not None:

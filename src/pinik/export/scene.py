@@ -151,7 +151,7 @@ def scene_of(shown: Shown, q: ArrayLike | None, times: ArrayLike | None) -> Scen
     Args:
         shown: A recording, or another answer with its own robot and configurations; or a robot, with configurations in
             `q`.
-        q: A configuration (nq,) or several (n, nq) of a robot; neutral when None.
+        q: A configuration (nq,) or several (n, nq) of a robot; its rest configuration when None.
         times: When it is at each (n,) [s], increasing; those of a track or a recording, or 30 a second, when None.
 
     Raises:

@@ -58,7 +58,7 @@ def hello_message(version: str, methods: dict[str, type[Solver]], own_robots: li
 
 
 def session_state(session: Session) -> dict[str, Any]:
-    """Return the `state` message without what the server adds: generation, pace, loading, set-up."""
+    """Return the `state` message without what the server adds: generation, pace, loading, watched, command, set-up."""
     settings, motion = session.settings, session.motion
     return {
         "type": "state",

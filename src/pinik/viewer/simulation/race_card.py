@@ -15,7 +15,7 @@ _WIDTH = 54  # characters that the page has room for
 
 
 def card(race: Race) -> str:
-    """The result as text in columns, with everything that is needed to repeat it."""
+    """The result as text in columns, with the rules that all methods had."""
     entry, settings = race.entry, race.entry.settings
     count = len(entry.places)
     what = f"{count} random places within reach" if entry.random else "the balls as they are"

@@ -11,7 +11,7 @@ __all__ = ["Guests"]
 
 _PER_ADDRESS = 64  # connections; a browser opens about six, and one more for each tab
 _IN_ALL = 128
-_REQUESTS_PER_SECOND = 100.0  # the page with all its modules takes about fifty
+_REQUESTS_PER_SECOND = 100.0  # the page, meshcat's script and the tab's socket count as twelve
 _REQUESTS_AT_ONCE = 400.0
 _ALL_REQUESTS_PER_SECOND = 300.0
 _ALL_REQUESTS_AT_ONCE = 1200.0
