@@ -52,8 +52,8 @@ async def main():
     server = await tornado.websocket.websocket_connect(sys.argv[1])
     while (message := await server.read_message()) is not None:
         if isinstance(message, bytes) and message[:4] == b"PNKF":
-            _, step = struct.unpack_from("<4x2f", message)
-            await server.write_message(json.dumps({"type": "drawn", "step": int(step)}))
+            (step,) = struct.unpack_from("<8xI", message)
+            await server.write_message(json.dumps({"type": "drawn", "step": step}))
 
 asyncio.run(main())
 """

@@ -185,7 +185,7 @@ class GoodClient:
             if opcode == PING:
                 await self._client.send(frame(PONG, content))
             elif content.startswith(b"PNKF"):
-                step = int(struct.unpack_from("<f", content, 8)[0])
+                (step,) = struct.unpack_from("<I", content, 8)
                 self.seen.append((time.perf_counter(), step))
                 await self._client.send(frame(TEXT, b'{"type": "drawn", "step": %d}' % step))
             elif content.startswith(b'{"type": "state"'):
