@@ -199,7 +199,7 @@ def test_a_session_offers_it_runs_it_and_tells_its_parameters(arm):
 
 def test_the_page_s_menu_has_it_and_the_page_can_choose_it(arm):
     session = Session(arm, clock=Clock())
-    menu = {one["name"]: one["title"] for one in hello_message("1", session.methods, [])["methods"]}
+    menu = {one["name"]: one["title"] for one in hello_message("1", session.methods, [], "5f")["methods"]}
     assert (menu["marquardt"], menu["idle"]) == ("marquardt", "idle")
     apply(session, {"type": "method", "instance": 3, "method": "marquardt"})
     apply(session, {"type": "parameter", "instance": 3, "name": "damping", "value": 0.5})

@@ -98,9 +98,13 @@ def test_what_it_was_not_prepared_for_is_refused_in_words(engine, panda, lion):
     ):
         with pytest.raises(pinik.InputError, match=words):
             ask(place)
-    for q0 in ([0.0] * 7, np.full(8, math.nan), "nearby", 3):
+    for q0 in ([0.0] * 7, np.full(8, math.nan), 3):
         with pytest.raises(pinik.InputError, match="q0 must be 8 finite numbers"):
             pose(np.eye(4), q0)
+    with pytest.raises(
+        pinik.InputError, match=r"got 'nearby' \(the robot's poses are given as robot\.poses\['default'\]\)"
+    ):
+        pose(np.eye(4), "nearby")
 
 
 @pytest.mark.parametrize("engine", ["python", pytest.param("native", marks=needs_native)])
