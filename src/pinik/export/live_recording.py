@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from ..robot import Robot
 from ..solvers.base import Solver
-from ..solvers.distinctions import distinctions
+from ..solvers.distinctions import called, distinctions
 
 __all__ = ["LiveRecording", "RecordedBall"]
 
@@ -68,7 +68,7 @@ class LiveRecording:
     def titles(self) -> list[str]:
         """What each instance is called: the title of its method, or, among others of that method, what is its own."""
         told_apart = zip(self.solvers, distinctions(self.solvers), strict=True)
-        return [f"{solver.name}, {own}" if own else solver.title for solver, own in told_apart]
+        return [called(solver.name, own) if own else solver.title for solver, own in told_apart]
 
     def __repr__(self) -> str:
         return f"<LiveRecording of {self.robot.name!r}: {', '.join(self.names)}; {self.times[-1]:.1f} s>"

@@ -8,7 +8,7 @@ from typing import Any
 from .base import Solver
 from .parameter import Parameter, parameters_of
 
-__all__ = ["distinctions"]
+__all__ = ["called", "distinctions"]
 
 _MOST = 2  # parameters that are named; captions have no room for more
 
@@ -16,6 +16,11 @@ _MOST = 2  # parameters that are named; captions have no room for more
 def distinctions(solvers: Sequence[Solver]) -> list[str]:
     """For each solver the parameters that differ among those of its method, such as "λ = 0.05"; "" if none does."""
     return [_distinction(one, [other for other in solvers if type(other) is type(one)]) for one in solvers]
+
+
+def called(name: str, distinction: str) -> str:
+    """The name of a method, with what tells it from others of that name."""
+    return f"{name}, {distinction}" if distinction else name
 
 
 def _distinction(solver: Solver, alike: Sequence[Solver]) -> str:

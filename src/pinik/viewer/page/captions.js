@@ -1,7 +1,7 @@
 /** The texts of the captions, and what they must not cover. */
 
 import { Labels } from "pinik/labels.js";
-import { called, standing, tone } from "pinik/words.js";
+import { called, standing, titled, tone } from "pinik/words.js";
 
 const BESIDE = 10; // [px] between the buttons and robots
 const WORDS = 120; // [ms] between two changes of the texts
@@ -52,9 +52,7 @@ export class Captions {
             const instance = state.instances[i];
             const words = standing(state, i, [status, position, orientation], awaiting);
             const note = cast.instances[i]?.note ?? "";
-            const name = called(instance);
-            const title = instance.distinction ? name : instance.title;
-            return { title, name, words, tone: tone(status), note };
+            return { title: titled(instance), name: called(instance), words, tone: tone(status), note };
         });
         this._labels.set(texts);
         this.place();

@@ -4,7 +4,7 @@ import { make, say } from "pinik/elements.js";
 import { offer, write } from "pinik/hands.js";
 import { Levels } from "pinik/levels.js";
 import { parameterWidget } from "pinik/parameter.js";
-import { called, tone } from "pinik/words.js";
+import { titled, tone } from "pinik/words.js";
 
 export class Card {
     constructor(index, hello, connection) {
@@ -64,7 +64,7 @@ export class Card {
     setState(state) {
         const instance = state.instances[this._index];
         this._instance = instance;
-        say(this._title, instance.distinction ? called(instance) : instance.title);
+        say(this._title, titled(instance));
         this._title.title = this._help.get(instance.method) ?? "";
         const names = new Set([...state.methods, instance.method]); // its own method, even if it is not on offer
         offer(

@@ -1,7 +1,7 @@
 /** Three rings around the selected ball that turn the orientation that it asks for, about its own axes or the world's. */
 
-import { snapAngle } from "pinik/snap.js";
 import { ringRadius } from "pinik/on_screen.js";
+import { snapAngle } from "pinik/snap.js";
 import { THREE } from "pinik/three.js";
 
 const REACH = { mouse: 9, pen: 12, touch: 20 }; // [px] from a ring

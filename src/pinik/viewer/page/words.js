@@ -74,6 +74,11 @@ export function called({ method, distinction }) {
     return distinction ? `${method}, ${distinction.replaceAll(" = ", "\u00a0=\u00a0")}` : method;
 }
 
+/** What an instance is called where there is room: by its method's title, if that tells it from the others. */
+export function titled(instance) {
+    return instance.distinction ? called(instance) : instance.title;
+}
+
 /** What instance `i` does or has reached, in a few words; errors in m and rad, null or NaN if not asked for. */
 export function standing(state, i, [status, positionError, orientationError], awaiting) {
     if (awaiting) return "loading its shapes …";

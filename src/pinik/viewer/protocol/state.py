@@ -9,7 +9,6 @@ from ...description.catalog import catalog
 from ...motion.curves import CURVES
 from ...solvers.base import Solver
 from ...solvers.distinctions import distinctions
-from ..simulation.instance import Instance
 from ..simulation.instances import VIEWS
 from ..simulation.looks import LOOKS
 from ..simulation.motion import MOTIONS
@@ -60,6 +59,7 @@ def hello_message(version: str, methods: dict[str, type[Solver]], own_robots: li
 def session_state(session: Session) -> dict[str, Any]:
     """Return the `state` message without what the server adds: generation, pace, loading, watched, command, set-up."""
     settings, motion = session.settings, session.motion
+    told_apart = distinctions([instance.solver for instance in session.seen])
     return {
         "type": "state",
         "schema": 1,
@@ -101,21 +101,21 @@ def session_state(session: Session) -> dict[str, Any]:
         },
         "obstacles": [dataclasses.asdict(obstacle) for obstacle in session.obstacles],
         "instances": [
-            _instance_state(session, index, instance, summary)
-            for index, (instance, summary) in enumerate(zip(session.seen, session.summaries, strict=True))
+            {**_instance_state(session, index, summary), "distinction": distinction}
+            for index, (summary, distinction) in enumerate(zip(session.summaries, told_apart, strict=True))
         ],
         "joint_names": list(session.robot.joint_names),
         "methods": session.offered,
     }
 
 
-def _instance_state(session: Session, index: int, instance: Instance, summary: Summary) -> dict[str, Any]:
+def _instance_state(session: Session, index: int, summary: Summary) -> dict[str, Any]:
+    instance = session.seen[index]
     verdict = instance.verdict(session.balls.targets)
     swings = swinging(instance.solver, session.scores.newest(index, LOOKED_AT))
     return {
         "method": instance.solver.name,
         "title": instance.solver.title,
-        "distinction": distinctions([one.solver for one in session.seen])[index],
         "parameters": describe_parameters(instance.solver),
         "engine": instance.engine,
         **verdict._asdict(),

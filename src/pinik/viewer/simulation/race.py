@@ -14,7 +14,7 @@ from ...motion.tracks import random_configuration
 from ...problem.targets import Target
 from ...robot import Robot
 from ...solvers.base import Solver
-from ...solvers.distinctions import distinctions
+from ...solvers.distinctions import called, distinctions
 from ...solving.options import Options
 from ...solving.prepared import Prepared
 from .ball import Ball
@@ -95,7 +95,7 @@ class Runner(NamedTuple):
     @property
     def called(self) -> str:
         """Its name, with what tells it from others of that name."""
-        return f"{self.method}, {self.distinction}" if self.distinction else self.method
+        return called(self.method, self.distinction)
 
     @property
     def arrived(self) -> tuple[Finish, ...]:
