@@ -286,6 +286,7 @@ window.drawAt = (time) => waiting.splice(0).forEach((draw) => draw(time));
 def test_a_first_picture_dated_before_the_script_shows_the_first_frame(saved, tab):
     tab.add_init_script(CLOCK)
     tab.goto(saved)
+    tab.wait_for_function("() => window.pinik?.player", polling=50)  # once it has unpacked its frames
     clock = tab.locator("#clock")
     for time, shown in [(990, "0.0"), (995, "0.0"), (1495, "0.5"), (1490, "0.5"), (1690, "0.7")]:
         tab.evaluate("(time) => window.drawAt(time)", time)
